@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -11,6 +12,7 @@
 #include "core/base/atomic_folder.h"
 #include "core/base/number_text.h"
 #include "core/base/parallel.h"
+#include "core/base/srgb.h"
 #include "core/fit/evidence.h"
 #include "core/fit/highlight_motion.h"
 #include "core/fit/highlight_quality.h"
@@ -30,6 +32,8 @@ constexpr std::size_t kRejectedLines = 3;  // of a frame in the table; the JSON 
 struct DetectArguments {
   std::string input, source = "radiance", out, json, level = "0.5";
   std::vector<std::string> set;
+  std::string separate = "off";
+  bool parts = false;
   SceneArguments places;
 };
 
@@ -60,16 +64,28 @@ struct Seen {
   std::shared_ptr<const Surface> surface;
   std::vector<HighlightQuality> quality;
   std::optional<FrameBlur> blur;
+  std::optional<Parting> parting;
 };
 
-Seen seenIn(const Scene& scene, const SurfaceCache& surfaces, int index, FrameSource source, const Settings& settings) {
+/// What is not known of a contour on the specular part: its noise, and what diffuse light is left. No tail passes for background there.
+void qualityOfParted(const Parting& parting, Seen& seen) {
+  for (std::size_t i = 0; parting.parted && i < seen.quality.size(); ++i) {
+    seen.quality[i].noisePx = movedBy(parting.regions[i].noise, seen.evidence.highlights[i]);
+    seen.quality[i].backgroundPx = movedBy(parting.regions[i].leftover, seen.evidence.highlights[i]);
+  }
+}
+
+Seen seenIn(const Scene& scene, const SurfaceCache& surfaces, int index, FrameSource source, const Settings& settings,
+            bool separate) {
   const Frame& frame = scene.frames[static_cast<std::size_t>(index)];
   Seen seen;
   seen.evidence = gatherEvidence(scene, index, source, settings);
+  if (separate) seen.parting = partEvidence(scene, index, source, settings, seen.evidence);
   if (const Outcome<LinearPixels> pixels = pixelsOf(frame, source, settings)) {
     seen.blur = blurOf(*pixels);
     seen.surface = surfaceIn(scene, surfaces, index, settings);
     seen.quality = highlightQualities(frame, *pixels, seen.surface.get(), seen.blur, seen.evidence.highlights);
+    if (seen.parting) qualityOfParted(*seen.parting, seen);
   }
   return seen;
 }
@@ -77,12 +93,15 @@ Seen seenIn(const Scene& scene, const SurfaceCache& surfaces, int index, FrameSo
 /// What the motion over all frames says goes to the flags, or takes a highlight out.
 void applyMotion(const std::vector<MotionVerdict>& verdicts, MotionUse use, const Camera& camera, Seen& seen) {
   std::vector<HighlightQuality> kept;
+  std::vector<PartedRegion> regions;
   for (std::size_t i = 0; i < seen.quality.size() && i < verdicts.size(); ++i) {
     if (use == MotionUse::Reject && verdicts[i].kind == MotionVerdict::Kind::Texture) continue;
+    if (seen.parting && i < seen.parting->regions.size()) regions.push_back(seen.parting->regions[i]);
     if (const std::string text = verdicts[i].text(); !text.empty()) seen.quality[i].flags.push_back(text);
     kept.push_back(std::move(seen.quality[i]));
   }
   seen.quality = std::move(kept);
+  if (seen.parting) seen.parting->regions = std::move(regions);
   if (use == MotionUse::Reject) withholdTextures(seen.evidence, verdicts, camera);
 }
 
@@ -92,6 +111,7 @@ DetectedFrame detectedIn(const Frame& frame, Seen seen) {
   DetectedFrame result;
   result.id = frame.id;
   result.failure = std::move(seen.evidence.failure);
+  result.parting = std::move(seen.parting);
   for (RejectedCandidate& r : seen.evidence.rejected) {
     r.place = frame.camera.undistorted(r.place);
     if (r.place.allFinite()) result.rejected.push_back(std::move(r));
@@ -106,13 +126,14 @@ DetectedFrame detectedIn(const Frame& frame, Seen seen) {
   return result;
 }
 
-std::vector<DetectedFrame> detectAll(const Scene& scene, FrameSource source, const Settings& settings,
+std::vector<DetectedFrame> detectAll(const Scene& scene, FrameSource source, const Settings& settings, bool separate,
                                      const ProgressFn& progress) {
   const SurfaceCache surfaces(scene);
   const int n = static_cast<int>(scene.frames.size());
   std::vector<Seen> seen(scene.frames.size());
   parallelFor(
-      n, [&](int i) { seen[static_cast<std::size_t>(i)] = seenIn(scene, surfaces, i, source, settings); }, progress, "detect");
+      n, [&](int i) { seen[static_cast<std::size_t>(i)] = seenIn(scene, surfaces, i, source, settings, separate); }, progress,
+      "detect");
   std::vector<std::vector<MotionVerdict>> verdicts(seen.size());
   if (motionUse(settings) != MotionUse::Off) {
     const std::vector<std::vector<int>> panels = motionPanels(scene, surfaces);
@@ -156,6 +177,9 @@ std::string table(const std::vector<DetectedFrame>& frames) {
                         h.peak.y(), h.areaPx2, axes.c_str(), sigma.c_str()) +
               flagsText(frame, i) + "\n";
     }
+    if (frame.parting && !frame.highlights.empty())
+      text += formatted("%-12.40s  specular and diffuse %sparted%s%.300s\n", frame.id.c_str(),
+                        frame.parting->parted ? "" : "not ", frame.parting->parted ? "" : ": ", frame.parting->reason.c_str());
     for (std::size_t i = 0; i < std::min(kRejectedLines, frame.rejected.size()); ++i) {
       const RejectedCandidate& r = frame.rejected[i];
       text += formatted("%-12.40s  rejected    %8.3f  %8.3f  %12.1f   %s\n", frame.id.c_str(), r.place.x(), r.place.y(),
@@ -195,8 +219,33 @@ void warnOfBackground(const std::vector<DetectedFrame>& frames, const Context& c
       open, open == 1 ? "" : "s", worst));
 }
 
-void writeFolder(const DetectArguments& a, const Scene& scene, const std::vector<DetectedFrame>& frames, const std::string& json,
-                 const Context& context) {
+/// Names of a frame's two parts, by position.
+std::array<std::string, 2> partsOf(int frame) {
+  return {formatted("%04d_specular.png", frame), formatted("%04d_diffuse.png", frame)};
+}
+
+/// The two parts of a frame that was parted, as a screen shows them.
+void writeParts(const std::filesystem::path& folder, int index, const Frame& frame, FrameSource source, const Parting& parting) {
+  const Outcome<Image> linear = readLinear(frame, source);
+  if (!linear || linear->channels != 3) return;
+  Image specular = specularPart(*linear, parting), diffuse = *linear;
+  for (std::size_t i = 0; i < diffuse.data.size(); ++i) {
+    const float rest = diffuse.data[i] - specular.data[i];
+    diffuse.data[i] = std::isfinite(rest) ? std::max(0.f, rest) : 0.f;
+  }
+  // Values above 1, which radiance may have, are scaled together, so that both parts and their sum compare.
+  float top = 1;
+  for (const float v : linear->data)
+    if (std::isfinite(v)) top = std::max(top, v);
+  for (Image* const part : {&specular, &diffuse})
+    for (float& v : part->data) v = static_cast<float>(srgbFromLinear(v / top));
+  const std::array<std::string, 2> names = partsOf(index);
+  writePng(folder / names[0], specular);
+  writePng(folder / names[1], diffuse);
+}
+
+void writeFolder(const DetectArguments& a, const Scene& scene, const std::vector<DetectedFrame>& frames, FrameSource source,
+                 const std::string& json, const Context& context) {
   atomicFiles(a.out, "highlights.json", [&](const std::filesystem::path& folder) {
     parallelFor(
         static_cast<int>(frames.size()),
@@ -207,6 +256,8 @@ void writeFolder(const DetectArguments& a, const Scene& scene, const std::vector
           const std::string name = formatted("%04d.png", i);
           if (photograph)
             writePng(folder / name, drawDetection(*photograph, frame.camera, frames[static_cast<std::size_t>(i)].highlights));
+          const std::optional<Parting>& parting = frames[static_cast<std::size_t>(i)].parting;
+          if (a.parts && parting && parting->parted) writeParts(folder, i, frame, source, *parting);
         },
         context.progress(), "overlays");
     context.write((folder / "highlights.json").string(), json);
@@ -234,15 +285,19 @@ int run(const DetectArguments& a, const Context& context) {
   std::vector<int> all(scene.frames.size());
   std::iota(all.begin(), all.end(), 0);
   std::vector<std::string> names = picturesOf(all);
+  if (a.parts && (a.out.empty() || a.separate == "off")) throw InputError("", "--parts", "needs --out DIR and --separate auto");
+  if (a.parts)
+    for (const int i : all)
+      for (std::string& name : partsOf(i)) names.push_back(std::move(name));
   names.emplace_back("highlights.json");
   outputs.inFolder(a.out, "--out", names, "highlights.json", "glint_detection");
   outputs.file(a.json, "--json", OutputKind::document("glint_detection"));
   for (Frame& frame : scene.frames) frame.highlights.clear();
   const FrameSource source = a.source == "image" ? FrameSource::Image : FrameSource::Radiance;
   const std::string why = setLevel(a, scene, source, settings, context);
-  const std::vector<DetectedFrame> frames = detectAll(scene, source, settings, context.progress());
+  const std::vector<DetectedFrame> frames = detectAll(scene, source, settings, a.separate == "auto", context.progress());
   const std::string json = detectionJson(a.input, settings.number("detect.level"), a.source, frames, why);
-  if (!a.out.empty()) writeFolder(a, scene, frames, json, context);
+  if (!a.out.empty()) writeFolder(a, scene, frames, source, json, context);
   if (!a.json.empty()) context.write(a.json, json);
   warnOfBackground(frames, context);
   if (a.json != "-") context.print((why.empty() ? "" : why + "\n") + table(frames));
@@ -267,7 +322,8 @@ Command detectCommand() {
       "was rejected. --out also writes highlights.json and one overlay per frame.";
   c.examples =
       "  glint detect scene.json                          a table of all highlights\n"
-      "  glint detect scene.json --source image --out DIR from the photographs, with overlays\n";
+      "  glint detect scene.json --source image --out DIR from the photographs, with overlays\n"
+      "  glint detect scene.json --separate auto          contours on the specular part of colour images\n";
   c.declare = [a](Options& o) {
     o.positional(a->input, "INPUT",
                  "Scene file, capture of another program (COLMAP, nerfstudio ...), folder that contains one, or session");
@@ -275,6 +331,10 @@ Command detectCommand() {
              "Contour level: fraction of the strongest peak above its background (more than 0, less than 1), or auto: chosen "
              "for the sequence, with the reason");
     o.choice(a->source, "--source", {"radiance", "image"}, "Pixels to use where a frame has both");
+    o.choice(a->separate, "--separate", {"off", "auto"},
+             "auto: contours and peaks on the specular part alone, where the colours of a frame allow to part it from the "
+             "diffuse one");
+    o.flag(a->parts, "--parts", "With --out and --separate auto: write the two parts of each parted frame, too");
     o.repeated(a->set, "--set", "KEY=VALUE", "Any setting by its dotted name, such as detect.min_area=20; may be repeated");
     o.option(a->out, "--out", "DIR", "Write highlights.json and PNG overlays to this folder");
     o.option(a->json, "--json", "FILE", "Write highlights.json to this file (- = standard output, replaces the table)");

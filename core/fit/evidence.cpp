@@ -11,6 +11,7 @@
 #include "core/base/number_text.h"
 #include "core/base/safe_text.h"
 #include "core/geometry/distortion.h"
+#include "core/highlight/clipped_skirt.h"
 
 namespace glint {
 namespace {
@@ -32,6 +33,21 @@ std::optional<Failure> toIdealPixels(Highlight& h, const Camera& camera) {
   if (const std::optional<Failure> failure = undistort(h.peak)) return failure;
   h.areaPx2 = std::abs(signedArea(h.contour));
   h.ellipse.reset();
+  if (!h.skirt) return std::nullopt;
+  auto skirt = std::make_shared<ClippedSkirt>(*h.skirt);
+  for (std::size_t i = 0; i < skirt->levels.size(); ++i) {
+    SkirtLevel& level = skirt->levels[i];
+    for (Pixel& p : level.contour.points)
+      if (undistort(p)) {  // lower levels reach farther out, where the lens may show nothing
+        skirt->levels.resize(i);
+        break;
+      }
+    if (i == skirt->levels.size()) break;
+    level.areaPx2 = std::abs(signedArea(level.contour));
+    level.ellipse.reset();
+    if (const Outcome<Ellipse> e = fitEllipse(level.contour.points)) level.ellipse = *e;
+  }
+  h.skirt = std::move(skirt);
   return std::nullopt;
 }
 
@@ -129,6 +145,40 @@ FrameEvidence gatherEvidence(const Scene& scene, int index, FrameSource source, 
     fitMissingEllipse(h);
   }
   return evidence;
+}
+
+Parting partEvidence(const Scene& scene, int index, FrameSource source, const Settings& settings, FrameEvidence& evidence) {
+  const auto because = [](std::string reason) {
+    Parting none;
+    none.reason = std::move(reason);
+    return none;
+  };
+  const Frame& frame = scene.frames[static_cast<std::size_t>(index)];
+  if (evidence.highlights.empty()) return because("there is no highlight");
+  if (std::any_of(evidence.highlights.begin(), evidence.highlights.end(), [](const Highlight& h) { return h.fromScene; }))
+    return because("the scene gives the highlights");
+  const Outcome<Image> linear = readLinear(frame, source);
+  if (!linear) return because(linear.failure().message());
+  const Outcome<std::optional<Image>> mask = readMask(frame);
+  if (!mask) return because(mask.failure().message());
+  std::vector<Highlight> measured = evidence.highlights;
+  if (frame.camera.hasDistortion())
+    for (Highlight& h : measured) {
+      for (Pixel& p : h.contour.points) p = frame.camera.distorted(p);
+      h.peak = frame.camera.distorted(h.peak);
+      h.ellipse.reset();
+      fitMissingEllipse(h);
+    }
+  DetectOptions options = detectOptionsFor(frame, source, settings);
+  options.separatePeaks = frame.lightsOn.size() > 1;
+  Parting parting = partHighlights(*linear, mask->has_value() ? &**mask : nullptr, options, measured);
+  if (!parting.parted) return parting;
+  for (Highlight& h : measured) {
+    if (const std::optional<Failure> failure = toIdealPixels(h, frame.camera)) return because(failure->message());
+    fitMissingEllipse(h);
+  }
+  evidence.highlights = std::move(measured);
+  return parting;
 }
 
 void requireTruthFolder(const std::string& folder, const Scene& scene) {

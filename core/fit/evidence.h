@@ -7,6 +7,7 @@
 
 #include "core/base/settings.h"
 #include "core/fit/frame_evidence.h"
+#include "core/highlight/parting.h"
 #include "core/reflectance/pixel_patch.h"
 #include "core/scene/scene.h"
 
@@ -31,6 +32,11 @@ void addOtherLevels(const std::vector<Highlight>& given, std::vector<Highlight>&
 /// several lights). The light is set where the frame says which one is on (one light: its id; none stated: "light").
 FrameEvidence gatherEvidence(const Scene& scene, int frame, FrameSource source, const Settings& settings,
                              const SeparateLights& lights = {});
+
+/// Traces the detected highlights of a frame again on their specular part alone, where its colours allow it (`partHighlights`). Highlights that the scene
+/// gives stay as they are.
+/// @return what came of it; the reason also where the lens distortion has no inverse
+Parting partEvidence(const Scene& scene, int frame, FrameSource source, const Settings& settings, FrameEvidence& evidence);
 
 /// Contours stored as in data/cycles/*/contours (FOLDER/ID.json) at `level`, for scoring. FrameUnreadable when the frame has no
 /// file. InputError when a file does not parse, does not hold the level or has a contour without area.

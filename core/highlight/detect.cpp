@@ -8,6 +8,7 @@
 
 #include "core/base/median.h"
 #include "core/highlight/background.h"
+#include "core/highlight/clipped_skirt.h"
 #include "core/highlight/highlight.h"
 #include "core/highlight/iso_contour.h"
 #include "core/highlight/peak.h"
@@ -28,8 +29,10 @@ constexpr double kSamePeakPx = 1.5;        // of the same peak, found again
 constexpr std::size_t kMostRejected = 32;  // that are listed: noise has many
 constexpr double kNarrowPiece =
     0.1;  // of the disc inside a clipped highlight: radius of a piece of its streaks, as withoutTongues cuts them
-constexpr double kBesidePx = 1.0;    // in discs inside a clipped highlight: its streaks end within that
-constexpr double kBadReachPx = 1.5;  // an unusable pixel this near to a contour decides on its course
+constexpr double kBesidePx = 1.0;          // in discs inside a clipped highlight: its streaks end within that
+constexpr int kSkirtShare = 1;             // of a clipped candidate's box, on each side: its slope down to a tenth lies within
+constexpr double kBackgroundShare = 0.01;  // of the clip height: by that much a quadratic in the pixel misses real shading
+constexpr double kBadReachPx = 1.5;        // an unusable pixel this near to a contour decides on its course
 
 /// One channel, with what may and may not be used of it.
 struct Prepared {
@@ -100,8 +103,10 @@ struct Candidate {
   int label = 0;
   cv::Rect box;  ///< in the image
   Background background;
-  Image corrected;  ///< I - b inside `box`; 0 on unusable pixels
-  double top = 0;   ///< strongest value: of the fitted peak, else of the pixels
+  Image corrected;                    ///< I - b inside `box`; 0 on unusable pixels
+  double top = 0;                     ///< strongest value: of the fitted peak, else of the pixels
+  std::optional<ClippedSkirt> skirt;  ///< of a clipped one
+  int clippedPixels = 0;
 };
 
 /// Position of the largest 3x3 mean inside the box-local region; hot pixels do not win.
@@ -193,6 +198,7 @@ class Detector {
     } else {
       findCandidates();
       if (candidates_.empty()) return Failure{Reason::NoHighlight, "nothing rises above the background"};
+      raiseClippedTop();
       reference_ = 0;
       for (const Candidate& c : candidates_) reference_ = std::max(reference_, c.top);
       if (options_.reference) reference_ = *options_.reference;
@@ -261,10 +267,53 @@ class Detector {
     cv::Mat region = labels_(c.box) == label;
     const cv::Point at = strongestPixel(c.corrected, region);
     const Outcome<PeakFit> peak = fitPeak(c.corrected, at.x, at.y, options_.peakWindowLevel);
-    c.top = peak && !saturatedNear(c.box, region) ? peak->value : c.corrected.at(at.x, at.y);
+    const bool clipped = saturatedNear(c.box, region);
+    c.top = peak && !clipped ? peak->value : c.corrected.at(at.x, at.y);
+    if (clipped) addSkirt(c, tight, Pixel(at.x, at.y));
     const Pixel where = (peak ? peak->at : Pixel(at.x, at.y)) + Pixel(c.box.x, c.box.y);
     const double top = c.top;
     return {std::move(c), Top{where, top}};
+  }
+
+  /// The slope of a clipped candidate at several levels, in a view wide enough for its lowest ones.
+  void addSkirt(Candidate& c, const cv::Rect& tight, const Pixel& top) const {
+    const cv::Rect box =
+        grown(tight, kSkirtShare * std::max(tight.width, tight.height) + kRoiMargin, p_.value.width, p_.value.height);
+    SkirtView view;
+    view.corrected = correctedRoi(p_, c.background, box);
+    view.noise = noise_;
+    view.minAreaPx2 = options_.minAreaPx2;
+    for (int y = box.y; y < box.y + box.height; ++y)
+      for (int x = box.x; x < box.x + box.width; ++x) {
+        const std::size_t i = static_cast<std::size_t>(y) * p_.value.width + x;
+        const bool saturated = p_.saturated[i] && labels_.at<int>(y, x) == c.label;
+        view.usable.push_back(p_.usable[i]);
+        view.saturated.push_back(saturated);
+        c.clippedPixels += saturated;
+      }
+    // How far the background may be off: what the other tail would leave of it, and a little of what no model of it follows.
+    const Pixel at = top + Pixel(c.box.x, c.box.y);
+    view.backgroundSigma = kBackgroundShare * c.top;
+    if (options_.removeBackground) {
+      const Footprint footprint = footprintOf(labels_, c.label, tight, kCandidateShare * options_.level);
+      const Background other = fitBackground(p_.value, p_.usable, footprint, base_, Tail::Ggx);
+      view.backgroundSigma = std::max(view.backgroundSigma, std::abs(other.at(at.x(), at.y()) - c.background.at(at.x(), at.y())));
+    }
+    c.skirt = traceSkirt(view);
+    const Pixel origin(box.x, box.y);
+    for (SkirtLevel& level : c.skirt->levels) {
+      level.contour = moved(std::move(level.contour), box);
+      if (level.ellipse) level.ellipse->centre += origin;
+    }
+  }
+
+  /// The peak that the slope of the largest clipped candidate continues sets the level; those of small ones do not.
+  void raiseClippedTop() {
+    const auto largest = std::max_element(candidates_.begin(), candidates_.end(), [](const Candidate& a, const Candidate& b) {
+      return a.clippedPixels < b.clippedPixels;
+    });
+    if (largest != candidates_.end() && largest->skirt && reachesLevel(*largest->skirt, options_.level))
+      largest->top = std::max(largest->top, largest->skirt->peak->value);
   }
 
   /// Regions above a little less than the level of the brightest value.
@@ -320,6 +369,8 @@ class Detector {
         peak = found.at;
       if (!(found.value > 0)) continue;
       reference_ = found.value;
+      if (alone && candidate.skirt && reachesLevel(*candidate.skirt, options_.level))
+        reference_ = std::max(reference_, candidate.skirt->peak->value);
       for (const PeakReference& r : options_.references)
         if ((r.peak - peak).norm() <= kSamePeakPx) reference_ = r.value;
       const std::size_t before = found_.size();
@@ -407,6 +458,14 @@ class Detector {
       h.cutPx2 = cut.cutPx2;
     }
     h.areaPx2 = signedArea(h.contour);
+    // A candidate may hold several highlights; its slope is that of one.
+    const bool itsSlope = candidate.skirt && (candidate.skirt->levels.empty() ||
+                                              contains(h.contour, centroid(candidate.skirt->levels.front().contour)));
+    if (h.clipped && itsSlope) {
+      auto skirt = std::make_shared<ClippedSkirt>(*candidate.skirt);
+      noteContour(*skirt, options_.level, reference_, h.contour);
+      h.skirt = std::move(skirt);
+    }
     if (const Outcome<Ellipse> ellipse = fitEllipse(h.contour.points)) h.ellipse = *ellipse;
     const Outcome<PeakFit> peak = fitPeak(roi, at.x, at.y, options_.peakWindowLevel);
     if (h.clipped) {

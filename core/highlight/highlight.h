@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,6 +12,8 @@
 #include "core/geometry/polyline.h"
 
 namespace glint {
+
+struct ClippedSkirt;
 
 /// A contour of a highlight at one more level.
 struct LevelContour {
@@ -28,6 +31,8 @@ struct Highlight {
   std::optional<Ellipse> ellipse;  ///< least-squares ellipse of the contour
   double areaPx2 = 0;
   bool clipped = false;  ///< saturated: the peak is the ellipse centre, or that of a known lobe
+  /// Of a clipped one that was detected: its slope at several levels, the peak that continues it, and where the contour lies on it.
+  std::shared_ptr<const ClippedSkirt> skirt;
   /// Where a known lobe says that the contour lies at another fraction of the true peak than `level`: clipped above the level.
   std::optional<double> trueLevel;
   bool touchesBorder = false;             ///< cut by the image border
@@ -69,8 +74,8 @@ struct DetectOptions {
 /// @param linear  1 or 3 channels (3 are averaged), linear radiance. Non-finite or negative values are not used: where one
 ///                touches a highlight, that highlight fails.
 /// @param mask    optional, non-zero on the glossy object; same size.
-/// The contour of a clipped highlight lies on the slope around the core; narrow tongues of it (`withoutTongues`) are cut off, and narrow pieces
-/// beside it are rejected.
+/// The peak of a clipped highlight is estimated from the slope around its core (`traceSkirt`). The contour lies at `level` of it where that is outside of the
+/// core, else at `level` of the clip value; narrow tongues of it (`withoutTongues`) are cut off, and narrow pieces beside it are rejected.
 /// @param rejected  optional: where candidates go that became no highlight, largest first, at most 32.
 /// @return at least one highlight, strongest first. NoHighlight; NotFinite (detail counts the bad pixels); Clipped never fails,
 /// it flags.

@@ -9,6 +9,7 @@
 
 #include "core/base/atomic_file.h"
 #include "core/base/json_text.h"
+#include "core/highlight/clipped_skirt.h"
 
 namespace glint {
 namespace {
@@ -32,7 +33,54 @@ Json toJson(const FrameBlur& blur) {
   return {{"sigma_px", blur.sigmaPx}, {"motion_px", blur.motionPx}, {"direction_deg", direction}, {"edges", blur.edges}};
 }
 
+Json toJson(const Parting& parting) {
+  Json regions = Json::array();
+  for (const PartedRegion& r : parting.regions) {
+    const auto triple = [](const Eigen::Vector3d& v) { return Json::array({v.x(), v.y(), v.z()}); };
+    regions.push_back({{"channels", triple(r.channels)},
+                       {"lamp_colour", triple(r.lampColour)},
+                       {"angle_deg", r.angleDeg},
+                       {"noise", r.noise},
+                       {"leftover", r.leftover}});
+  }
+  return {{"parted", parting.parted}, {"reason", parting.reason}, {"highlights", std::move(regions)}};
+}
+
 Json toJson(const RejectedCandidate& r) { return {{"place", pair(r.place)}, {"area_px2", r.areaPx2}, {"reason", r.reason}}; }
+
+Json toJson(const Ellipse& e) {
+  return {{"centre", pair(e.centre)}, {"semi_axes", pair(e.semiAxes)}, {"angle_deg", e.angle * 180 / M_PI}};
+}
+
+Json toJson(const ClippedSkirt& skirt) {
+  Json levels = Json::array();
+  for (const SkirtLevel& level : skirt.levels)
+    levels.push_back({{"value", level.value},
+                      {"of_clip", level.value / skirt.clipHeight},
+                      {"area_px2", level.areaPx2},
+                      {"ellipse", level.ellipse ? toJson(*level.ellipse) : Json(nullptr)}});
+  Json j = {{"clip_height", skirt.clipHeight},
+            {"peak", nullptr},
+            {"peak_relative_sigma", nullptr},
+            {"shape", nullptr},
+            {"tail", nullptr},
+            {"misfit", nullptr},
+            {"trusted", skirt.trusted},
+            {"outside_core", skirt.outsideCore},
+            {"contour_value", skirt.contourValue},
+            {"true_level", nullptr},
+            {"in_words", inWords(skirt)}};
+  if (skirt.peak) {
+    j["peak"] = skirt.peak->value;
+    j["peak_relative_sigma"] = skirt.peak->logSigma;
+    j["shape"] = skirt.peak->shape;
+    j["tail"] = skirt.peak->tail;
+    j["misfit"] = skirt.peak->misfit;
+    j["true_level"] = skirt.contourValue / skirt.peak->value;
+  }
+  j["levels"] = std::move(levels);
+  return j;
+}
 
 Json toJson(const Highlight& h, double uncertaintyPct, const HighlightQuality* quality) {
   Json j = Json::object();
@@ -50,12 +98,8 @@ Json toJson(const Highlight& h, double uncertaintyPct, const HighlightQuality* q
     j["contour_px"] = toJson(*quality);
     j["silhouette_share"] = quality->silhouetteShare;
   }
-  if (h.ellipse)
-    j["ellipse"] = {{"centre", pair(h.ellipse->centre)},
-                    {"semi_axes", pair(h.ellipse->semiAxes)},
-                    {"angle_deg", h.ellipse->angle * 180 / M_PI}};
-  else
-    j["ellipse"] = nullptr;
+  j["clipped_core"] = h.skirt ? toJson(*h.skirt) : Json(nullptr);
+  j["ellipse"] = h.ellipse ? toJson(*h.ellipse) : Json(nullptr);
   Json contour = Json::array();
   for (const Pixel& p : h.contour.points) contour.push_back(pair(p));
   j["contour"] = std::move(contour);
@@ -78,6 +122,7 @@ std::string detectionJson(const std::string& input, double level, const std::str
                                        i < frame.quality.size() ? &frame.quality[i] : nullptr));
     j["rejected"] = Json::array();
     for (const RejectedCandidate& r : frame.rejected) j["rejected"].push_back(toJson(r));
+    j["parting"] = frame.parting ? toJson(*frame.parting) : Json(nullptr);
     j["blur"] = frame.blur ? toJson(*frame.blur) : Json(nullptr);
     list.push_back(std::move(j));
   }

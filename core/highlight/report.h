@@ -11,6 +11,7 @@
 #include "core/geometry/camera.h"
 #include "core/highlight/frame_blur.h"
 #include "core/highlight/highlight.h"
+#include "core/highlight/parting.h"
 #include "core/highlight/quality.h"
 
 namespace glint {
@@ -23,6 +24,7 @@ struct DetectedFrame {
   std::vector<HighlightQuality> quality;    ///< per highlight
   std::vector<RejectedCandidate> rejected;  ///< ideal pixels
   std::optional<FrameBlur> blur;            ///< where the frame has edges that show one
+  std::optional<Parting> parting;           ///< where it was asked for
   std::optional<Failure> failure;
 };
 

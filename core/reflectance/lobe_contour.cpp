@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "core/geometry/distortion.h"
+#include "core/highlight/clipped_skirt.h"
 #include "core/reflectance/radiance_field.h"
 
 namespace glint {
@@ -229,8 +230,9 @@ Outcome<std::vector<Highlight>> contourWithLobe(const LinearPixels& pixels, cons
       for (Pixel& p : measured.points) p = camera.distorted(p);
       h.clipped = anyClipped(pixels, measured);
     } else if (h.clipped) {
-      // It was contoured at `level` of the clip value.
-      h.trueLevel = options.level * std::min(1.0, clipLevel / *reference);
+      // It was contoured at `level` of the clip value, or of the peak that its slope continues.
+      const double taken = h.skirt && h.skirt->outsideCore ? h.skirt->contourValue / options.level : clipLevel;
+      h.trueLevel = options.level * std::min(1.0, taken / *reference);
     }
     if (h.clipped) {
       // The lobe knows its peak where the pixels do not.

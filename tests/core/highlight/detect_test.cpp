@@ -3,6 +3,7 @@
 
 #include <limits>
 
+#include "core/highlight/clipped_skirt.h"
 #include "core/highlight/highlight.h"
 #include "highlight_images.h"
 
@@ -228,8 +229,9 @@ TEST(DetectHighlights, ClippedIsFlaggedWithTheEllipseCentre) {
   EXPECT_TRUE(found->front().clipped);
   EXPECT_LT((found->front().peak - blob.centre).norm(), 0.01);
   EXPECT_EQ(found->front().peakValue, 0);
-  // The level is relative to the clip value, the only thing known: 0.75 of 2.
-  EXPECT_LT(largestDistance(found->front().contour, blob.levelSet(0.5 * 0.75)), marchingSquaresPx(blob, 0.5 * 0.75));
+  // The contour is at the level asked for, of the peak that the slope continues.
+  ASSERT_TRUE(found->front().skirt && found->front().skirt->outsideCore);
+  EXPECT_LT(meanDistance(found->front().contour, blob.levelSet(0.5)), 2 * found->front().skirt->sigmaPx);
 }
 
 TEST(DetectHighlights, MaskHidesWhatIsNotGlossy) {

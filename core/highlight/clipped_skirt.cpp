@@ -1,0 +1,353 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/highlight/clipped_skirt.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <opencv2/imgproc.hpp>
+
+#include "core/base/median.h"
+#include "core/base/number_text.h"
+#include "core/highlight/iso_contour.h"
+#include "core/highlight/tongues.h"
+
+namespace glint {
+namespace {
+
+constexpr std::array kSkirtLevels{0.95, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.22, 0.16, 0.12};  // of the clip height
+constexpr std::size_t kLeastSkirtLevels = 5;                                                   // of four unknowns
+constexpr double kClipRank = 0.02;   // of the clipped pixels: the least values are those where one channel is only just clipped
+constexpr double kClipNoise = 2;     // in standard deviations: nearer to the clip value noise is cut on one side
+constexpr double kSkirtNoise = 6;    // a level below this many deviations follows noise
+constexpr double kMostDrift = 0.25;  // of the shorter semi-axis, of the centre between levels: more is no single lobe
+constexpr double kMostRatioChange = 1.3;  // of the axes' ratio between levels
+constexpr double kMostGrowth = 1.3;       // over v^-1, the area of the longest tail fitted: more is a neighbour that joins
+constexpr double kAreaSigmaPx2 = 0.3;     // of a contour made of chords, measured on exact lobes of 5 to 60 px
+constexpr double kUnusablePx = 1.5;       // a contour that near to an unusable pixel follows its border
+
+// The profile and its uncertainty. The tests have lobes that are none of these profiles.
+constexpr std::array kTails{1.0, 1 / 1.5, 0.5, 1 / 3.0, 0.2, 0.1, 0.0};  // 1/beta: from tails longer than GGX's to a Gaussian
+constexpr std::array kStarts{-2.5, -1.0, 0.3, 1.5};                      // log(A0 / median area)
+constexpr double kShapeSigma = 0.5;     // of log p, before the levels are looked at: lamps of any size, lobes of two parts
+constexpr double kProfileSigma = 0.01;  // of log I at a level: real lobes follow no profile to better than that
+constexpr double kPeakSigma = 0.02;     // of log K: the same at the top
+constexpr double kReachSigma = 0.1;     // of log K, per unit of log(K / highest level)
+constexpr int kMostSteps = 60;
+constexpr double kFirstDamping = 1e-3, kLeastDamping = 1e-9, kMostDamping = 1e7;  // Levenberg-Marquardt, relative to the diagonal
+constexpr double kDamped = 5;                                                     // factor from step to step
+constexpr double kConverged = 1e-7;  // of the cost: log K then changes by far less than its sigma
+
+// When a peak is relied on.
+constexpr double kMostLogSigma = 0.2;     // a level known to a fifth; worse is no better than the clip value
+constexpr double kMostShape = 2;          // p: flatter tops are a lamp's image in a mirror, whose height no wall shows
+constexpr double kLeastGrown = 1.6;       // of the areas from the highest to the lowest level: a Gaussian clipped at a thirtieth
+constexpr double kMostMisfit = 0.05;      // rms of log I: beyond it the skirt is no lobe's
+constexpr double kHighestContour = 0.95;  // of the clip height: the cells of a contour just below it touch clipped pixels
+
+constexpr const char* kSteep = "the slope is steep, as around a lamp's image in a mirror, and does not show how high it rises";
+
+using Unknowns = Eigen::Vector4d;  // log K, log A0, log p, offset of the background
+
+struct ProfileFit {
+  Unknowns x = Unknowns::Zero();
+  double cost = std::numeric_limits<double>::infinity();
+  double variance = 0;  ///< of log K
+  double misfit = 0;
+};
+
+/// Levels, scaled to the strongest value and the median area.
+struct Skirt {
+  std::vector<double> logValue, inverse, logArea, sigma;
+  double backgroundSigma = 0;
+};
+
+/// Residuals and their derivatives: the levels, then the two priors. Returns the cost.
+double evaluate(const Skirt& s, double tail, const Unknowns& x, Eigen::Matrix4d* h, Unknowns* g, double* squares = nullptr) {
+  const double p = std::exp(x[2]);
+  double cost = 0;
+  if (h) h->setZero(), g->setZero();
+  if (squares) *squares = 0;
+  for (std::size_t i = 0; i < s.logValue.size(); ++i) {
+    const double place = std::min((s.logArea[i] - x[1]) * p, 300.0), u = std::exp(place);  // exp stays finite
+    const double fall = tail > 0 ? -std::log1p(u * tail) / tail : -u, slope = -u / (1 + u * tail);
+    const double off = s.logValue[i] - x[3] * s.inverse[i] - x[0] - fall, r = off / s.sigma[i];
+    cost += r * r;
+    if (squares) *squares += off * off;
+    if (!h) continue;
+    const Unknowns j = Unknowns(-1, slope * p, -slope * place, -s.inverse[i]) / s.sigma[i];
+    *h += j * j.transpose();
+    *g += j * r;
+  }
+  const double shape = x[2] / kShapeSigma, offset = x[3] / s.backgroundSigma;
+  if (h) {
+    (*h)(2, 2) += 1 / (kShapeSigma * kShapeSigma);
+    (*h)(3, 3) += 1 / (s.backgroundSigma * s.backgroundSigma);
+    (*g)[2] += shape / kShapeSigma;
+    (*g)[3] += offset / s.backgroundSigma;
+  }
+  return cost + shape * shape + offset * offset;
+}
+
+/// Levenberg-Marquardt from several A0.
+ProfileFit fitProfile(const Skirt& s, double tail) {
+  ProfileFit best;
+  for (const double start : kStarts) {
+    Unknowns x(0, start, 0, 0), g;
+    Eigen::Matrix4d h;
+    double cost = evaluate(s, tail, x, &h, &g), damping = kFirstDamping;
+    for (int step = 0; step < kMostSteps && damping < kMostDamping; ++step) {
+      Eigen::Matrix4d damped = h;
+      damped.diagonal() *= 1 + damping;
+      const Unknowns next = x - damped.ldlt().solve(g);
+      const double now = next.allFinite() ? evaluate(s, tail, next, nullptr, nullptr) : cost;
+      if (!(now < cost)) {
+        damping *= kDamped;
+        continue;
+      }
+      const bool done = cost - now < kConverged * (1 + cost);
+      x = next;
+      damping = std::max(damping / kDamped, kLeastDamping);
+      cost = evaluate(s, tail, x, &h, &g);
+      if (done) break;
+    }
+    if (!(cost < best.cost)) continue;
+    const Eigen::Matrix4d covariance = h.ldlt().solve(Eigen::Matrix4d::Identity());
+    if (!(covariance(0, 0) > 0) || !std::isfinite(covariance(0, 0))) continue;
+    double squares = 0;
+    evaluate(s, tail, x, nullptr, nullptr, &squares);
+    best = {x, cost, covariance(0, 0), std::sqrt(squares / static_cast<double>(s.logValue.size()))};
+  }
+  return best;
+}
+
+bool usableSample(const SkirtSample& s) {
+  return s.value > 0 && s.areaPx2 > 0 && std::isfinite(s.value) && std::isfinite(s.areaPx2) && s.logSigma >= 0 &&
+         std::isfinite(s.logSigma);
+}
+
+}  // namespace
+
+double SkirtPeak::areaAt(double v) const {
+  if (!(v > 0) || !(v < value)) return 0;
+  const double fall = std::log(value / v), u = tail > 0 ? std::expm1(fall * tail) / tail : fall;
+  return areaPx2 * std::pow(u, 1 / shape);
+}
+
+Outcome<SkirtPeak> peakFromSkirt(std::span<const SkirtSample> given, double backgroundSigma) {
+  if (!std::all_of(given.begin(), given.end(), usableSample) || !std::isfinite(backgroundSigma))
+    return Failure{Reason::NotFinite, "a level's value or area is not positive and finite"};
+  if (given.size() < kLeastSkirtLevels)
+    return Failure{Reason::TooFewPoints,
+                   formatted("%zu levels of the slope can be traced, %zu are needed", given.size(), kLeastSkirtLevels)};
+  std::vector<SkirtSample> samples(given.begin(), given.end());
+  std::sort(samples.begin(), samples.end(), [](const SkirtSample& a, const SkirtSample& b) { return a.value > b.value; });
+  const double top = samples.front().value, middle = samples[samples.size() / 2].areaPx2;
+  if (!(samples.back().areaPx2 > samples.front().areaPx2))
+    return Failure{Reason::NotConverged, "contours do not grow as the level falls"};
+  if (samples.back().areaPx2 < kLeastGrown * samples.front().areaPx2) return Failure{Reason::NotConverged, kSteep};
+  Skirt s;
+  s.backgroundSigma = std::max(backgroundSigma / top, 1e-6);  // 0: the background is known; the prior stays finite
+  for (const SkirtSample& q : samples) {
+    s.logValue.push_back(std::log(q.value / top));
+    s.inverse.push_back(top / q.value);
+    s.logArea.push_back(std::log(q.areaPx2 / middle));
+    s.sigma.push_back(std::hypot(q.logSigma, kProfileSigma));
+  }
+  std::vector<ProfileFit> fits;
+  for (const double tail : kTails) fits.push_back(fitProfile(s, tail));
+  const std::size_t best = static_cast<std::size_t>(
+      std::min_element(fits.begin(), fits.end(), [](const auto& a, const auto& b) { return a.cost < b.cost; }) - fits.begin());
+  if (!std::isfinite(fits[best].cost)) return Failure{Reason::NotConverged, "no profile follows the slope"};
+  // What the profiles leave beyond the noise widens everything by as much.
+  const double excess = std::max(1.0, fits[best].cost / static_cast<double>(samples.size() - 4));
+  double sum = 0, mean = 0, square = 0;
+  for (const ProfileFit& f : fits) {
+    const double weight = std::isfinite(f.cost) ? std::exp(-0.5 * (f.cost - fits[best].cost) / excess) : 0;
+    if (!(weight > 0)) continue;
+    sum += weight;
+    mean += weight * f.x[0];
+    square += weight * (f.x[0] * f.x[0] + f.variance * excess);
+  }
+  mean /= sum;
+  const double variance = std::max(0.0, square / sum - mean * mean);
+  SkirtPeak peak;
+  peak.value = top * std::exp(mean);
+  peak.logSigma = std::sqrt(variance + std::pow(kPeakSigma, 2) + std::pow(kReachSigma * std::max(0.0, mean), 2));
+  peak.areaPx2 = middle * std::exp(fits[best].x[1]);
+  peak.shape = std::exp(fits[best].x[2]);
+  peak.tail = kTails[best];
+  peak.misfit = fits[best].misfit;
+  if (!std::isfinite(peak.value) || !std::isfinite(peak.logSigma) || !std::isfinite(peak.areaPx2) || !std::isfinite(peak.shape))
+    return Failure{Reason::NotConverged, kSteep};
+  return peak;
+}
+
+namespace {
+
+/// Clipped pixel that is farthest from all that is not.
+Pixel deepestClipped(const SkirtView& view) {
+  cv::Mat saturated(view.corrected.height + 2, view.corrected.width + 2, CV_8U, cv::Scalar(0)), depth;
+  for (int y = 0; y < view.corrected.height; ++y)
+    for (int x = 0; x < view.corrected.width; ++x)
+      if (view.saturated[static_cast<std::size_t>(y) * view.corrected.width + x]) saturated.at<unsigned char>(y + 1, x + 1) = 255;
+  cv::distanceTransform(saturated, depth, cv::DIST_L2, cv::DIST_MASK_PRECISE);
+  cv::Point at;
+  cv::minMaxLoc(depth, nullptr, nullptr, nullptr, &at);
+  return Pixel(at.x - 1, at.y - 1);
+}
+
+/// Along a pixel that is not usable: the contour then follows the mask.
+bool alongUnusable(const SkirtView& view, const Polyline& line) {
+  const int reach = static_cast<int>(std::ceil(kUnusablePx));
+  for (const Pixel& q : line.points)
+    for (int y = static_cast<int>(q.y()) - reach; y <= static_cast<int>(q.y()) + reach + 1; ++y)
+      for (int x = static_cast<int>(q.x()) - reach; x <= static_cast<int>(q.x()) + reach + 1; ++x)
+        if (x >= 0 && y >= 0 && x < view.corrected.width && y < view.corrected.height &&
+            !view.usable[static_cast<std::size_t>(y) * view.corrected.width + x] && (Pixel(x, y) - q).norm() < kUnusablePx)
+          return true;
+  return false;
+}
+
+/// Why a level no longer belongs to the highlight; null = it does.
+const char* notOfTheSame(const SkirtLevel& now, const std::vector<SkirtLevel>& above) {
+  if (!now.ellipse) return "contours are no ellipses";
+  if (above.empty()) return nullptr;
+  const SkirtLevel &first = above.front(), &last = above.back();
+  if (!(now.areaPx2 > last.areaPx2)) return "contours do not grow as the level falls";
+  // Near the top of a lobe areas grow fast; the logarithm of the area grows ever slower with that of the value, and ends at that of the tail.
+  if (above.size() > 1) {
+    const SkirtLevel& before = above[above.size() - 2];
+    const double expected = std::max(1.0, std::log(last.areaPx2 / before.areaPx2) / std::log(before.value / last.value));
+    if (std::log(now.areaPx2 / last.areaPx2) > kMostGrowth * expected * std::log(last.value / now.value))
+      return "the contour joins something else";
+  }
+  if ((now.ellipse->centre - first.ellipse->centre).norm() > kMostDrift * now.ellipse->semiAxes.y())
+    return "contours do not lie around each other as those of one lobe do";
+  const auto ratio = [](const Ellipse& e) { return e.semiAxes.x() / e.semiAxes.y(); };
+  const double change = ratio(*now.ellipse) / ratio(*first.ellipse);
+  if (std::max(change, 1 / change) > kMostRatioChange) return "the contour's shape changes from level to level";
+  return nullptr;
+}
+
+/// The contour at a value around a pixel; empty where there is none, with the reason why levels end here.
+std::optional<SkirtLevel> levelAround(const SkirtView& view, const Pixel& inside, double value, const char*& reason) {
+  for (const IsoContour& c : isoContours(view.corrected, value)) {
+    if (signedArea(c.line) < view.minAreaPx2 || !contains(c.line, inside)) continue;
+    if (c.touchesBorder) {
+      reason = "the slope runs out of the view";
+      return std::nullopt;
+    }
+    if (alongUnusable(view, c.line)) {
+      reason = "the slope touches pixels that are masked or not usable";
+      return std::nullopt;
+    }
+    SkirtLevel level;
+    level.value = value;
+    level.contour = withoutTongues(c.line).line;
+    level.areaPx2 = signedArea(level.contour);
+    if (const Outcome<Ellipse> e = fitEllipse(level.contour.points)) level.ellipse = *e;
+    return level;
+  }
+  reason = "there is no contour around the core";
+  return std::nullopt;
+}
+
+std::vector<SkirtSample> samplesOf(const ClippedSkirt& skirt, double noise) {
+  std::vector<SkirtSample> samples;
+  for (std::size_t i = 0; i < skirt.levels.size(); ++i) {
+    const SkirtLevel& level = skirt.levels[i];
+    const SkirtLevel& other = skirt.levels[i > 0 ? i - 1 : std::min<std::size_t>(1, skirt.levels.size() - 1)];
+    const double grown = std::abs(level.areaPx2 - other.areaPx2), fallen = std::abs(std::log(level.value / other.value));
+    // Noise of a pixel is averaged along the contour; an error of the area counts by the slope of log I over it.
+    const double byNoise = noise / level.value / std::sqrt(std::max(1.0, length(level.contour)));
+    samples.push_back({level.value, level.areaPx2, std::hypot(byNoise, grown > 0 ? kAreaSigmaPx2 * fallen / grown : 0)});
+  }
+  return samples;
+}
+
+}  // namespace
+
+ClippedSkirt traceSkirt(const SkirtView& view) {
+  const std::size_t pixels = view.corrected.data.size();
+  require(view.corrected.channels == 1 && view.usable.size() == pixels && view.saturated.size() == pixels,
+          "traceSkirt: one channel and maps of its size");
+  ClippedSkirt skirt;
+  skirt.backgroundSigma = view.backgroundSigma;
+  std::vector<float> clipped;
+  for (std::size_t i = 0; i < pixels; ++i)
+    if (view.saturated[i]) clipped.push_back(view.corrected.data[i]);
+  if (clipped.empty()) {
+    skirt.reason = "no pixel is clipped";
+    return skirt;
+  }
+  skirt.clipHeight = ranked(clipped, static_cast<std::size_t>(kClipRank * static_cast<double>(clipped.size())));
+  const Pixel inside = deepestClipped(view);
+  const char* ended = "the slope sinks into the noise";
+  for (const double share : kSkirtLevels) {
+    const double value = share * skirt.clipHeight;
+    if (!(value > 0) || value > skirt.clipHeight - kClipNoise * view.noise) continue;
+    if (value < kSkirtNoise * view.noise) break;
+    std::optional<SkirtLevel> level = levelAround(view, inside, value, ended);
+    if (!level) break;
+    if (const char* const stranger = notOfTheSame(*level, skirt.levels)) {
+      ended = stranger;
+      break;
+    }
+    skirt.levels.push_back(*std::move(level));
+  }
+  const Outcome<SkirtPeak> peak = peakFromSkirt(samplesOf(skirt, view.noise), view.backgroundSigma);
+  if (!peak) {
+    skirt.reason = peak.failure().detail + (skirt.levels.size() < kLeastSkirtLevels ? std::string(": ") + ended : "");
+    return skirt;
+  }
+  skirt.peak = *peak;
+  if (!(peak->value > skirt.clipHeight))
+    skirt.reason = "the profile's peak is not above the clip value";
+  else if (peak->shape > kMostShape)
+    skirt.reason = kSteep;
+  else if (peak->misfit > kMostMisfit)
+    skirt.reason = formatted("the slope is not that of a lobe: it leaves the profile by %.0f %%", 100 * peak->misfit);
+  else if (peak->logSigma > kMostLogSigma)
+    skirt.reason = formatted("the peak is known to %.0f %% only", 100 * peak->logSigma);
+  else
+    skirt.trusted = true;
+  return skirt;
+}
+
+bool reachesLevel(const ClippedSkirt& skirt, double level) {
+  return skirt.trusted && level * skirt.peak->value < kHighestContour * skirt.clipHeight;
+}
+
+void noteContour(ClippedSkirt& skirt, double level, double reference, const Polyline& contour) {
+  constexpr double kSamePeak = 1 - 1e-9;  // round-off
+  skirt.levelAsked = level;
+  skirt.contourValue = level * reference;
+  skirt.outsideCore = reachesLevel(skirt, level) && skirt.contourValue < kHighestContour * skirt.clipHeight &&
+                      reference >= kSamePeak * skirt.peak->value;
+  skirt.sigmaPx = 0;
+  const double round = length(contour);
+  if (!skirt.outsideCore || !(round > 0)) return;
+  // A background that is too high lowers the peak, too: the two add up.
+  const double off = skirt.peak->logSigma + (1 - level) * skirt.backgroundSigma / skirt.contourValue;
+  const double lower = skirt.peak->areaAt(skirt.contourValue * std::exp(-off)),
+               higher = skirt.peak->areaAt(skirt.contourValue * std::exp(off));
+  skirt.sigmaPx = (lower - higher) / (2 * round);
+}
+
+std::string inWords(const ClippedSkirt& skirt) {
+  if (!skirt.peak)
+    return formatted("the peak cannot be told (%s): contour at %g of the clip value", skirt.reason.c_str(), skirt.levelAsked);
+  const double times = skirt.peak->value / skirt.clipHeight, pct = 100 * skirt.peak->logSigma;
+  const std::string peak = formatted("peak about %.2g times the clip value (+-%.0f %%), from %zu levels of the slope", times, pct,
+                                     skirt.levels.size());
+  if (skirt.outsideCore)
+    return peak + formatted(": contour at %g of it, outside of the core (+-%.2g px)", skirt.levelAsked, skirt.sigmaPx);
+  const double own = skirt.contourValue / skirt.peak->value;
+  if (!skirt.trusted)
+    return peak + formatted("; not relied on (%s): contour at %g of the clip value", skirt.reason.c_str(), skirt.levelAsked);
+  return peak + formatted(": level %g lies inside the clipped core, the contour at about %.2g", skirt.levelAsked, own);
+}
+
+}  // namespace glint

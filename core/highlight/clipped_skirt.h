@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/base/image.h"
+#include "core/base/outcome.h"
+#include "core/geometry/conic.h"
+#include "core/geometry/polyline.h"
+
+namespace glint {
+
+/// One contour of the slope around a clipped core.
+struct SkirtLevel {
+  double value = 0;  ///< radiance above the background
+  Polyline contour;  ///< closed
+  double areaPx2 = 0;
+  std::optional<Ellipse> ellipse;  ///< least-squares ellipse of the contour
+};
+
+/// What a fit needs of it.
+struct SkirtSample {
+  double value = 0;  ///< above the background, > 0
+  double areaPx2 = 0;
+  double logSigma = 0;  ///< standard deviation of log(value), noise and pixels; what no profile explains is added by the fit
+};
+
+/// The unclipped peak that continues a skirt: I(A) = K (1 + (A/A0)^p / beta)^-beta, A the area of the contour at I.
+struct SkirtPeak {
+  double value = 0;     ///< K, above the background
+  double logSigma = 0;  ///< standard deviation of log K: noise, background, the profile's shape
+  double areaPx2 = 0;   ///< A0
+  double shape = 1;     ///< p: 1 of a lobe under a small lamp, above 1 flat-topped (a large lamp), below 1 pointed
+  double tail = 0;      ///< 1/beta: 0 Gaussian, 1/2 GGX
+  double misfit = 0;    ///< rms of log(value) about the profile
+
+  double areaAt(double value) const;  ///< of the contour at a value below K, px^2; 0 at K and above
+};
+
+/// The slope around the clipped core of one highlight.
+struct ClippedSkirt {
+  double clipHeight = 0;  ///< lowest value above the background at which a channel is clipped: what lies below it is whole
+  std::vector<SkirtLevel> levels;  ///< highest first
+  std::optional<SkirtPeak> peak;   ///< where the levels tell one
+  std::string reason;              ///< in words: why they tell none, or why it is not relied on
+  bool trusted = false;            ///< the peak is known well enough to set the level of contours
+  double levelAsked = 0.5;
+  double contourValue = 0;     ///< at which the highlight's contour was taken, above the background
+  bool outsideCore = false;    ///< the contour lies at the level asked for, of the estimated peak, outside of the clipped core
+  double backgroundSigma = 0;  ///< of the background that was taken off
+  double sigmaPx = 0;          ///< then: how far the uncertainties of peak and background move the contour (standard deviation)
+};
+
+/// Fits the profile to the areas of several levels. log K, A0, p and an offset of the background are fitted for each of seven beta; the answers are averaged by
+/// how well they explain the levels, and their scatter is part of the uncertainty. A narrow peak of its own on top of the core, of which the skirt shows nothing, is in no skirt.
+/// @param samples          at least five, any order. @param backgroundSigma  standard deviation of the background that was taken off
+/// @return TooFewPoints; NotFinite (a value or an area is not positive and finite); NotConverged (areas do not grow as values fall, or so little that the slope
+///         does not show how high it rises)
+Outcome<SkirtPeak> peakFromSkirt(std::span<const SkirtSample> samples, double backgroundSigma);
+
+/// Pixels around one clipped highlight; all maps have the size of `corrected`, one entry per pixel.
+struct SkirtView {
+  Image corrected;              ///< one channel, background removed; 0 on pixels that are not usable
+  std::vector<char> usable;     ///< finite, not negative, on the glossy object
+  std::vector<char> saturated;  ///< of this highlight
+  double noise = 0;             ///< standard deviation of a pixel
+  double backgroundSigma = 0;   ///< of the background that was taken off
+  double minAreaPx2 = 12;
+};
+
+/// Traces the slope at up to eleven levels, from just below the clipped core down to the noise, streaks cut off, as long as the contours are those of one
+/// highlight (one around the other, of like shape, growing no faster than a lobe's, on usable pixels, within the view), and estimates the peak.
+ClippedSkirt traceSkirt(const SkirtView& view);
+
+/// The contour at `level` of the estimated peak lies outside of the clipped core, and the peak is relied on.
+bool reachesLevel(const ClippedSkirt& skirt, double level);
+
+/// Notes at which value the contour was taken, and what the peak's uncertainty does to it.
+/// @param reference  above the background, whose fraction `level` the value is: the peak of this skirt, or a stronger one
+void noteContour(ClippedSkirt& skirt, double level, double reference, const Polyline& contour);
+
+/// Where the contour lies and why, in words.
+std::string inWords(const ClippedSkirt& skirt);
+
+}  // namespace glint
