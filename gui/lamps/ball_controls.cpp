@@ -4,6 +4,7 @@
 #include <QComboBox>
 #include <QFormLayout>
 #include <QHBoxLayout>
+#include <QKeySequence>
 #include <QLabel>
 #include <QLineEdit>
 #include <QListWidget>
@@ -32,6 +33,8 @@ NumberBox* pixelBox(double least, const QString& name, const QString& accessible
   box->setAccessibleName(accessible);
   return box;
 }
+
+QString keyText(QKeySequence::StandardKey key) { return QKeySequence(key).toString(QKeySequence::NativeText); }
 
 QPushButton* toggle(const QString& text, const char* name, const QString& tip) {
   auto* b = new QPushButton(text);
@@ -70,6 +73,14 @@ void BallControls::buildBalls(QFormLayout* form) {
   add->setToolTip(tr("Adds an outline in the middle of the photograph, to be placed by the numbers below or the mouse"));
   remove_ = new QPushButton(tr("Remove"));
   remove_->setObjectName(QStringLiteral("removeBall"));
+  undo_ = new QPushButton(tr("Undo"));
+  undo_->setObjectName(QStringLiteral("undoOutline"));
+  undo_->setToolTip(tr("Takes back the last change of an outline (%1)").arg(keyText(QKeySequence::Undo)));
+  redo_ = new QPushButton(tr("Redo"));
+  redo_->setObjectName(QStringLiteral("redoOutline"));
+  redo_->setToolTip(tr("Makes the change again (%1)").arg(keyText(QKeySequence::Redo)));
+  connect(undo_, &QPushButton::clicked, &outlines_, &BallOutlines::undo);
+  connect(redo_, &QPushButton::clicked, &outlines_, &BallOutlines::redo);
   for (const auto& [button, drawing] :
        {std::pair(middle_, BallOutlines::Drawing::FromMiddle), std::pair(rim_, BallOutlines::Drawing::ThroughRim)})
     connect(button, &QPushButton::clicked, this, [this, drawing = drawing](bool on) {
@@ -98,9 +109,11 @@ void BallControls::buildBalls(QFormLayout* form) {
   });
   form->addRow(tr("Balls"), list_);
   auto* change = new QHBoxLayout;
-  change->addWidget(add);
-  change->addWidget(remove_);
+  for (QWidget* w : std::initializer_list<QWidget*>{add, remove_}) change->addWidget(w);
   form->addRow(QString(), change);
+  auto* steps = new QHBoxLayout;  // a row of their own: four in one are wider than the column
+  for (QWidget* w : std::initializer_list<QWidget*>{undo_, redo_}) steps->addWidget(w);
+  form->addRow(QString(), steps);
   const QString names[] = {tr("Centre x"), tr("Centre y"), tr("Radius")};
   const char* const ids[] = {"ballX", "ballY", "ballRadiusPx"};
   for (std::size_t i = 0; i < numbers_.size(); ++i) {
@@ -194,6 +207,8 @@ void BallControls::refresh() {
   const int at = outlines_.selected();
   list_->setCurrentRow(at);
   remove_->setEnabled(at >= 0);
+  undo_->setEnabled(outlines_.canUndo());
+  redo_->setEnabled(outlines_.canRedo());
   const BallOutline shown = at >= 0 ? balls[std::size_t(at)].outline : BallOutline{};
   const double values[] = {shown.centre.x(), shown.centre.y(), shown.radius};
   for (std::size_t i = 0; i < numbers_.size(); ++i) {

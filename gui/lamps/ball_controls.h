@@ -45,7 +45,7 @@ class BallControls : public QWidget {
   BallOutlines& outlines_;
   QSize size_{640, 480};
   QListWidget* list_;
-  QPushButton *middle_, *rim_, *remove_;
+  QPushButton *middle_, *rim_, *remove_, *undo_, *redo_;
   QLabel* hint_;
   std::array<NumberBox*, 3> numbers_{};
   std::array<NumberBox*, 2> corner_{};

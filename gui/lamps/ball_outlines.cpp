@@ -11,17 +11,57 @@
 namespace glint::gui {
 
 namespace {
-constexpr double kMiddleReach = 1.6;  // of what counts as near: the cross in the middle is larger than a line is wide
+constexpr double kMiddleReach = 1.6;     // of what counts as near: the cross in the middle is larger than a line is wide
+constexpr std::size_t kMostSteps = 200;  // more than a person takes back; each holds some hundred bytes
+
+Eigen::Index firstChange(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  Eigen::Index at = 0;
+  (a - b).cwiseAbs().maxCoeff(&at);
+  return at;
+}
+}  // namespace
+
+void BallOutlines::keep(State before, std::optional<Field> field) {
+  future_.clear();
+  if (field && field == lastField_) return;  // the step begins with the first value
+  lastField_ = field;
+  past_.push_back(std::move(before));
+  if (past_.size() > kMostSteps) past_.erase(past_.begin());
+}
+
+void BallOutlines::step(std::vector<State>& from, std::vector<State>& to) {
+  if (from.empty() || drag_) return;
+  to.push_back(state());
+  const State now = std::move(from.back());
+  from.pop_back();
+  balls_ = now.balls;
+  corners_ = now.corners;
+  folder_ = now.folder;
+  drawing_ = now.drawing;
+  selected_ = now.selected;
+  rim_.clear();
+  lastField_.reset();
+  emit changed();
+  emit ballsChanged();
+}
+
+void BallOutlines::forgetSteps() {
+  past_.clear();
+  future_.clear();
+  lastField_.reset();
+  emit changed();
 }
 
 void BallOutlines::select(int ball) {
   ball = std::clamp(ball, -1, int(balls_.size()) - 1);
   if (ball == selected_) return;
   selected_ = ball;
+  lastField_.reset();
   emit changed();
 }
 
 void BallOutlines::add(const BallOutline& outline) {
+  keep(state());
   balls_.push_back({folder_, outline});
   selected_ = int(balls_.size()) - 1;
   emit changed();
@@ -30,6 +70,7 @@ void BallOutlines::add(const BallOutline& outline) {
 
 void BallOutlines::remove(int ball) {
   if (ball < 0 || ball >= int(balls_.size())) return;
+  keep(state());
   balls_.erase(balls_.begin() + ball);
   selected_ = std::min(selected_, int(balls_.size()) - 1);
   emit changed();
@@ -40,6 +81,8 @@ void BallOutlines::set(int ball, const BallOutline& outline) {
   if (ball < 0 || ball >= int(balls_.size())) return;
   BallOutline& now = balls_[std::size_t(ball)].outline;
   if (now.centre == outline.centre && now.radius == outline.radius) return;
+  const auto numbers = [](const BallOutline& o) { return Eigen::Vector3d(o.centre.x(), o.centre.y(), o.radius); };
+  keep(state(), Field{ball, firstChange(numbers(now), numbers(outline))});
   now = outline;
   emit changed();
   emit ballsChanged();
@@ -53,13 +96,14 @@ void BallOutlines::clear() {
   selected_ = -1;
   drag_.reset();
   drawing_ = Drawing::FromMiddle;
-  emit changed();
+  forgetSteps();
   emit ballsChanged();
 }
 
 void BallOutlines::setFolder(const QString& folder) {
   if (folder == folder_) return;
   folder_ = folder;
+  lastField_.reset();
   rim_.clear();
   emit changed();
 }
@@ -70,7 +114,9 @@ Eigen::Vector2d BallOutlines::cornerOf(const QString& folder) const {
 }
 
 void BallOutlines::setCorner(const QString& folder, const Eigen::Vector2d& corner) {
-  if (corner == cornerOf(folder)) return;
+  const Eigen::Vector2d now = cornerOf(folder);
+  if (corner == now) return;
+  keep(state(), Field{-1, corner.x() != now.x() ? 0 : 1});
   corners_[folder] = corner;
   emit changed();
   emit ballsChanged();
@@ -93,8 +139,9 @@ void BallOutlines::clickRim(const Pixel& at) {
     emit changed();
     return emit problem(tr("No circle: %1").arg(toQString(circle.failure().detail)));
   }
-  drawing_ = Drawing::Nothing;
   add(*circle);
+  drawing_ = Drawing::Nothing;  // after it: one step back is to where it was drawn
+  emit changed();
 }
 
 std::vector<NamedBall> BallOutlines::named() const {
@@ -131,12 +178,12 @@ bool BallOutlines::wouldTake(const Pixel& at, double nearPx, Qt::KeyboardModifie
 bool BallOutlines::take(const Pixel& at, double nearPx, Qt::KeyboardModifiers) {
   if (drawing_ == Drawing::ThroughRim) return false;  // a click on another ball's outline may be one on a rim behind it
   if (const auto part = partAt(at, nearPx)) {
-    drag_ = Drag{part->first, part->second, balls_[std::size_t(part->first)].outline.centre - at};
+    drag_ = Drag{part->first, part->second, balls_[std::size_t(part->first)].outline.centre - at, false, false, state()};
     select(part->first);
     return true;
   }
   if (drawing_ != Drawing::FromMiddle) return false;
-  drag_ = Drag{int(balls_.size()), Part::Rim, Eigen::Vector2d::Zero(), true};
+  drag_ = Drag{int(balls_.size()), Part::Rim, Eigen::Vector2d::Zero(), true, false, state()};
   balls_.push_back({folder_, {at, 0}});
   return true;
 }
@@ -165,6 +212,7 @@ void BallOutlines::release() {
     return;
   }
   if (drag.isNew) drawing_ = Drawing::Nothing;
+  if (drag.moved) keep(drag.before);
   emit changed();
   if (drag.moved) emit ballsChanged();
 }

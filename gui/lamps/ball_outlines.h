@@ -34,7 +34,14 @@ class BallOutlines : public QObject, public DragTool {
   void add(const BallOutline& outline);
   void remove(int ball);
   void set(int ball, const BallOutline& outline);
+  /// With all steps back.
   void clear();
+  /// One step back, and forth again: a drag, a new or removed outline, or what was typed into one field.
+  void undo() { step(past_, future_); }
+  void redo() { step(future_, past_); }
+  bool canUndo() const { return !past_.empty() && !drag_; }
+  bool canRedo() const { return !future_.empty() && !drag_; }
+  void forgetSteps();
   /// Which photographs are shown: only their balls can be dragged, and new ones are theirs.
   void setFolder(const QString& folder);
   const QString& folder() const { return folder_; }
@@ -61,18 +68,38 @@ class BallOutlines : public QObject, public DragTool {
 
  private:
   enum class Part { Middle, Rim };
+  /// What a step restores: also the photographs and the tool with which it was made.
+  struct State {
+    std::vector<Ball> balls;
+    std::map<QString, Eigen::Vector2d> corners;
+    QString folder;
+    Drawing drawing;
+    int selected;
+  };
+  /// What is typed into one field, value by value, is one step.
+  struct Field {
+    int ball = -1;
+    Eigen::Index number = -1;  ///< centre x, y, radius; corner x, y
+    bool operator==(const Field&) const = default;
+  };
   std::optional<std::pair<int, Part>> partAt(const Pixel& at, double nearPx) const;
+  State state() const { return {balls_, corners_, folder_, drawing_, selected_}; }
+  void keep(State before, std::optional<Field> field = {});
+  void step(std::vector<State>& from, std::vector<State>& to);
   std::vector<Ball> balls_;
   std::map<QString, Eigen::Vector2d> corners_;
   std::vector<Eigen::Vector2d> rim_;
   QString folder_;
   Drawing drawing_ = Drawing::FromMiddle;
   int selected_ = -1;
+  std::vector<State> past_, future_;
+  std::optional<Field> lastField_;
   struct Drag {
     int ball = -1;
     Part part = Part::Middle;
     Eigen::Vector2d off = Eigen::Vector2d::Zero();  ///< from the mouse to the middle
     bool isNew = false, moved = false;
+    State before = {};
   };
   std::optional<Drag> drag_;
 };

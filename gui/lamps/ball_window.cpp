@@ -9,6 +9,8 @@
 #include <QKeyEvent>
 #include <QLabel>
 #include <QListWidget>
+#include <QRegularExpression>
+#include <QShortcut>
 #include <QSlider>
 #include <QSplitter>
 #include <QVBoxLayout>
@@ -51,6 +53,12 @@ bool hasPhotographs(const QString& input, const QString& name) {
   } catch (const InputError&) {
     return false;
   }
+}
+
+/// What the core refuses by the options of the command line: here a person drew. The place of a ball tells which one.
+QString withoutBallOptions(const QString& line) {
+  static const QRegularExpression ball(QStringLiteral("--ball (?:\\S*:)?([-+.e\\d]+,[-+.e\\d]+),[-+.e\\d]+(?:@\\S+)?"));
+  return QString(line).replace(ball, BallWindow::tr("the ball at \\1"));
 }
 
 /// The size of a photograph, by its header; nothing where that cannot be read: whoever decodes it says why.
@@ -105,6 +113,9 @@ BallWindow::BallWindow(const Engine& engine, QWidget* parent)
   column->addWidget(all, 1);
   column->addWidget(status_);
   connectParts();
+  for (const auto& [keys, back] : {std::pair(QKeySequence::Undo, true), std::pair(QKeySequence::Redo, false)})
+    connect(new QShortcut(keys, this), &QShortcut::activated, outlines_,
+            [this, back = back] { back ? outlines_->undo() : outlines_->redo(); });
 }
 
 /// The list, and how bright photographs are shown: rims in a dark room are hard to see.
@@ -148,7 +159,7 @@ void BallWindow::connectParts() {
     BallQuestion q;
     if (!question(q)) return;
     QApplication::clipboard()->setText(exactQString(lightsCommand(q)));
-    tell(tr("Copied: %1").arg(toQString(lightsCommand(q))), false);
+    tell(tr("Copied the command that measures the same"), false);
   });
   connect(photographs_, &QListWidget::currentRowChanged, this, [this] { showCurrent(); });
   connect(photographs_, &QListWidget::itemChanged, this, [this](const QListWidgetItem* item) {
@@ -211,6 +222,7 @@ bool BallWindow::ask(const BallQuestion& q) {
   outlines_->setDrawing(BallOutlines::Drawing::Nothing);
   outlines_->setFolder(exactQString(q.balls.front().folder));
   outlines_->select(0);
+  outlines_->forgetSteps();
   controls_->show(q);
   listPhotographs();
   return true;
@@ -320,6 +332,10 @@ bool BallWindow::question(BallQuestion& q) {
     const std::vector<Shot> shots = ballShotsIn(q.input, q.balls, "").shots;
     for (std::size_t i = 0; i < shots.size(); ++i)
       if (left_.count(exactQString(shots[i].name))) q.exclude += (q.exclude.empty() ? "" : ",") + std::to_string(i);
+    if (std::all_of(shots.begin(), shots.end(), [this](const Shot& s) { return left_.count(exactQString(s.name)) > 0; })) {
+      tell(tr("No photograph is ticked."), true);
+      return false;
+    }
   } catch (const InputError& e) {
     tell(toQString(e.what()), true);
     return false;
@@ -397,7 +413,8 @@ void BallWindow::save() {
   }
 }
 
-void BallWindow::tell(const QString& line, bool wrong) {
+void BallWindow::tell(const QString& words, bool wrong) {
+  const QString line = withoutBallOptions(words);
   status_->setText(line);
   status_->setStyleSheet(wrong ? QStringLiteral("color: %1").arg(warningColour().name()) : QString());
   if (wrong)

@@ -130,6 +130,62 @@ class BallWindowTest : public QObject {
     changesAreMarked();
   }
 
+  /// One step for each gesture, by keys and by buttons, wherever the focus is.
+  void changesAreTakenBackStepByStep() {
+    open();
+    QApplication::setActiveWindow(window_);  // there is no window manager: keys of undo belong to the active window
+    const auto state = [this] {
+      QString text;
+      for (const BallOutlines::Ball& b : balls())
+        text += QStringLiteral("%1 %2 %3;").arg(b.outline.centre.x()).arg(b.outline.centre.y()).arg(b.outline.radius);
+      return text;
+    };
+    QStringList states{state()};
+    QVERIFY(!button("undoOutline")->isEnabled());
+    dragOn({kTrueBalls[0].centre, kTrueBalls[0].centre + Eigen::Vector2d(50, 0), kTrueBalls[0].centre + Eigen::Vector2d(90, 0)});
+    states << state();
+    dragOn({balls()[0].outline.centre, balls()[0].outline.centre + Eigen::Vector2d(30, 5),
+            balls()[0].outline.centre + Eigen::Vector2d(12, 7)});  // several moves of the mouse
+    states << state();
+    click("addBall");
+    states << state();
+    auto* x = window_->findChild<NumberBox*>(QStringLiteral("ballX"));
+    x->setFocus();
+    x->selectAll();
+    QTest::keyClicks(x, "390.5");
+    QTest::keyClick(x, Qt::Key_Return);
+    for (int i = 0; i < 3; ++i) QTest::keyClick(x, Qt::Key_Up);
+    states << state();
+    click("removeBall");
+    states << state();
+    for (int i = 1; i < int(states.size()); ++i) QVERIFY(states[i] != states[i - 1]);
+    for (int i = int(states.size()) - 2; i >= 0; --i) {
+      if (i % 2)
+        QTest::keyClick(window_->focusWidget(), Qt::Key_Z, Qt::ControlModifier);
+      else
+        click("undoOutline");
+      QCOMPARE(state(), states[i]);
+    }
+    QVERIFY(!button("undoOutline")->isEnabled());
+    QTest::keyClick(window_->canvas(), Qt::Key_Z, Qt::ControlModifier);  // nothing more
+    QCOMPARE(state(), states[0]);
+    for (int i = 1; i < int(states.size()); ++i) {
+      if (i % 2)
+        QTest::keyClick(window_->canvas(), Qt::Key_Z, Qt::ControlModifier | Qt::ShiftModifier);
+      else
+        click("redoOutline");
+      QCOMPARE(state(), states[i]);
+    }
+    QVERIFY(!button("redoOutline")->isEnabled());
+    // What is done after a step back ends what could be done again.
+    click("undoOutline");
+    click("addBall");
+    QVERIFY(!button("redoOutline")->isEnabled());
+    // Other photographs begin anew.
+    main_->lamps()->openBalls(folder_->filePath("shots"));
+    QVERIFY(balls().empty() && !button("undoOutline")->isEnabled());
+  }
+
   void threePointsOfTheRimMakeABall() {
     open();
     click("drawThroughRim");
@@ -148,6 +204,11 @@ class BallWindowTest : public QObject {
     click("removeBall");
     QVERIFY(balls().empty());
     QVERIFY(!button("measureLamps")->isEnabled());
+    // One step back brings the outline, the next one the tool that drew it.
+    click("undoOutline");
+    QCOMPARE(int(balls().size()), 1);
+    click("undoOutline");
+    QVERIFY(balls().empty() && button("drawThroughRim")->isChecked());
   }
 
   void whatCannotBeTakenIsSaid() {
@@ -167,6 +228,24 @@ class BallWindowTest : public QObject {
     click("measureLamps");
     QTRY_VERIFY_WITH_TIMEOUT(window_->idle(), 120000);
     QVERIFY(!window_->findChild<QLabel*>(QStringLiteral("ballStatus"))->text().isEmpty());
+    // In words of the window, which has no options of a command line.
+    const auto said = [this] { return window_->findChild<QLabel*>(QStringLiteral("ballStatus"))->text(); };
+    window_->findChild<NumberBox*>(QStringLiteral("ballX"))->setValue(2000);
+    click("measureLamps");
+    QTRY_VERIFY_WITH_TIMEOUT(window_->idle(), 120000);
+    QVERIFY2(said().contains("the ball at 2000,225") && said().contains("outside of its photographs") && !said().contains("--"),
+             qPrintable(said()));
+    click("addBall");
+    click("addBall");
+    click("measureLamps");
+    QTRY_VERIFY_WITH_TIMEOUT(window_->idle(), 120000);
+    QVERIFY2(said().contains("is the same ball as the ball at") && !said().contains("--"), qPrintable(said()));
+    auto* photographs = window_->findChild<QListWidget*>(QStringLiteral("ballPhotographs"));
+    click("removeBall");
+    for (int i = 0; i < photographs->count(); ++i) photographs->item(i)->setCheckState(Qt::Unchecked);
+    click("measureLamps");
+    QVERIFY(window_->idle());
+    QVERIFY2(said().contains("No photograph is ticked"), qPrintable(said()));
     // A folder without photographs.
     main_->lamps()->openBalls(QStringLiteral(GLINT_SOURCE_DIR "/cli"));
     QVERIFY2(main_->lastError().contains("no photographs"), qPrintable(main_->lastError()));
@@ -201,9 +280,13 @@ class BallWindowTest : public QObject {
   }
   void clickOn(const Eigen::Vector2d& pixel) { QTest::mouseClick(window_->canvas(), Qt::LeftButton, {}, onCanvas(pixel)); }
 
+  /// Every file that can be saved has the bytes that the copied command writes.
   void sameAsTheCommand() {
-    const QString saved = folder_->filePath(QStringLiteral("window%1.json").arg(++saves_)),
-                  written = folder_->filePath("command.json");
+    for (const char* ending : {".json", ".lp", ".csv"}) sameAsTheCommand(QLatin1String(ending));
+  }
+  void sameAsTheCommand(const QString& ending) {
+    const QString saved = folder_->filePath(QStringLiteral("window%1").arg(++saves_) + ending),
+                  written = folder_->filePath("command" + ending);
     QTimer answers;
     connect(&answers, &QTimer::timeout, this, [&] {
       auto* dialog = qobject_cast<QFileDialog*>(QApplication::activeModalWidget());
@@ -221,8 +304,14 @@ class BallWindowTest : public QObject {
     program.start("sh", {"-c", QStringLiteral(GLINT_CLI) + command.mid(5) + " -o " + written});
     QVERIFY(program.waitForFinished(120000));
     QVERIFY2(program.exitCode() == 0, program.readAllStandardError().constData());
-    QVERIFY(bytesIn(written).size() > 100);
+    QVERIFY(bytesIn(written).size() > 60);
     QCOMPARE(bytesIn(saved), bytesIn(written));
+    if (ending == QLatin1String(".lp")) {  // a line for each photograph that was measured, after their number
+      const QList<QByteArray> lines = bytesIn(saved).trimmed().split('\n');
+      QCOMPARE(lines.front().toInt(), int(window_->report()->lamps.size()));
+      QCOMPARE(lines.size(), 1 + int(window_->report()->lamps.size()));
+      QVERIFY2(lines.back().startsWith("s2.png "), lines.back().constData());
+    }
   }
 
   void selectsBothWays() {
