@@ -60,9 +60,6 @@ std::vector<std::string> splitList(const std::string& text, const std::string& f
 /// One warning when training frames could not be used, with the first reason; silent when all could.
 void warnOfUnusedTrainingFrames(const Inspection& inspection, const Context& context);
 
-/// Why no training view could be used at all, with the first reason; nothing where one could.
-std::optional<Failure> noUsableView(const Inspection& inspection);
-
 /// Throws CannotAnswer when no training view could be used at all, with the first reason.
 void requireUsableViews(const Inspection& inspection);
 
