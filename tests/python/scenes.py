@@ -57,7 +57,7 @@ def contour_on_plane(k, centre, pose, light, limit, count=120):
     peak = mirror_point_on_plane(centre, light)
     t = np.linspace(0, 2 * np.pi, count, endpoint=False)
     directions = np.stack([np.cos(t), np.sin(t), np.zeros(count)], axis=1)
-    low, high = np.zeros(count), np.full(count, 0.02)
+    low, high = np.zeros(count), np.full(count, 1e-3 * abs(centre[2]))
     while np.any(half_angle(peak + high[:, None] * directions, n, centre, light) < limit):
         high *= 2
     for _ in range(200):
@@ -69,7 +69,7 @@ def contour_on_plane(k, centre, pose, light, limit, count=120):
 
 
 LIGHT = np.array([0.3, 0.5, 1.4])
-LIMIT = np.deg2rad(5.0)
+LIMIT = np.deg2rad(3.0)
 
 
 def plane_views(count=8, scale=1.0, light=LIGHT):
@@ -79,7 +79,8 @@ def plane_views(count=8, scale=1.0, light=LIGHT):
     for i in range(count):
         angle = -1.9 + 0.45 * i
         centre = scale * np.array([0.9 * np.cos(angle), 0.9 * np.sin(angle), 0.8 + 0.07 * (i % 3)])
-        pose = looking_at(centre, target=scale * np.array([0.1, 0.1, 0.0]))
+        # Near the middle of the image, not in it.
+        pose = looking_at(centre, target=mirror_point_on_plane(centre, scale * light) + scale * np.array([0.02, -0.01, 0.0]))
         contour, peak, _ = contour_on_plane(k, centre, pose, scale * light, LIMIT)
         views.append((k, pose, centre, contour, peak))
     return views

@@ -20,7 +20,7 @@ LONG = SESSIONS / "two-lamps/two-lamps.glint"  # seconds
 def test_progress_counts_up():
     events = []
     glint.inspect(glint.open(SESSIONS / "plane/plane.glint"), ["dual"], progress=lambda *event: events.append(event))
-    assert {stage for stage, _, _ in events} >= {"detect", "predict"}
+    assert {stage for stage, _, _ in events} >= {"detect", "fit dual"}
     for stage in {stage for stage, _, _ in events}:
         done = [d for s, d, _ in events if s == stage]
         assert done[0] == 0 and all(isinstance(d, int) for d in done)

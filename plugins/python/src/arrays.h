@@ -19,6 +19,12 @@ namespace glint::python {
 
 namespace py = pybind11;
 
+inline int isAnything(PyObject*) { return 1; }
+/// An argument that NumPy makes an array of; so named in signatures and stubs.
+class ArrayLike : public py::object {
+  PYBIND11_OBJECT_DEFAULT(ArrayLike, py::object, isAnything)
+};
+
 /// A caller's array as doubles in row order: the array itself where it is that already, else a copy.
 using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
@@ -91,8 +97,16 @@ py::array copyOf(const Eigen::MatrixBase<Derived>& matrix) {
 }
 
 template <class Matrix>
-py::object arrayOrNone(const std::optional<Matrix>& matrix) {
-  return matrix ? py::object(copyOf(*matrix)) : py::none();
+std::optional<py::array> arrayOrNone(const std::optional<Matrix>& matrix) {
+  if (!matrix) return std::nullopt;
+  return copyOf(*matrix);
 }
 
 }  // namespace glint::python
+
+namespace pybind11::detail {
+template <>
+struct handle_type_name<glint::python::ArrayLike> {
+  static constexpr auto name = const_name("ArrayLike");
+};
+}  // namespace pybind11::detail

@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kLargestSide = 65536;  // px, as a scene file may say
 
-Lens lensFrom(const std::string& model, py::handle distortion) {
+Lens lensFrom(const std::string& model, const ArrayLike& distortion) {
   const std::optional<LensModel> known = lensModelNamed(model);
   if (!known) {
     std::string names;
@@ -49,7 +49,7 @@ Camera checked(Camera camera) {
 }
 
 Camera cameraFrom(int width, int height, double fx, double fy, double cx, double cy, double skew, const std::string& model,
-                  py::handle distortion, py::handle pose) {
+                  const ArrayLike& distortion, const ArrayLike& pose) {
   Camera c;
   c.width = width;
   c.height = height;
@@ -59,7 +59,8 @@ Camera cameraFrom(int width, int height, double fx, double fy, double cx, double
   return checked(c);
 }
 
-Camera cameraOfMatrix(py::handle k, int width, int height, py::handle pose, const std::string& model, py::handle distortion) {
+Camera cameraOfMatrix(const ArrayLike& k, int width, int height, const ArrayLike& pose, const std::string& model,
+                      const ArrayLike& distortion) {
   Camera c;
   c.width = width;
   c.height = height;
@@ -70,7 +71,7 @@ Camera cameraOfMatrix(py::handle k, int width, int height, py::handle pose, cons
 }
 
 template <class Change>
-py::array eachPixel(py::handle pixels, const Change& change) {
+py::array eachPixel(const ArrayLike& pixels, const Change& change) {
   std::vector<Pixel> out = pointsFrom<2>(pixels, "pixels");
   {
     const py::gil_scoped_release release;  // the inverse of a lens is found by iteration
@@ -82,14 +83,14 @@ py::array eachPixel(py::handle pixels, const Change& change) {
   return ownedBy(std::move(out));
 }
 
-py::array project(const Camera& c, py::handle points) {
+py::array project(const Camera& c, const ArrayLike& points) {
   std::vector<Pixel> out;
   for (const Eigen::Vector3d& x : pointsFrom<3>(points, "points"))
     out.push_back(c.project(x).value_or(Pixel(kNoNumber, kNoNumber)));
   return ownedBy(std::move(out));
 }
 
-py::array directions(const Camera& c, py::handle pixels) {
+py::array directions(const Camera& c, const ArrayLike& pixels) {
   std::vector<Eigen::Vector3d> out;
   for (const Pixel& p : pointsFrom<2>(pixels, "pixels")) out.push_back(c.ray(p).direction);
   return ownedBy(std::move(out));
@@ -108,7 +109,8 @@ void declareNumbers(py::class_<Camera>& camera) {
           "projection", [](const Camera& c) { return copyOf(c.projection().matrix); },
           "(3, 4) P = K [R | t]: homogeneous ideal pixels from homogeneous world points.")
       .def_property_readonly(
-          "model", [](const Camera& c) { return std::string(nameOf(c.lens.model)); }, "How the lens bends rays: \"OPENCV\", ...")
+          "model", [](const Camera& c) { return std::string(nameOf(c.lens.model)); },
+          "Name of how the lens bends rays, such as \"OPENCV\".")
       .def_property_readonly(
           "distortion",
           [](const Camera& c) {
@@ -140,7 +142,7 @@ void declareCameras(py::module_& module) {
                   "The same from K, (3, 3), px, upper triangular with 1 at (2, 2).")
       .def(
           "at",
-          [](Camera c, py::handle pose) {
+          [](Camera c, const ArrayLike& pose) {
             c.camFromWorld = poseFrom(pose, "camera_from_world");
             return c;
           },
@@ -150,7 +152,7 @@ void declareCameras(py::module_& module) {
       .def("directions", &directions, py::arg("pixels"), "(n, 3) unit world directions of the rays through (n, 2) ideal pixels.")
       .def(
           "depth",
-          [](const Camera& c, py::handle points) {
+          [](const Camera& c, const ArrayLike& points) {
             std::vector<double> out;
             for (const Eigen::Vector3d& x : pointsFrom<3>(points, "points")) out.push_back(c.depth(x));
             return ownedBy(std::move(out));
@@ -158,11 +160,15 @@ void declareCameras(py::module_& module) {
           py::arg("points"), "(n,) depths of (n, 3) world points along the optical axis, world units.")
       .def(
           "distort",
-          [](const Camera& c, py::handle pixels) { return eachPixel(pixels, [&](const Pixel& p) { return c.distorted(p); }); },
+          [](const Camera& c, const ArrayLike& pixels) {
+            return eachPixel(pixels, [&](const Pixel& p) { return c.distorted(p); });
+          },
           py::arg("pixels"), "(n, 2) measured pixels of (n, 2) ideal ones; NaN where the lens shows none.")
       .def(
           "undistort",
-          [](const Camera& c, py::handle pixels) { return eachPixel(pixels, [&](const Pixel& p) { return c.undistorted(p); }); },
+          [](const Camera& c, const ArrayLike& pixels) {
+            return eachPixel(pixels, [&](const Pixel& p) { return c.undistorted(p); });
+          },
           py::arg("pixels"), "(n, 2) ideal pixels of (n, 2) measured ones; NaN where there are none.")
       .def(
           "virtual", [](const Camera& c, const Plane& plane) { return copyOf(virtualCamera(c, plane).matrix); }, py::arg("plane"),

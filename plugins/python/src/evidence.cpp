@@ -16,7 +16,7 @@
 namespace glint::python {
 namespace {
 
-Highlight highlightFrom(py::handle contour, py::handle peak, const std::string& light, double level) {
+Highlight highlightFrom(const ArrayLike& contour, const ArrayLike& peak, const std::string& light, double level) {
   Highlight h;
   h.fromScene = true;
   h.light = light;
@@ -35,7 +35,7 @@ Highlight highlightFrom(py::handle contour, py::handle peak, const std::string& 
   return h;
 }
 
-std::vector<Highlight> detect(py::handle linear, py::handle mask, const std::string& light, py::handle settings) {
+std::vector<Highlight> detect(const ArrayLike& linear, const ArrayLike& mask, const std::string& light, py::handle settings) {
   // A pixel without a value is no error: detection names it where it matters.
   const Image image = imageFrom(linear, "image", false);
   if (image.channels != 1 && image.channels != 3) throw py::value_error("image: expected 1 or 3 channels");
@@ -43,7 +43,7 @@ std::vector<Highlight> detect(py::handle linear, py::handle mask, const std::str
   if (!mask.is_none()) {
     py::array array = py::array::ensure(mask);
     if (array && array.dtype().kind() == 'b') array = array.attr("astype")("uint8").cast<py::array>();
-    on = imageFrom(array ? py::handle(array) : mask, "mask", true);
+    on = imageFrom(array ? py::handle(array) : py::handle(mask), "mask", true);
     if (on->channels != 1 || on->width != image.width || on->height != image.height)
       throw py::value_error("mask: must have one channel and the image's size");
   }
@@ -80,7 +80,7 @@ void declareHighlight(py::module_& module) {
       .def_property_readonly(
           "peak", [](const Highlight& h) { return copyOf(h.peak); }, "(2,) px.")
       .def_property_readonly(
-          "ellipse", [](const Highlight& h) { return objectOrNone(h.ellipse); }, "Least-squares Ellipse of the contour, or None.")
+          "ellipse", [](const Highlight& h) { return h.ellipse; }, "Least-squares Ellipse of the contour, or None.")
       .def_readonly("light", &Highlight::light, "Id of its light; empty while unknown.")
       .def_readonly("level", &Highlight::level, "Fraction of the peak above the background.")
       .def_readonly("peak_value", &Highlight::peakValue, "Radiance at the peak, background removed; 0 when unknown.")
@@ -111,7 +111,7 @@ void declareFrameEvidence(py::module_& module) {
             for (const RejectedCandidate& r : e.rejected) out.push_back({{r.place.x(), r.place.y()}, r.reason});
             return out;
           },
-          "What stands out and is no highlight: list of ((x, y) in measured px, reason).");
+          "What stands out and is no highlight, as a list of ((x, y) in measured px, reason).");
 }
 
 void declareViews(py::module_& module) {
@@ -120,7 +120,7 @@ void declareViews(py::module_& module) {
           "pixels", [](py::object self) { return viewOf(self.cast<const CanonicalContour&>().pixels, self); },
           "(n, 2) px: canonical points in the photograph; a view.")
       .def_property_readonly(
-          "ellipse", [](const CanonicalContour& c) { return objectOrNone(c.ellipse); }, "Ellipse of these points, or None.")
+          "ellipse", [](const CanonicalContour& c) { return c.ellipse; }, "Ellipse of these points, or None.")
       .def_property_readonly(
           "on_surface",
           [](const CanonicalContour& c) {
@@ -161,21 +161,17 @@ void declareViews(py::module_& module) {
           },
           "Why the view cannot be used, or None.")
       .def_property_readonly(
-          "brightest_point", [](const TrainingView& v) { return v.seen ? py::cast(v.seen->brightest) : py::none(); },
+          "brightest_point", [](const TrainingView& v) { return v.seen ? std::optional(v.seen->brightest) : std::nullopt; },
           "Observed BrightestPoint, or None.")
       .def_property_readonly(
-          "tangent_plane", [](const TrainingView& v) { return v.seen ? py::cast(v.seen->tangentPlane) : py::none(); },
+          "tangent_plane", [](const TrainingView& v) { return v.seen ? std::optional(v.seen->tangentPlane) : std::nullopt; },
           "Plane there, its normal towards the camera, or None.")
       .def_property_readonly(
           "virtual_camera",
-          [](const TrainingView& v) { return v.seen ? py::object(copyOf(v.seen->virtualCamera.matrix)) : py::none(); },
+          [](const TrainingView& v) { return arrayOrNone(v.seen ? std::optional(v.seen->virtualCamera.matrix) : std::nullopt); },
           "(3, 4) projection P M, or None.")
       .def_property_readonly(
-          "canonical",
-          [](py::object self) {
-            const auto& v = self.cast<const TrainingView&>();
-            return partOrNone(v.canonical ? &*v.canonical : nullptr, self);
-          },
+          "canonical", [](const TrainingView& v) { return v.canonical ? &*v.canonical : nullptr; },
           "CanonicalContour, once the light is known, or None.");
 }
 

@@ -3,6 +3,8 @@
 
 #include <exception>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace glint::python {
 namespace {
@@ -44,7 +46,10 @@ void translate(std::exception_ptr thrown) {
 
 }  // namespace
 
-py::object messageOrNone(const Failure* failure) { return failure ? py::object(py::str(failure->message())) : py::none(); }
+std::optional<std::string> messageOrNone(const Failure* failure) {
+  if (!failure) return std::nullopt;
+  return failure->message();
+}
 
 void declareFailures(py::module_& module) {
   theError = declare(module, "Error", PyExc_Exception,
@@ -59,6 +64,10 @@ void declareFailures(py::module_& module) {
               "empty.\nplace : str\n    Where in it (\"frames[3].camera_from_world\"), or which argument of the command line "
               "(\"--train\"); may be empty.\nreason : str\n    One line.");
   theStopped = declare(module, "Stopped", theError, "A progress function returned False.");
+  // On the classes too, so that stubs and editors know them.
+  for (const auto& [type, names] : {std::pair(theCannotAnswer, std::vector{"reason", "detail"}),
+                                    std::pair(theInputError, std::vector{"file", "place", "reason"})})
+    for (const char* const name : names) py::reinterpret_borrow<py::object>(type).attr(name) = "";
   py::register_exception_translator(translate);
 }
 

@@ -3,6 +3,8 @@
 
 #include <pybind11/pybind11.h>
 
+#include <optional>
+#include <string>
 #include <utility>
 
 #include "core/base/outcome.h"
@@ -27,7 +29,7 @@ T valueOf(Outcome<T> outcome) {
 }
 
 /// None, or the message of the failure: "too few views: need 3, have 2".
-py::object messageOrNone(const Failure* failure);
+std::optional<std::string> messageOrNone(const Failure* failure);
 
 void declareFailures(py::module_& module);
 

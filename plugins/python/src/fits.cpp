@@ -16,31 +16,31 @@ void declareLobe(py::class_<ModelFit>& fit) {
          "lobe",
          [](const ModelFit& f) {
            const ReflectanceFit* const lobe = f.as<ReflectanceFit>();
-           return lobe ? py::object(py::str(nameOf(lobe->lobe))) : py::none();
+           return lobe ? std::optional<std::string>(nameOf(lobe->lobe)) : std::nullopt;
          },
-         "Name of the reflectance lobe; None of models without one.")
+         "Name of the reflectance lobe, or None of models without one.")
       .def_property_readonly(
           "roughness",
           [](const ModelFit& f) {
             const ReflectanceFit* const lobe = f.as<ReflectanceFit>();
-            return lobe ? py::object(py::float_(lobe->roughness)) : py::none();
+            return lobe ? std::optional(lobe->roughness) : std::nullopt;
           },
           "m of the lobe, or None.")
       .def_property_readonly(
           "light_radius",
           [](const ModelFit& f) {
             const ReflectanceFit* const lobe = f.as<ReflectanceFit>();
-            return lobe ? py::object(py::float_(lobe->lightRadius)) : py::none();
+            return lobe ? std::optional(lobe->lightRadius) : std::nullopt;
           },
-          "Of a spherical lamp, world units; 0 for a point or a tube; None of models without a lobe.")
+          "Of a spherical lamp, world units; 0 for a point or a tube; or None of models without a lobe.")
       .def_property_readonly(
           "light_segment",
           [](const ModelFit& f) {
             const ReflectanceFit* const lobe = f.as<ReflectanceFit>();
-            if (!lobe || !lobe->lightSegment) return py::object(py::none());
-            Eigen::Matrix<double, 2, 3> ends;
-            ends << lobe->lightSegment->first.transpose(), lobe->lightSegment->second.transpose();
-            return py::object(copyOf(ends));
+            std::optional<Eigen::Matrix<double, 2, 3>> ends;
+            if (lobe && lobe->lightSegment)
+              ends.emplace() << lobe->lightSegment->first.transpose(), lobe->lightSegment->second.transpose();
+            return arrayOrNone(ends);
           },
           "(2, 3) ends of a lamp with a length, world, or None.");
 }
@@ -51,24 +51,24 @@ void declareFit(py::module_& module) {
       .def_readonly("light", &ModelFit::light, "Id of the light.")
       .def_readonly("surface", &ModelFit::surface, "Key of the surface, where the fit is of one only; else None.")
       .def_property_readonly(
-          "ellipsoid", [](const ModelFit& f) { return f.ellipsoid() ? py::cast(*f.ellipsoid()) : py::none(); },
+          "ellipsoid", [](const ModelFit& f) { return f.ellipsoid() ? std::optional(*f.ellipsoid()) : std::nullopt; },
           "Ellipsoid of primal, dual and canonical, or None.")
       .def_property_readonly(
           "q_dual",
           [](const ModelFit& f) {
             const EllipsoidFit* const e = f.as<EllipsoidFit>();
-            return e ? py::object(copyOf(e->quadric.matrix)) : py::none();
+            return arrayOrNone(e ? std::optional(e->quadric.matrix) : std::nullopt);
           },
           "(4, 4) dual quadric Q*, also where it is no ellipsoid; None of other models.")
       .def_property_readonly(
           "gap_ratio",
           [](const ModelFit& f) {
             const EllipsoidFit* const e = f.as<EllipsoidFit>();
-            return e && !e->singularValues.empty() ? py::object(py::float_(e->gapRatio)) : py::none();
+            return e && !e->singularValues.empty() ? std::optional(e->gapRatio) : std::nullopt;
           },
           "Last over second last singular value; near 1 = ambiguous; None where nothing was solved.")
       .def_property_readonly(
-          "light_estimate", [](const ModelFit& f) { return objectOrNone(f.lightEstimate); }, "Light, or None.")
+          "light_estimate", [](const ModelFit& f) { return f.lightEstimate; }, "Light, or None.")
       .def_property_readonly(
           "light_covariance", [](const ModelFit& f) { return arrayOrNone(f.lightCovariance); },
           "(3, 3) of the light's position, squared world units, or None.")
@@ -77,7 +77,7 @@ void declareFit(py::module_& module) {
           "light_extent",
           [](const ModelFit& f) {
             const LimitAngleFit* const c = f.as<LimitAngleFit>();
-            return c ? arrayOrNone(c->extent) : py::object(py::none());
+            return c ? arrayOrNone(c->extent) : std::nullopt;
           },
           "(3, 3) second moment of an extended light, squared world units, of limit-angle; else None.")
       .def_readonly("condition", &ModelFit::condition, "Of the linear system, or of the rays that fix the light.")
@@ -102,16 +102,12 @@ void declarePrediction(py::module_& module) {
       .def_readonly("gaps", &PredictedHighlight::gaps,
                     "Segments of the contour (from vertex, to vertex) that bridge failed directions.")
       .def_property_readonly(
-          "ellipse", [](const PredictedHighlight& h) { return objectOrNone(h.ellipse); }, "Ellipse, or None.")
+          "ellipse", [](const PredictedHighlight& h) { return h.ellipse; }, "Ellipse, or None.")
       .def_readonly("brightest_point", &PredictedHighlight::brightest, "Predicted BrightestPoint.")
       .def_property_readonly(
-          "tangent_plane", [](const PredictedHighlight& h) { return objectOrNone(h.tangentPlane); }, "Plane, or None.")
+          "tangent_plane", [](const PredictedHighlight& h) { return h.tangentPlane; }, "Plane, or None.")
       .def_property_readonly(
-          "canonical",
-          [](py::object self) {
-            const auto& h = self.cast<const PredictedHighlight&>();
-            return partOrNone(h.canonical ? &*h.canonical : nullptr, self);
-          },
+          "canonical", [](const PredictedHighlight& h) { return h.canonical ? &*h.canonical : nullptr; },
           "CanonicalContour: directions with their ends on surface and tangent plane, or None.")
       .def_readonly("coverage", &PredictedHighlight::coverage, "Share of directions that gave a point.")
       .def_property_readonly(

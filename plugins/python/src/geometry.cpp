@@ -15,7 +15,7 @@
 namespace glint::python {
 namespace {
 
-Plane planeThrough(py::handle point, py::handle normal) {
+Plane planeThrough(const ArrayLike& point, const ArrayLike& normal) {
   const Eigen::Vector3d n = vectorFrom<3>(normal, "normal");
   const double length = n.stableNorm();
   if (!(length > 0) || !std::isfinite(length)) throw py::value_error("normal: must have a length");
@@ -35,7 +35,7 @@ void declarePlane(py::module_& module) {
           "(4, 4) matrix that mirrors world points; its own inverse.")
       .def(
           "signed_distance",
-          [](const Plane& p, py::handle points) {
+          [](const Plane& p, const ArrayLike& points) {
             std::vector<double> out;
             for (const Eigen::Vector3d& x : pointsFrom<3>(points, "points")) out.push_back(p.signedDistance(x));
             return ownedBy(std::move(out));
@@ -46,7 +46,7 @@ void declarePlane(py::module_& module) {
       });
 }
 
-Ellipse ellipseFrom(py::handle centre, py::handle semiAxes, double angle) {
+Ellipse ellipseFrom(const ArrayLike& centre, const ArrayLike& semiAxes, double angle) {
   const Eigen::Vector2d axes = vectorFrom<2>(semiAxes, "semi_axes");
   if (!(axes.y() > 0 && axes.x() >= axes.y())) throw py::value_error("semi_axes: the longer one first, both above 0");
   if (!(angle > -M_PI / 2 && angle <= M_PI / 2)) throw py::value_error("angle: must be in (-pi/2, pi/2], radians");
@@ -60,15 +60,15 @@ void declareEllipse(py::module_& module) {
            "float, rad\n    "
            "Of the longer axis, from +x towards +y (down), in (-pi/2, pi/2].")
       .def_static(
-          "from_conic", [](py::handle conic) { return valueOf(toEllipse(Conic{matrixFrom<3, 3>(conic, "conic")})); },
+          "from_conic", [](const ArrayLike& conic) { return valueOf(toEllipse(Conic{matrixFrom<3, 3>(conic, "conic")})); },
           py::arg("conic"),
           "Of the point conic x^T C x = 0, (3, 3), of any scale and sign.\n\nRaises CannotAnswer: \"not an ellipse\", \"rank "
           "deficient\".")
       .def_static(
-          "from_dual", [](py::handle dual) { return valueOf(toEllipse(DualConic{matrixFrom<3, 3>(dual, "dual")})); },
+          "from_dual", [](const ArrayLike& dual) { return valueOf(toEllipse(DualConic{matrixFrom<3, 3>(dual, "dual")})); },
           py::arg("dual"), "Of the line conic l^T C* l = 0, (3, 3). Raises CannotAnswer as from_conic.")
       .def_static(
-          "fit", [](py::handle points) { return valueOf(fitEllipse(pointsFrom<2>(points, "points"))); }, py::arg("points"),
+          "fit", [](const ArrayLike& points) { return valueOf(fitEllipse(pointsFrom<2>(points, "points"))); }, py::arg("points"),
           "Direct least-squares ellipse through (n, 2) points, n >= 5 (Halir and Flusser, 1998).\n\nRaises CannotAnswer: \"too "
           "few "
           "points\", \"rank deficient\".")
@@ -98,7 +98,7 @@ void declareEllipse(py::module_& module) {
 
 void declareEllipsoid(py::module_& module) {
   py::class_<Ellipsoid>(module, "Ellipsoid", "A solid ellipsoid in the world.")
-      .def(py::init([](py::handle pose, py::handle axes) {
+      .def(py::init([](const ArrayLike& pose, const ArrayLike& axes) {
              return Ellipsoid(poseFrom(pose, "world_from_ellipsoid"), vectorFrom<3>(axes, "semi_axes"));
            }),
            py::arg("world_from_ellipsoid"), py::arg("semi_axes"),
@@ -106,7 +106,8 @@ void declareEllipsoid(py::module_& module) {
            "units, at most "
            "one of them 0; sorted, the axes with them.")
       .def_static(
-          "from_dual", [](py::handle q) { return valueOf(Ellipsoid::fromDual(DualQuadric{matrixFrom<4, 4>(q, "q_dual")})); },
+          "from_dual",
+          [](const ArrayLike& q) { return valueOf(Ellipsoid::fromDual(DualQuadric{matrixFrom<4, 4>(q, "q_dual")})); },
           py::arg("q_dual"), "Of the dual quadric Q*, (4, 4), of any scale. Raises CannotAnswer: \"not an ellipsoid\".")
       .def_property_readonly(
           "centre", [](const Ellipsoid& e) { return copyOf(e.centre()); }, "(3,) world.")
@@ -118,7 +119,7 @@ void declareEllipsoid(py::module_& module) {
           "q_dual", [](const Ellipsoid& e) { return copyOf(e.dual().matrix); }, "(4, 4) dual quadric Q*, with 1 at (3, 3).")
       .def(
           "outline",
-          [](const Ellipsoid& e, py::handle projection) {
+          [](const Ellipsoid& e, const ArrayLike& projection) {
             return valueOf(outlineEllipse(e, Projection{matrixFrom<3, 4>(projection, "projection")}));
           },
           py::arg("projection"),
@@ -136,23 +137,23 @@ void declareEllipsoid(py::module_& module) {
 void declareLight(py::module_& module) {
   py::class_<Light>(module, "Light", "A point light, at a finite place or at infinity.")
       .def_static(
-          "at", [](py::handle position) { return Light::at(vectorFrom<3>(position, "position")); }, py::arg("position"),
+          "at", [](const ArrayLike& position) { return Light::at(vectorFrom<3>(position, "position")); }, py::arg("position"),
           "At a world point, (3,).")
       .def_static(
-          "towards", [](py::handle direction) { return Light::towards(vectorFrom<3>(direction, "direction")); },
+          "towards", [](const ArrayLike& direction) { return Light::towards(vectorFrom<3>(direction, "direction")); },
           py::arg("direction"), "At infinity. direction : (3,) world vector from the scene to the light, not zero.")
       .def_static(
-          "from_homogeneous", [](py::handle lw) { return Light::homogeneous(vectorFrom<4>(lw, "light")); }, py::arg("light"),
-          "Of (4,) homogeneous coordinates (l, w): at l / w, or at infinity towards l where w is 0.")
+          "from_homogeneous", [](const ArrayLike& lw) { return Light::homogeneous(vectorFrom<4>(lw, "light")); },
+          py::arg("light"), "Of (4,) homogeneous coordinates (l, w): at l / w, or at infinity towards l where w is 0.")
       .def_property_readonly(
           "homogeneous", [](const Light& l) { return copyOf(l.homogeneous()); }, "(4,) homogeneous, of length 1, w >= 0.")
       .def_property_readonly("at_infinity", &Light::atInfinity, "Whether it has no place.")
       .def_property_readonly(
-          "position", [](const Light& l) { return l.atInfinity() ? py::object(py::none()) : py::object(copyOf(l.position())); },
+          "position", [](const Light& l) { return arrayOrNone(l.atInfinity() ? std::nullopt : std::optional(l.position())); },
           "(3,) world; None at infinity.")
       .def(
           "direction_from",
-          [](const Light& l, py::handle point) { return copyOf(l.directionFrom(vectorFrom<3>(point, "point"))); },
+          [](const Light& l, const ArrayLike& point) { return copyOf(l.directionFrom(vectorFrom<3>(point, "point"))); },
           py::arg("point"), "(3,) unit vector from a world point (3,) to the light.")
       .def("__repr__", [](const Light& l) {
         const Eigen::Vector3d p = l.atInfinity() ? Eigen::Vector3d(l.homogeneous().head<3>()) : l.position();

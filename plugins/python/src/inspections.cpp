@@ -55,7 +55,7 @@ py::dict summaryOf(const InspectionHandle& handle, const std::string& model) {
   return out;
 }
 
-py::dict lightsOf(const InspectionHandle& handle, py::handle frame) {
+py::dict lightsOf(const InspectionHandle& handle, const FrameName& frame) {
   const SceneHandle scene{handle.inspection->scene, nullptr, handle.context.input};
   py::dict out;
   for (const auto& [id, estimate] : handle.inspection->lightsFor(scene.frameOf(frame)))
@@ -63,9 +63,11 @@ py::dict lightsOf(const InspectionHandle& handle, py::handle frame) {
   return out;
 }
 
-py::list partsOf(py::object self, const auto& parts) {
-  py::list out;
-  for (const auto& part : parts) out.append(partOrNone(&part, self));
+/// Pointers, so that Python holds the parts themselves.
+template <class Part>
+std::vector<const Part*> partsOf(const std::vector<Part>& parts) {
+  std::vector<const Part*> out;
+  for (const Part& part : parts) out.push_back(&part);
   return out;
 }
 
@@ -75,21 +77,16 @@ void declareModelResult(py::module_& module) {
       .def_readonly("light", &Fit::light, "Id of the light.")
       .def_readonly("surface", &Fit::surface, "Key of the surface, or None.")
       .def_property_readonly(
-          "fit",
-          [](py::object self) {
-            const Fit& f = self.cast<const Fit&>();
-            return partOrNone(f.fit ? &*f.fit : nullptr, self);
-          },
-          "ModelFit, or None where it failed.")
+          "fit", [](const Fit& f) { return f.fit ? &*f.fit : nullptr; }, "ModelFit, or None where it failed.")
       .def_property_readonly(
           "failure", [](const Fit& f) { return messageOrNone(f.failure()); }, "Why it failed, or None.");
   py::class_<ModelResult>(module, "ModelResult", "What one model did.")
       .def_readonly("model", &ModelResult::model, "Id of the model.")
       .def_property_readonly(
-          "fits", [](py::object self) { return partsOf(self, self.cast<const ModelResult&>().fits); }, "List of FitResult.")
+          "fits", [](const ModelResult& s) { return partsOf(s.fits); }, "List of FitResult.")
       .def_property_readonly(
-          "frames", [](py::object self) { return partsOf(self, self.cast<const ModelResult&>().frames); },
-          "List of FrameComparison: every frame, training ones too; Inspection.held_out tells which count.");
+          "frames", [](const ModelResult& s) { return partsOf(s.frames); },
+          "List of FrameComparison. Every frame, training ones too; Inspection.held_out tells which count.");
 }
 
 void declareRequest(py::module_& module) {
@@ -150,10 +147,10 @@ void declareParts(py::class_<InspectionHandle>& inspection) {
           },
           "Frames that count in summaries.")
       .def_property_readonly(
-          "evidence", [](py::object self) { return partsOf(self, self.cast<const InspectionHandle&>().inspection->evidence); },
+          "evidence", [](const InspectionHandle& s) { return partsOf(s.inspection->evidence); },
           "List of FrameEvidence, one per frame.")
       .def_property_readonly(
-          "views", [](py::object self) { return partsOf(self, self.cast<const InspectionHandle&>().inspection->views); },
+          "views", [](const InspectionHandle& s) { return partsOf(s.inspection->views); },
           "List of TrainingView, one per training highlight.")
       .def_property_readonly(
           "models",

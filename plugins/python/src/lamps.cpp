@@ -71,7 +71,7 @@ void declareLamp(py::module_& module) {
           "covariance", [](const LampAnswer& l) { return arrayOrNone(l.covariance); }, "(3, 3) of the position, or None.")
       .def_readonly("without_position", &LampAnswer::withoutPosition, "Why there is no position, in words.")
       .def_property_readonly(
-          "direction", [](const LampAnswer& l) { return l.failure ? py::object(py::none()) : py::object(copyOf(l.direction)); },
+          "direction", [](const LampAnswer& l) { return arrayOrNone(l.failure ? std::nullopt : std::optional(l.direction)); },
           "(3,) unit vector from `origin` towards the lamp, or None.")
       .def_property_readonly(
           "direction_sigma_deg", [](const LampAnswer& l) { return l.directionSigma * 180 / M_PI; }, "Of the direction, degrees.")

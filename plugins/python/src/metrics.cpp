@@ -27,8 +27,8 @@ std::vector<Polyline> regionFrom(py::handle given, const std::string& name) {
   return lines;
 }
 
-ContourMetrics compare(py::handle observed, py::handle predicted, const std::vector<std::pair<int, int>>& gaps,
-                       py::handle observedPeak, py::handle predictedPeak) {
+ContourMetrics compare(const ArrayLike& observed, const ArrayLike& predicted, const std::vector<std::pair<int, int>>& gaps,
+                       const ArrayLike& observedPeak, const ArrayLike& predictedPeak) {
   const Polyline o = closedFrom(observed, "observed"), p = closedFrom(predicted, "predicted");
   const auto n = static_cast<int>(p.points.size());
   for (const auto& [from, to] : gaps)
@@ -48,7 +48,7 @@ void declareComparison(py::module_& module) {
       .def_readonly("observed", &Row::observed, "Index among the frame's highlights; -1 = spurious.")
       .def_readonly("predicted", &Row::predicted, "Index in prediction.highlights; -1 = missed.")
       .def_property_readonly(
-          "metrics", [](const Row& r) { return objectOrNone(r.metrics); }, "ContourMetrics of a matched pair, or None.")
+          "metrics", [](const Row& r) { return r.metrics; }, "ContourMetrics of a matched pair, or None.")
       .def_property_readonly(
           "failure", [](const Row& r) { return messageOrNone(r.failure ? &*r.failure : nullptr); }, "Why not, or None.");
   py::class_<FrameComparison>(module, "FrameComparison",
@@ -83,7 +83,7 @@ void declareMetrics(py::module_& module) {
       "predicted_peak : (2,) array, px\n    Default: the contours' centroids.");
   module.def(
       "iou",
-      [](py::handle a, py::handle b, double cell) {
+      [](const ArrayLike& a, const ArrayLike& b, double cell) {
         if (!(cell > 0) || !std::isfinite(cell)) throw py::value_error("cell_px: must be above 0");
         const auto ra = regionFrom(a, "a"), rb = regionFrom(b, "b");
         const py::gil_scoped_release release;

@@ -53,6 +53,7 @@ ModelFit fit(const ModelHandle& handle, const std::vector<TrainingView>& views, 
     if (light) of = *light;
     if (!light && handle.model->needsLight()) of = estimateLight(views, s);
     ModelFit fitted = valueOf(fitModel(*handle.model, views, of, s, nullptr, report));
+    fitted.model = handle.model->id();
     fitted.light = views.front().highlight.light;
     return fitted;
   });
@@ -119,7 +120,7 @@ void declareModels(py::module_& module) {
            "A light that is known already. limit_angle : rad, of its contours.")
       .def_readonly("light", &LightEstimate::light, "Light.")
       .def_property_readonly(
-          "covariance", [](const LightEstimate& e) { return e.covariance ? py::object(copyOf(*e.covariance)) : py::none(); },
+          "covariance", [](const LightEstimate& e) { return arrayOrNone(e.covariance); },
           "(3, 3) of the position, squared world units; None where it is not known.")
       .def_readonly("limit_angle", &LightEstimate::limitAngle, "rad: robust mean over all contour points.")
       .def_readonly("condition", &LightEstimate::condition, "Of the triangulation, in (0, 1]; small = rays nearly parallel.")
@@ -129,7 +130,7 @@ void declareModels(py::module_& module) {
           "(n,) px, of the views that were used.")
       .def_readonly("solver", &LightEstimate::solver, "\"bundle\", \"triangulated\" or \"given\".")
       .def_property_readonly(
-          "extent", [](const LightEstimate& e) { return e.extent ? py::object(copyOf(*e.extent)) : py::none(); },
+          "extent", [](const LightEstimate& e) { return arrayOrNone(e.extent); },
           "(3, 3) second moment of an extended light, squared world units; else None.");
   module.def("_estimate_light", &estimate);
 }

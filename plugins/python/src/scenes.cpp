@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <set>
 
+#include "core/diagnostics/camera_check.h"
 #include "core/fit/evidence.h"
-#include "core/scene/convention_report.h"
 #include "core/scene/outputs.h"
 #include "core/scene/scene.h"
 #include "core/session/scene_places.h"
@@ -42,7 +42,7 @@ FrameSource sourceFrom(const std::string& source) {
   throw py::value_error("source: expected \"radiance\" or \"image\", not \"" + source + "\"");
 }
 
-const Frame& frameIn(const SceneHandle& s, py::handle frame) {
+const Frame& frameIn(const SceneHandle& s, const FrameName& frame) {
   return s.scene->frames[static_cast<std::size_t>(s.frameOf(frame))];
 }
 
@@ -61,13 +61,13 @@ py::object arrayOf(const Read& read) {
   return viewOf(*image, owner);
 }
 
-py::object linearOf(const SceneHandle& s, py::handle frame, const std::string& source) {
+py::object linearOf(const SceneHandle& s, const FrameName& frame, const std::string& source) {
   const Frame& f = frameIn(s, frame);
   const FrameSource from = sourceFrom(source);
   return arrayOf([&] { return std::optional(valueOf(readLinear(f, from))); });
 }
 
-FrameEvidence evidenceOf(const SceneHandle& s, py::handle frame, const std::string& source, py::handle settings) {
+FrameEvidence evidenceOf(const SceneHandle& s, const FrameName& frame, const std::string& source, py::handle settings) {
   const int index = s.frameOf(frame);
   const FrameSource from = sourceFrom(source);
   const Settings how = settingsFrom(settings);
@@ -75,7 +75,7 @@ FrameEvidence evidenceOf(const SceneHandle& s, py::handle frame, const std::stri
   return gatherEvidence(*s.scene, index, from, how);
 }
 
-SurfaceHandle surfaceOf(const SceneHandle& s, py::handle frame, py::handle settings) {
+SurfaceHandle surfaceOf(const SceneHandle& s, const FrameName& frame, py::handle settings) {
   const int index = s.frameOf(frame);
   const MeshPolicy policy = meshPolicy(settingsFrom(settings));
   const py::gil_scoped_release release;
@@ -218,28 +218,28 @@ void declarePixels(py::class_<SceneHandle>& scene) {
            "Raises CannotAnswer: \"frame unreadable\".")
       .def(
           "photograph",
-          [](const SceneHandle& s, py::handle frame) {
+          [](const SceneHandle& s, const FrameName& frame) {
             const Frame& f = frameIn(s, frame);
             return arrayOf([&] { return std::optional(valueOf(readPhotograph(f))); });
           },
           py::arg("frame"), "(h, w, 3) float32 for display, sRGB 0 .. 1. Raises CannotAnswer.")
       .def(
           "depth",
-          [](const SceneHandle& s, py::handle frame) {
+          [](const SceneHandle& s, const FrameName& frame) {
             const Frame& f = frameIn(s, frame);
             return arrayOf([&] { return valueOf(readDepth(f)); });
           },
           py::arg("frame"), "(h, w) float32 along the optical axis, m, 0 = none; None where the frame has none.")
       .def(
           "normals",
-          [](const SceneHandle& s, py::handle frame) {
+          [](const SceneHandle& s, const FrameName& frame) {
             const Frame& f = frameIn(s, frame);
             return arrayOf([&] { return valueOf(readNormals(f)); });
           },
           py::arg("frame"), "(h, w, 3) float32 world normals as stored; None where the frame has none.")
       .def(
           "mask",
-          [](const SceneHandle& s, py::handle frame) {
+          [](const SceneHandle& s, const FrameName& frame) {
             const Frame& f = frameIn(s, frame);
             return arrayOf([&] { return valueOf(readMask(f)); });
           },
@@ -257,15 +257,15 @@ void declareScenes(py::module_& module) {
           "name", [](const SceneHandle& s) { return s.scene->name; }, "As the file says; may be empty.")
       .def_property_readonly(
           "kind", [](const SceneHandle& s) { return s.scene->kind; },
-          "How it was read: \"scene\", \"colmap\", \"nerfstudio\", ...")
+          "How it was read, such as \"scene\", \"colmap\" or \"nerfstudio\".")
       .def_property_readonly(
           "file", [](const SceneHandle& s) { return s.scene->file.string(); }, "As opened; empty for a scene from memory.")
       .def_readonly("input", &SceneHandle::input, "As the caller named it.")
       .def_property_readonly(
           "frames",
-          [](py::object self) {
-            py::list out;
-            for (const Frame& f : self.cast<const SceneHandle&>().scene->frames) out.append(partOrNone(&f, self));
+          [](const SceneHandle& s) {
+            std::vector<const Frame*> out;
+            for (const Frame& f : s.scene->frames) out.push_back(&f);
             return out;
           },
           "List of Frame.")
@@ -280,11 +280,11 @@ void declareScenes(py::module_& module) {
       .def_property_readonly(
           "lights",
           [](const SceneHandle& s) {
-            py::list out;
-            for (const TrueLight& l : s.scene->lights) out.append(lightOf(l));
+            std::vector<py::dict> out;
+            for (const TrueLight& l : s.scene->lights) out.push_back(lightOf(l));
             return out;
           },
-          "True lights, for evaluation only: dictionaries with id, position or direction (3,), segment (2, 3), radius.")
+          "True lights, for evaluation only, as dictionaries with id, position or direction (3,), segment (2, 3), radius.")
       .def_property_readonly(
           "warnings", [](const SceneHandle& s) { return s.scene->warnings; }, "Unknown keys and other oddities, in words.")
       .def_property_readonly(
@@ -292,12 +292,12 @@ void declareScenes(py::module_& module) {
           "What was recognised in a capture and converted, in words.")
       .def(
           "surface",
-          [](const SceneHandle& s, py::handle frame, const py::kwargs& settings) { return surfaceOf(s, frame, settings); },
+          [](const SceneHandle& s, const FrameName& frame, const py::kwargs& settings) { return surfaceOf(s, frame, settings); },
           py::arg("frame"),
           "The Surface that a frame sees (number or id); settings as keyword arguments. Raises CannotAnswer: \"no surface\".")
       .def(
           "evidence",
-          [](const SceneHandle& s, py::handle frame, const std::string& source, const py::kwargs& settings) {
+          [](const SceneHandle& s, const FrameName& frame, const std::string& source, const py::kwargs& settings) {
             return evidenceOf(s, frame, source, settings);
           },
           py::arg("frame"), py::arg("source") = "radiance",
@@ -305,7 +305,7 @@ void declareScenes(py::module_& module) {
       .def("_conventions",
            [](const SceneHandle& s, py::object progress) {
              return withProgress(std::move(progress),
-                                 [&](const ProgressFn& report) { return toJson(conventionReport(*s.scene, report)); });
+                                 [&](const ProgressFn& report) { return toJson(fullReport(*s.scene, report)); });
            })
       .def(
           "save",

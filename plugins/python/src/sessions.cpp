@@ -83,15 +83,13 @@ PredictorHandle predictorOf(const SceneHandle& scene, const RequestHandle& reque
   })};
 }
 
-py::list predictLive(const PredictorHandle& handle, const std::string& id, py::handle pose, const Camera* camera) {
+std::vector<std::tuple<std::string, std::string, Prediction>> predictLive(const PredictorHandle& handle, const std::string& id,
+                                                                          const ArrayLike& pose, const Camera* camera) {
   const Eigen::Isometry3d from = poseFrom(pose, "camera_from_world");
-  std::optional<LiveAnswer> answer;
-  {
-    const py::gil_scoped_release release;
-    answer = valueOf(handle.predictor->predict(id, from, camera ? std::optional(*camera) : std::nullopt));
-  }
-  py::list out;
-  for (LiveHighlights& h : answer->highlights) out.append(py::make_tuple(h.model, h.light, std::move(h.prediction)));
+  const py::gil_scoped_release release;
+  LiveAnswer answer = valueOf(handle.predictor->predict(id, from, camera ? std::optional(*camera) : std::nullopt));
+  std::vector<std::tuple<std::string, std::string, Prediction>> out;
+  for (LiveHighlights& h : answer.highlights) out.emplace_back(h.model, h.light, std::move(h.prediction));
   return out;
 }
 

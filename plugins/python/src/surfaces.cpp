@@ -21,7 +21,7 @@ namespace {
 // Finer than any picture needs, and 17 million cells are still built in seconds.
 constexpr int kFinestResolution = 4096;
 
-SurfaceHandle meshSurface(py::handle vertices, py::handle triangles, py::handle normals, py::handle settings) {
+SurfaceHandle meshSurface(const ArrayLike& vertices, const ArrayLike& triangles, const ArrayLike& normals, py::handle settings) {
   TriangleMesh mesh;
   mesh.vertices = pointsFrom<3>(vertices, "vertices");
   mesh.triangles = trianglesFrom(triangles, "triangles");
@@ -32,7 +32,7 @@ SurfaceHandle meshSurface(py::handle vertices, py::handle triangles, py::handle 
   return {makeMesh(std::move(mesh), policy)};
 }
 
-SurfaceHandle depthSurface(py::handle depth, const Camera& camera, py::handle settings) {
+SurfaceHandle depthSurface(const ArrayLike& depth, const Camera& camera, py::handle settings) {
   const Image image = imageFrom(depth, "depth", false);
   DepthMapOptions options;
   options.mesh = meshPolicy(settingsFrom(settings));
@@ -40,9 +40,9 @@ SurfaceHandle depthSurface(py::handle depth, const Camera& camera, py::handle se
   return {valueOf(makeDepthMap(image, camera, options))};
 }
 
-SurfaceHandle analyticSurface(const std::string& type, double radius, py::handle semiAxes, double curvature,
+SurfaceHandle analyticSurface(const std::string& type, double radius, const ArrayLike& semiAxes, double curvature,
                               std::optional<double> length, std::optional<double> width, double majorRadius, double minorRadius,
-                              py::handle matrix, py::handle pose) {
+                              const ArrayLike& matrix, const ArrayLike& pose) {
   AnalyticSpec spec;
   spec.type = type;
   spec.radius = radius;
@@ -64,7 +64,7 @@ struct Hits {
   std::vector<char> hit;
 };
 
-Hits firstHits(const SurfaceHandle& handle, py::handle origins, py::handle directions, py::object progress) {
+Hits firstHits(const SurfaceHandle& handle, const ArrayLike& origins, const ArrayLike& directions, py::object progress) {
   const auto from = pointsFrom<3>(origins, "origins");
   const auto along = pointsFrom<3>(directions, "directions");
   if (from.size() != along.size() && from.size() != 1)
@@ -105,7 +105,7 @@ std::vector<BrightestPoint> brightestPoints(const SurfaceHandle& s, const Camera
   return valueOf(predictedBrightestPoints(*s.surface, camera, light));
 }
 
-TriangleMesh tessellate(const SurfaceHandle& s, int resolution, py::handle lower, py::handle upper) {
+TriangleMesh tessellate(const SurfaceHandle& s, int resolution, const ArrayLike& lower, const ArrayLike& upper) {
   if (resolution < 1 || resolution > kFinestResolution) throw py::value_error("resolution: must be 1 to 4096");
   Eigen::AlignedBox3d region = s.surface->bounds();
   if (lower.is_none() != upper.is_none()) throw py::value_error("lower, upper: give both or none");
@@ -186,7 +186,7 @@ void declareSurfaces(py::module_& module) {
            "(n, 3) array\n    Of any length above 0.\nprogress : function (stage, done, total)\n    Returns False to stop.")
       .def(
           "observed_brightest_point",
-          [](const SurfaceHandle& s, const Camera& camera, py::handle peak) {
+          [](const SurfaceHandle& s, const Camera& camera, const ArrayLike& peak) {
             return valueOf(observedBrightestPoint(*s.surface, camera, vectorFrom<2>(peak, "peak")));
           },
           py::arg("camera"), py::arg("peak"),
@@ -195,7 +195,7 @@ void declareSurfaces(py::module_& module) {
            "Every visible and lit point where the reflection law holds for a light. Raises CannotAnswer: \"no brightest point\".")
       .def(
           "curvature",
-          [](const SurfaceHandle& s, py::handle origin, py::handle direction) {
+          [](const SurfaceHandle& s, const ArrayLike& origin, const ArrayLike& direction) {
             const Eigen::Vector3d d = vectorFrom<3>(direction, "direction");
             if (!(d.norm() > 0)) throw py::value_error("direction: must have a length");
             const SurfacePoint hit = valueOf(s.surface->firstHit({vectorFrom<3>(origin, "origin"), d.normalized()}));

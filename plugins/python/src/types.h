@@ -18,6 +18,12 @@ namespace glint::python {
 
 namespace py = pybind11;
 
+/// A frame by its number or its id; so named in signatures and stubs.
+inline int isAnyObject(PyObject*) { return 1; }
+class FrameName : public py::object {
+  PYBIND11_OBJECT_DEFAULT(FrameName, py::object, isAnyObject)
+};
+
 struct SurfaceHandle {
   std::shared_ptr<const Surface> surface;
 };
@@ -41,11 +47,6 @@ struct InspectionHandle {
   std::optional<Failure> failure;  ///< why no model answered
 };
 
-/// None, or a new object of Python.
-template <class T>
-py::object objectOrNone(const std::optional<T>& value) {
-  return value ? py::cast(*value) : py::none();
-}
 /// A part of `owner`, which it keeps alive; None where there is no such part.
 template <class T>
 py::object partOrNone(const T* part, py::handle owner) {
@@ -65,3 +66,10 @@ void declareSessions(py::module_& module);
 void declareLamps(py::module_& module);
 
 }  // namespace glint::python
+
+namespace pybind11::detail {
+template <>
+struct handle_type_name<glint::python::FrameName> {
+  static constexpr auto name = const_name("Union[int, str]");
+};
+}  // namespace pybind11::detail
