@@ -1,23 +1,27 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <cmath>
-
 #include "cli/commands.h"
 #include "cli/inspection_arguments.h"
 #include "core/base/number_text.h"
 #include "core/base/version.h"
 #include "core/inspect/shard.h"
-#include "core/inspect/summary.h"
+#include "core/report/evaluation.h"
 #include "core/report/evaluation_part.h"
 #include "core/report/report.h"
 #include "core/report/warnings.h"
 #include "core/scene/outputs.h"
-#include "core/selection/selection.h"
 
 namespace glint::cli {
 
 Command evaluateCommand() {
   struct Arguments : InspectionArguments {
     std::string json, csv, html, goodEnough, shard;
+    std::optional<double> goodEnoughFrom() const {
+      if (models != "auto" || goodEnough.empty()) return std::nullopt;
+      const std::optional<double> percent = numberFrom(goodEnough);
+      if (!percent || !(*percent > 0))
+        throw InputError("", "--good-enough-pct " + goodEnough, "expected a positive number, in percent");
+      return percent;
+    }
   };
   const auto a = std::make_shared<Arguments>();
   Command c;
@@ -64,64 +68,20 @@ Command evaluateCommand() {
       warnOfUnusedTrainingFrames(part, context);
       return kDone;  // whether a model answers is known when all parts are merged
     }
-    Inspection result;
-    std::string text = report.levelReason.empty() ? "" : report.levelReason + "\n\n";
+    const std::string levelText = report.levelReason.empty() ? "" : report.levelReason + "\n\n";
+    const EvaluationQuestion question{a->models == "auto", a->goodEnoughFrom(), a->sets("predict.query")};
+    const Evaluation e = evaluate(scene, request, report, question, context.progress());
+    if (!a->json.empty()) context.write(a->json, evaluationJson(e.inspection, e.report));
+    if (!a->csv.empty()) context.write(a->csv, evaluationCsv(e.inspection));
+    if (!a->html.empty()) context.write(a->html, evaluationHtml(e.inspection, e.report));
+    for (const std::string& w : warningsOf(e.inspection)) context.warn(w);
     // What was asked for on standard output must stay parseable there: the table then stays away.
     const bool tableToo = a->json != "-" && a->csv != "-" && a->html != "-";
-    const auto write = [&] {
-      if (!a->json.empty()) context.write(a->json, evaluationJson(result, report));
-      if (!a->csv.empty()) context.write(a->csv, evaluationCsv(result));
-      if (!a->html.empty()) context.write(a->html, evaluationHtml(result, report));
-      for (const std::string& w : warningsOf(result)) context.warn(w);
-    };
-    if (a->models == "auto") {
-      std::optional<double> goodEnough;
-      if (!a->goodEnough.empty()) {
-        goodEnough = numberFrom(a->goodEnough);
-        if (!goodEnough || !(*goodEnough > 0))
-          throw InputError("", "--good-enough-pct " + a->goodEnough, "expected a positive number, in percent");
-      }
-      request.models.clear();  // evidence and views only: the choice decides what else is computed
-      result = inspect(scene, request, context.progress());
-      if (noUsableView(result)) {  // the JSON says so too, with the reason of every training frame
-        report.whyChosen = noUsableView(result)->message();
-        write();
-        throw CannotAnswer{*noUsableView(result)};
-      }
-      const Selection s = selectModel(result, goodEnough, context.progress());
-      text += selectionTable(s) + "\n";
-      report.selection = s;
-      if (s.model.empty()) {
-        report.whyChosen = s.why;
-        write();
-        if (tableToo) context.print(text);
-        throw CannotAnswer{{Reason::NotReached, s.why}};
-      }
-      const bool keepWalks = a->sets("predict.query");  // the user decided
-      if (keepWalks && s.patches && s.patches->goodEnough) text += "predict.query stays as set.\n\n";
-      request = chosenRequest(request, s);
-      if (keepWalks) request.settings.set("predict.query", result.request.settings.text("predict.query"));
-      report.chosenModel = s.model;
-      report.whyChosen = s.why + (s.patches ? " " + s.patches->why : "");
-      result = inspect(scene, request, context.progress(), &result);
-    } else {
-      result = inspect(scene, request, context.progress());
-      const BestModel best = bestModel(result);
-      report.chosenModel = best.model;
-      report.whyChosen = best.why;
-    }
-    write();
-    if (tableToo) context.print(text + evaluationTable(result));
-    for (const auto& [name, model] : result.models) {
-      if (!summarise(result, model).answered) continue;
-      warnOfUnusedTrainingFrames(result, context);
-      return kDone;
-    }
-    requireUsableViews(result);
-    std::string reasons;
-    for (const auto& [name, model] : result.models)
-      reasons += (reasons.empty() ? "" : "; ") + name + ": " + summarise(result, model).reason;
-    throw CannotAnswer{{Reason::NotReached, "no model answered; " + reasons}};
+    const std::string table = e.inspection.models.empty() ? "" : evaluationTable(e.inspection);
+    if (tableToo && !(e.choice + table).empty()) context.print(levelText + e.choice + table);
+    if (e.failure) throw CannotAnswer{*e.failure};
+    warnOfUnusedTrainingFrames(e.inspection, context);
+    return kDone;
   };
   return c;
 }

@@ -8,6 +8,7 @@
 
 #include "core/fit/level_choice.h"
 #include "core/model/model.h"
+#include "core/report/evaluation.h"
 #include "core/scene/frame_spec.h"
 #include "core/session/session.h"
 #include "core/tradeoff/choice.h"
@@ -127,26 +128,6 @@ std::shared_ptr<const Scene> InspectionArguments::scene(InspectionRequest& reque
   return scene;
 }
 
-namespace {
-
-/// "frame ID: reason" of every training frame without a usable highlight.
-std::vector<std::string> unusedTrainingFrames(const Inspection& inspection) {
-  std::vector<std::string> lines;
-  for (const int frame : inspection.train.frames) {
-    if (!inspection.isTraining(frame)) continue;
-    std::optional<Failure> reason = inspection.evidence[frame].failure.value_or(Failure{Reason::NoHighlight, ""});
-    for (const TrainingView& v : inspection.views) {
-      if (v.frame != frame) continue;
-      reason = v.failure();
-      if (!reason) break;
-    }
-    if (reason) lines.push_back("frame " + inspection.scene->frames[frame].id + ": " + reason->message());
-  }
-  return lines;
-}
-
-}  // namespace
-
 void warnOfUnusedTrainingFrames(const Inspection& inspection, const Context& context) {
   const std::vector<std::string> unused = unusedTrainingFrames(inspection);
   if (unused.empty()) return;
@@ -164,13 +145,6 @@ std::optional<Shard> shardOf(const std::string& shard, const InspectionArguments
   if (arguments.models == "auto")
     throw InputError("", "--models auto", "is not for shards, which could choose differently; choose once, then name the model");
   return parsed;
-}
-
-std::optional<Failure> noUsableView(const Inspection& inspection) {
-  for (const TrainingView& v : inspection.views)
-    if (v.seen) return std::nullopt;
-  const std::vector<std::string> unused = unusedTrainingFrames(inspection);
-  return Failure{Reason::TooFewViews, "no training frame could be used" + (unused.empty() ? "" : "; " + unused.front())};
 }
 
 void requireUsableViews(const Inspection& inspection) {

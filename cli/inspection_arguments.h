@@ -68,9 +68,6 @@ void warnOfUnusedTrainingFrames(const Inspection& inspection, const Context& con
 std::optional<Shard> shardOf(const std::string& shard, const InspectionArguments& arguments, const std::string& json,
                              const std::vector<std::pair<std::string, std::string>>& others);
 
-/// Why no training view could be used at all, with the first reason; nothing where one could.
-std::optional<Failure> noUsableView(const Inspection& inspection);
-
 /// Throws CannotAnswer when no training view could be used at all, with the first reason.
 void requireUsableViews(const Inspection& inspection);
 

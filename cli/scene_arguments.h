@@ -1,45 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <map>
-#include <string>
-#include <vector>
-
 #include "cli/command.h"
-#include "core/session/session.h"
+#include "core/session/scene_places.h"
 
 namespace glint::cli {
 
-/// How an input is read, and where the files of a scene are that are not where it says; the same flags for every command that reads
-/// one.
-struct SceneArguments {
-  bool allowOutside = false;
-  std::vector<std::string> photographs;  ///< folders
-  std::vector<std::string> files;        ///< KIND=DIR
-  std::vector<std::string> mesh;         ///< NAME=FILE
-  std::vector<std::string> meshFolders;
-  std::map<std::string, std::string> reading;  ///< how a capture of another program is read: texts of choiceOptions(), by flag
-
+/// The flags of an input's places; the same for every command that reads one.
+struct SceneArguments : ScenePlaces {
   /// --photographs, --files, --mesh and --meshes.
   void declarePlaces(Options& options);
   /// These and --allow-outside; a session keeps the rest.
   void declareForSession(Options& options);
   /// All.
   void declare(Options& options);
-  /// What `reading` says. InputError.
-  InputChoices choices() const;
-  /// A scene, or that of a session. InputError, also for a flag that the scene has no use for.
-  Scene read(const std::string& input) const;
-  OpenedSession openSession(const std::string& file) const;
-  Replay replay(Session session, const ProgressFn& progress) const;
-  /// A session whose request is taken over, without its scene. OutsidePath as `openSession` where the request names a truth folder.
-  Session readRequestOf(const std::string& file, bool withItsTruth) const;
 
  private:
-  Relinked relinked() const;
   void declareReading(Options& options);
-  void lookIn(Scene& scene, FrameFile kind, const std::string& folder, const std::string& given) const;
-  void check(Scene& scene) const;
 };
 
 }  // namespace glint::cli

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include "core/base/limits.h"
+#include "plugins/python/src/failures.h"
+#include "plugins/python/src/options.h"
+#include "plugins/python/src/types.h"
+
+PYBIND11_MODULE(_glint, module) {
+  using namespace glint::python;
+  module.doc() = "Glint's computing core. Use the package `glint`, which adds the functions that take keyword arguments.";
+  module.attr("__version__") = GLINT_VERSION;
+  declareFailures(module);
+  declareSettings(module);
+  declareGeometry(module);
+  declareCameras(module);
+  declareSurfaces(module);
+  declareEvidence(module);
+  declareModels(module);
+  declareFits(module);
+  declareMetrics(module);
+  declareScenes(module);
+  declareInspections(module);
+  declareSessions(module);
+  declareLamps(module);
+  module.def(
+      "set_limit", [](const std::string& nameAndValue) { glint::setLimit(nameAndValue); }, py::arg("name_and_value"),
+      "Raises a limit on the size of inputs for this process: \"mesh-megabytes=4096\". InputError, with the known names.");
+}
