@@ -183,9 +183,9 @@ def analytic(kind, value, size, file, place):
 
 def mesh_object(name, vertices, faces, world, world_from_surface=None, smooth=True):
     """A new object with these vertices (m, Glint's frame of the surface), moved into Blender's world; not linked yet."""
-    place = linear.product(world.as_matrix(), world_from_surface or linear.identity())
+    place = numpy.array(linear.product(world.as_matrix(), world_from_surface or linear.identity()))
     mesh = bpy.data.meshes.new(name)
-    mesh.from_pydata([linear.transformed(place, v) for v in vertices], [], [tuple(f) for f in faces])
+    mesh.from_pydata((numpy.array(vertices) @ place[:3, :3].T + place[:3, 3]).tolist(), [], [tuple(f) for f in faces])
     mesh.polygons.foreach_set("use_smooth", [smooth] * len(mesh.polygons))
     mesh.update()
     return bpy.data.objects.new(name, mesh)

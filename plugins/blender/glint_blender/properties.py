@@ -61,10 +61,13 @@ def shown_models(self, context):
 
 
 def step_to_chosen(self, context):
-    """Choosing a row of the list shows its frame."""
-    if 0 <= self.active < len(self.frames) and context is not None and context.scene is not None:
+    """Choosing a row of the list shows its frame; a list that is filled anew does not."""
+    if not step_to_chosen.quiet and 0 <= self.active < len(self.frames) and context is not None and context.scene is not None:
         if context.scene.frame_current != self.frames[self.active].frame:
             context.scene.frame_set(self.frames[self.active].frame)
+
+
+step_to_chosen.quiet = False
 
 
 class GlintSettings(bpy.types.PropertyGroup):
@@ -99,7 +102,7 @@ class GlintSettings(bpy.types.PropertyGroup):
                          max=0.95)
     more: StringProperty(name="Settings", description="More settings, KEY=VALUE with blanks between; `glint settings` lists them")
     shown_model: EnumProperty(name="Show", description="Model whose errors the list shows", items=shown_models)
-    frames: CollectionProperty(type=GlintFrame)
+    frames: CollectionProperty(name="Frames", description="Frames of the scene file, in its order", type=GlintFrame)
     active: IntProperty(name="Frame", description="Row of the list; choosing one shows its frame", default=0, update=step_to_chosen)
     models_with_results: StringProperty(default="[]", options={"HIDDEN"})
     stage: StringProperty(name="Stage", options={"HIDDEN", "SKIP_SAVE"})
@@ -124,7 +127,9 @@ class GlintSettings(bpy.types.PropertyGroup):
             item.picture, item.train = row["picture"], row["id"] in ticked
         self.input = path
         self.models_with_results = "[]"
+        step_to_chosen.quiet = True
         self.active = min(self.active, max(len(rows) - 1, 0))
+        step_to_chosen.quiet = False
 
     def train_spec(self):
         """--train of the command line. Raises InputError where no frame is chosen."""

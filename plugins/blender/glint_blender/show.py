@@ -4,6 +4,7 @@ import json
 import math
 
 import bpy
+import numpy
 from mathutils import Matrix, Vector
 from mathutils.bvhtree import BVHTree
 
@@ -84,7 +85,7 @@ def curve(name, splines, width, colour):
 
 
 class Caster:
-    """First hits of rays with the glossy surface of a frame, in Glint's world. objects_of: objects by id of the surface."""
+    """First hits of rays with the glossy surface of a frame. objects_of: objects by id of the surface."""
 
     def __init__(self, scene, world, objects_of):
         self.scene, self.world, self.objects_of, self.trees, self.key = scene, world, objects_of, [], None
@@ -104,25 +105,28 @@ class Caster:
             if tree is not None:
                 self.trees.append((tree, matrix, matrix.inverted_safe()))
 
-    def hit(self, origin, direction):
-        """The nearest point (Glint's world), None where the ray misses."""
-        best, nearest = None, math.inf
+    def hits(self, frame, pixels):
+        """Where the rays through ideal pixels of a frame meet the surface first (Blender's world); None for those that miss."""
+        origin, directions = views.rays(frame["camera"], frame["pose"], pixels)
         start = Vector(self.world.to_blender(origin))
-        way = Vector(self.world.direction_to_blender(direction))
+        ways = directions @ numpy.array(self.world.axes)  # row vectors: the transposed axes, to Blender
+        found = [None] * len(pixels)
+        nearest = [math.inf] * len(pixels)
         for tree, matrix, back in self.trees:
-            place, _, _, _ = tree.ray_cast(back @ start, (back.to_3x3() @ way).normalized())
-            if place is not None:
-                place = matrix @ place
-                far = (place - start).length
-                if far < nearest:
-                    best, nearest = place, far
-        return None if best is None else self.world.to_glint(list(best))
+            near, turn = back @ start, back.to_3x3()
+            for i, way in enumerate(ways.tolist()):
+                place = tree.ray_cast(near, (turn @ Vector(way)).normalized())[0]
+                if place is not None:
+                    place = matrix @ place
+                    far = (place - start).length
+                    if far < nearest[i]:
+                        found[i], nearest[i] = place, far
+        return found
 
 
 def splines_on_surface(caster, frame, highlight):
-    """Pieces of a contour on the surface: (points of Glint's world, closed). Cut at gaps and where rays miss."""
-    contour, gaps = highlight["contour"], highlight["gaps"]
-    hits = [caster.hit(*views.ray(frame["camera"], frame["pose"], p)) for p in contour]
+    """Pieces of a contour on the surface: (points of Blender's world, closed), and how many points hit it. Cut at gaps and where rays miss."""
+    hits, gaps = caster.hits(frame, highlight["contour"]), highlight["gaps"]
     count = len(hits)
     joins = [hits[i] is not None and hits[(i + 1) % count] is not None and (i, (i + 1) % count) not in gaps and ((i + 1) % count, i) not in gaps
              for i in range(count)]
@@ -237,8 +241,8 @@ class Shower:
                 points = [[centre[i] + math.cos(t) * first[i] + math.sin(t) * second[i] for i in range(3)]
                           for t in (2 * math.pi * k / 96 for k in range(96))]
                 object_ = curve(f"Canonical ellipse {name}", [([self.world.to_blender(p) for p in points], True)], self.width, "ellipse")
-                self._put(object_, "canonical ellipse", {"light": row["light"], "index": row["index"], "centre": centre, "half_axes": [first, second]},
-                          row["index"])
+                numbers = {"light": row["light"], "index": row["index"], "centre": centre, "half_axes": [first, second]}
+                self._put(object_, "canonical ellipse", numbers, row["index"])
 
     def contours(self):
         before, missed = self.scene.frame_current, 0
@@ -255,7 +259,7 @@ class Shower:
                     missed += 1
                     continue
                 name = f"Contour {frame['id']} {row['light']}" + (f" {number + 1}" if number else "")
-                object_ = curve(name, [([self.world.to_blender(p) for p in piece], closed) for piece, closed in pieces], self.width, "contour")
+                object_ = curve(name, pieces, self.width, "contour")
                 self._put(object_, "contour", {"light": row["light"], "index": row["index"], "points": len(highlight["contour"]), "hits": hits},
                           row["index"])
         if self.scene.frame_current != before:

@@ -3,6 +3,8 @@
 
 A Glint camera is a dict with width, height, fx, fy, cx, cy, skew (px; (0, 0) is the centre of the first pixel); its pose is
 camera_from_world, a 4x4 of rows, and it looks along +z with y down. A Blender camera looks along -z with y up."""
+import numpy
+
 from . import linear
 
 # Camera axes of Glint in those of Blender: y and z turn round.
@@ -70,12 +72,13 @@ def project(camera, pose, point):
     return [q[0] / q[2], q[1] / q[2]]
 
 
-def ray(camera, pose, pixel):
-    """Centre of the camera and unit direction of the ray through an ideal pixel, in Glint's world."""
-    y = (pixel[1] - camera["cy"]) / camera["fy"]
-    x = (pixel[0] - camera["cx"] - camera.get("skew", 0.0) * y) / camera["fx"]
-    r = linear.transposed(linear.block3(pose))
-    return linear.column(linear.inverse_rigid(pose), 3), linear.unit(linear.product(r, [x, y, 1.0]))
+def rays(camera, pose, pixels):
+    """Centre of the camera, and an array (n, 3) of unit directions of the rays through ideal pixels (n points), in Glint's world."""
+    pixels = numpy.array(pixels, dtype=numpy.float64).reshape(-1, 2)
+    y = (pixels[:, 1] - camera["cy"]) / camera["fy"]
+    x = (pixels[:, 0] - camera["cx"] - camera.get("skew", 0.0) * y) / camera["fx"]
+    ways = numpy.stack([x, y, numpy.ones_like(x)], axis=1) @ numpy.array(linear.block3(pose))
+    return linear.column(linear.inverse_rigid(pose), 3), ways / numpy.linalg.norm(ways, axis=1, keepdims=True)
 
 
 def mirrored_pose(pose, point, normal):
