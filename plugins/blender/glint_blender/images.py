@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Pictures of frames: where they are, and pictures behind a camera's view."""
+"""Pictures of frames: where they are, and pictures in a camera's view."""
 import os
 import shutil
 
@@ -27,7 +27,7 @@ def behind(camera, frame):
     """Path of the first background image of a camera at a frame, None without one."""
     for background in camera.data.background_images:
         image = background.image
-        if background.source != "IMAGE" or image is None or image.get("glint_overlay"):
+        if background.source != "IMAGE" or image is None or image.get("glint_slot") == "overlay":
             continue
         if image.source == "SEQUENCE":
             path = image.filepath_from_user(image_user=background.image_user)
@@ -60,20 +60,19 @@ def colour_warning(scene, paths):
     return ""
 
 
-def show_behind(camera, path, slot):
-    """Shows a picture behind the view of a camera. slot: `photograph` or `overlay`; a picture that was there is replaced."""
+def show(camera, path, slot):
+    """Shows a picture in the view of a camera. slot: `photograph`, behind everything, or `overlay`, before it; one that was there is replaced."""
     data = camera.data
     for background in list(data.background_images):
         if background.image is not None and background.image.get("glint_slot") == slot:
             data.background_images.remove(background)
     image = bpy.data.images.load(path, check_existing=True)
+    image.reload()  # the file may be new
     image["glint_slot"] = slot
-    if slot == "overlay":
-        image["glint_overlay"] = True
     background = data.background_images.new()
     background.image = image
     background.alpha = 1.0
-    background.display_depth = "BACK"
+    background.display_depth = "FRONT" if slot == "overlay" else "BACK"
     background.frame_method = "STRETCH"  # the picture has the camera's pixels, so it fills the view
     data.show_background_images = True
     return background
@@ -81,18 +80,9 @@ def show_behind(camera, path, slot):
 
 def show_sequence(camera, first_path, first_number, first_frame, count):
     """The same for overlays whose names are numbers: first_path, with first_number, belongs to Blender's first_frame; one a frame."""
-    background = show_behind(camera, first_path, "overlay")
+    background = show(camera, first_path, "overlay")
     background.image.source = "SEQUENCE"
     user = background.image_user
     user.frame_start, user.frame_offset, user.frame_duration = first_frame, first_number - 1, count
     user.use_cyclic = False
     return background
-
-
-def set_overlays_visible(scene, visible):
-    """Shows or hides the overlays of all cameras; the photographs show where they are hidden."""
-    for object_ in scene.objects:
-        if object_.type == "CAMERA":
-            for background in object_.data.background_images:
-                if background.image is not None and background.image.get("glint_slot") == "overlay":
-                    background.show_background_image = visible

@@ -7,8 +7,9 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, StringProperty
 from bpy_extras.io_utils import ImportHelper
 
-from . import export_scene, images, results as results_, show
+from . import export_scene, overlays as overlays_, results as results_, show
 from .failures import InputError
+from .properties import show_model
 
 NEEDS_A_SCENE = "The scene has no frames of Glint: export or import a Glint scene first"
 
@@ -42,33 +43,15 @@ def fill_errors(scene, found):
         scene.glint.shown_model = best[0]
 
 
-def attach_overlays(scene, folder):
-    """Shows the overlays of a run (0000.png is the first frame of the scene file) behind the views of the cameras; how many."""
-    by_camera = {}
-    for i, item in enumerate(scene.glint.frames):
-        path = os.path.join(folder, f"{i:04d}.png")
-        if os.path.isfile(path) and item.camera in scene.objects:
-            by_camera.setdefault(item.camera, []).append((item.frame, i, path))
-    count = 0
-    for name, rows in by_camera.items():
-        rows.sort()
-        steps = {(b[0] - a[0], b[1] - a[1]) for a, b in zip(rows, rows[1:])}
-        if len(rows) == 1:
-            images.show_behind(scene.objects[name], rows[0][2], "overlay")
-        elif steps == {(1, 1)}:
-            images.show_sequence(scene.objects[name], rows[0][2], rows[0][1], rows[0][0], len(rows))
-        else:
-            continue  # Blender's image sequences go by single frames
-        count += len(rows)
-    return count
+def show_results(context, evaluation, predictions, scene_path, kinds, models=None, only_own_frame=True, overlays=""):
+    """Reads a run and shows it. Returns (objects made, warnings). Nothing changes where the files are refused.
 
-
-def show_results(context, evaluation, predictions, scene_path, kinds, models=None, only_own_frame=True, overlays=True):
-    """Reads a run and shows it. Returns (objects made, warnings). Nothing changes where the files are refused."""
+    overlays: folder of the run, which gets a folder of overlays; "": none."""
     scene = context.scene
     found = results_.read(scene_path, evaluation or None, predictions or None)
     numbers = frame_numbers(scene, found)
     world = scene.glint.world()
+    paths = overlays_.write(found, [m for m in found.models() if not models or m in models], overlays) if overlays else {}
     show.remove_results(scene)
     fill_errors(scene, found)
     made, warnings = [], []
@@ -78,8 +61,9 @@ def show_results(context, evaluation, predictions, scene_path, kinds, models=Non
         shower = show.Shower(scene, found, model, world, numbers, surface_finder(context), only_own_frame)
         made += shower.show(kinds)
         warnings += shower.warnings
-    if overlays and predictions:
-        attach_overlays(scene, os.path.dirname(predictions))
+    show_model(scene)
+    if paths and overlays_.attach(scene, paths):
+        warnings.append("no overlays: the frames of one camera are not Blender's frames one after the other")
     return made, warnings
 
 
@@ -96,7 +80,7 @@ class GLINT_OT_import_results(bpy.types.Operator, ImportHelper):
     model: StringProperty(name="Model", description="Only this model; empty: all")
     own_frame: BoolProperty(name="Only in Their Frame", description="Show what belongs to one frame in that frame alone (keys of the visibility)",
                             default=True)
-    overlays: BoolProperty(name="Overlays", description="Show the photographs with the contours behind the cameras' views", default=True)
+    overlays: BoolProperty(name="Overlays", description="Write pictures of the contours into the folder `overlays` of the run, and show them in the cameras' views", default=True)
 
     @classmethod
     def poll(cls, context):
@@ -117,7 +101,7 @@ class GLINT_OT_import_results(bpy.types.Operator, ImportHelper):
             if not evaluation and not predictions:
                 raise InputError(folder, "", "has no evaluation.json and no predictions.json")
             made, warnings = show_results(context, evaluation, predictions, scene_path, self.kinds, {self.model} if self.model else None,
-                                          self.own_frame, self.overlays)
+                                          self.own_frame, folder if self.overlays else "")
         except InputError as e:
             self.report({"ERROR"}, str(e))
             return {"CANCELLED"}

@@ -211,7 +211,7 @@ class Importer:
     def _show_picture(self, camera, picture):
         if picture and self.photographs:
             try:
-                images.show_behind(camera, picture, "photograph")
+                images.show(camera, picture, "photograph")
             except RuntimeError:
                 self.warnings.append(f"{picture}: Blender cannot read it")
 
@@ -221,6 +221,7 @@ class Importer:
         for frame, number, picture in zip(self.frames, self.numbers, pictures):
             data = bpy.data.cameras.new(frame["id"])
             cameras.set_lens(data, frame["camera"])
+            self._small(data)
             camera = bpy.data.objects.new(frame["id"], data)
             camera.rotation_mode = "QUATERNION"  # Euler angles lose digits where a camera looks straight up or down: 2e-3 px
             camera.matrix_world = cameras.blender_matrix(frame["pose"], self.world)
@@ -237,10 +238,15 @@ class Importer:
         self.scene.frame_set(self.numbers[0])
         return rows
 
+    def _small(self, data):
+        """A camera that is drawn small beside the scene."""
+        data.display_size = size_of(self.frames) / 40 / self.world.scale
+
     def _one_camera(self, root, pictures):
         data = bpy.data.cameras.new("Glint camera")
         camera = bpy.data.objects.new("Glint camera", data)
         camera.rotation_mode = "QUATERNION"
+        self._small(data)
         root.objects.link(camera)
         previous = None
         for frame, number in zip(self.frames, self.numbers):

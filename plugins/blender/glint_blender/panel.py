@@ -6,7 +6,7 @@ from bl_ui.utils import PresetPanel
 
 
 class GLINT_UL_frames(bpy.types.UIList):
-    """Frames with the error of the model shown."""
+    """Frames with the error of the model shown: of held-out ones px and percent, of training ones (pinned) what the fit leaves."""
 
     def draw_item(self, context, layout, data, item, icon, active_data, active_property):
         settings = context.scene.glint
@@ -14,13 +14,14 @@ class GLINT_UL_frames(bpy.types.UIList):
         row = layout.row(align=True)
         if settings.training == "CHOSEN":
             row.prop(item, "train", text="")
+        row = row.split(factor=0.3)
         row.label(text=item.frame_id)
         if not found:
             row.label(text="")
         elif found.get("role") == "training":
-            row.label(text=f"trained, {found['px']:.3g} px" if found.get("px") is not None else "trained", icon="PINNED")
+            row.label(text=f"{found['px']:.2f} px" if found.get("px") is not None else "trained", icon="PINNED")
         elif found.get("pct") is not None:
-            row.label(text=f"{found['px']:.3g} px, {found['pct']:.3g} %")
+            row.label(text=f"{found['px']:.2f} px, {found['pct']:.1f} %")
         else:
             row.label(text=found.get("reason", ""), icon="ERROR")
 

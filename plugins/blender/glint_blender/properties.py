@@ -60,6 +60,13 @@ def shown_models(self, context):
     return shown_models.kept
 
 
+def show_model(scene):
+    """Shows the objects of the model whose errors the list shows, and hides those of others: their lamps must not add up in a render."""
+    for collection in bpy.data.collections:
+        if "glint_model" in collection:
+            collection.hide_viewport = collection.hide_render = collection["glint_model"] != scene.glint.shown_model
+
+
 def step_to_chosen(self, context):
     """Choosing a row of the list shows its frame; a list that is filled anew does not."""
     if not step_to_chosen.quiet and 0 <= self.active < len(self.frames) and context is not None and context.scene is not None:
@@ -101,7 +108,8 @@ class GlintSettings(bpy.types.PropertyGroup):
     level: FloatProperty(name="Level", description="Level of the contours, as a fraction of the peak above the background", default=0.5, min=0.05,
                          max=0.95)
     more: StringProperty(name="Settings", description="More settings, KEY=VALUE with blanks between; `glint settings` lists them")
-    shown_model: EnumProperty(name="Show", description="Model whose errors the list shows", items=shown_models)
+    shown_model: EnumProperty(name="Show", description="Model whose errors and objects are shown", items=shown_models,
+                              update=lambda self, context: show_model(self.id_data))
     frames: CollectionProperty(name="Frames", description="Frames of the scene file, in its order", type=GlintFrame)
     active: IntProperty(name="Frame", description="Row of the list; choosing one shows its frame", default=0, update=step_to_chosen)
     models_with_results: StringProperty(default="[]", options={"HIDDEN"})

@@ -115,7 +115,7 @@ class GLINT_OT_run(bpy.types.Operator):
         predictions = os.path.join(self.folder, "predictions", "predictions.json")
         try:
             made, warnings = import_results.show_results(context, os.path.join(self.folder, "evaluation.json"), predictions, self.scene_path,
-                                                         DEFAULT_KINDS if self.shows else set())
+                                                         DEFAULT_KINDS if self.shows else set(), overlays=self.folder if self.shows else "")
         except InputError as e:
             settings.message = str(e)
             self.report({"ERROR"}, str(e))

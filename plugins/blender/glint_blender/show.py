@@ -156,6 +156,7 @@ class Shower:
         self.objects_of, self.warnings, self.made = objects_of, [], []
         root = collection(scene.collection, ROOT)
         self.home = collection(root, f"Glint {model}")
+        self.home["glint_model"] = model
         points = [h["brightest_point"] for r in found.predictions.get(model, []) for h in r["highlights"] if h["brightest_point"]]
         self.size = self._typical_size(points)
         self.width = width if width is not None else 0.01 * self.size / world.scale

@@ -195,21 +195,50 @@ class Ellipsoid(unittest.TestCase):
         self.assertTrue(all(o.hide_render for kind in ("contour", "ellipsoid") for o, _ in made(kind, "canonical")))
         self.assertFalse(any(o.hide_render for o, _ in made("light", "canonical")))
 
-    def test_overlays_are_behind_the_views(self):
-        _, out, _ = run("ellipsoid", self.MODELS, "ellipsoid")
+    def test_overlays_are_in_the_views(self):
         importing("ellipsoid", self.MODELS, "ellipsoid")
         scene = bpy.context.scene
+        _, out, _ = run("ellipsoid", self.MODELS, "ellipsoid")
         for frame in (1, 24):
             scene.frame_set(frame)
-            shown = [b.image for b in scene.camera.data.background_images]
-            self.assertEqual([i["glint_slot"] for i in shown], ["photograph", "overlay"])
-            self.assertEqual(os.path.realpath(bpy.path.abspath(shown[1].filepath)), os.path.realpath(os.path.join(out, "predictions", f"{frame - 1:04d}.png")))
+            shown = {b.image["glint_slot"]: b for b in scene.camera.data.background_images}
+            self.assertEqual({k: b.display_depth for k, b in shown.items()}, {"photograph": "BACK", "overlay": "FRONT"})
+            path = os.path.realpath(bpy.path.abspath(shown["overlay"].image.filepath))
+            self.assertEqual(path, os.path.realpath(os.path.join(out, "overlays", f"{frame - 1:04d}.png")))
         importing("ellipsoid", self.MODELS, "ellipsoid", how="ONE")
         background = next(b for b in bpy.context.scene.camera.data.background_images if b.image["glint_slot"] == "overlay")
         for frame in (1, 13, 24):
             bpy.context.scene.frame_set(frame)
             path = background.image.filepath_from_user(image_user=background.image_user)
             self.assertEqual(os.path.basename(path), f"{frame - 1:04d}.png")
+
+    def test_overlays_have_the_contours_at_their_pixels(self):
+        """Centre of mass of what is drawn, against that of the contours' lengths; the size of the picture is the photograph's."""
+        import numpy
+        _, _, predictions = importing("ellipsoid", "limit-angle", "ellipsoid_one")
+        _, out, _ = run("ellipsoid", "limit-angle", "ellipsoid_one")
+        for index in (0, 11, 23):
+            image = bpy.data.images.load(os.path.join(out, "overlays", f"{index:04d}.png"))
+            self.assertEqual(tuple(image.size), (640, 480))
+            alpha = numpy.array(image.pixels[:]).reshape(480, 640, 4)[::-1, :, 3]
+            contour = predictions["models"]["limit-angle"][index]["highlights"][0]["contour"]
+            ends = list(zip(contour, contour[1:] + contour[:1]))
+            lengths = [math.dist(a, b) for a, b in ends]
+            expected = [sum(l * (a[k] + b[k]) / 2 for l, (a, b) in zip(lengths, ends)) / sum(lengths) for k in (0, 1)]
+            y, x = numpy.mgrid[:480, :640]
+            drawn = (x * alpha).sum() / alpha.sum(), (y * alpha).sum() / alpha.sum()
+            self.assertLess(math.dist(drawn, expected), 0.1)
+            for px, py in contour[::10]:
+                self.assertGreater(alpha[round(py), round(px)], 0.5)
+            self.assertLess(alpha.sum(), 4 * sum(lengths))
+
+    def test_only_one_model_shines(self):
+        importing("ellipsoid", self.MODELS, "ellipsoid")
+        settings = bpy.context.scene.glint
+        for model in ("canonical", "limit-angle"):
+            settings.shown_model = model
+            hidden = {c["glint_model"]: (c.hide_viewport, c.hide_render) for c in bpy.data.collections if "glint_model" in c}
+            self.assertEqual(hidden, {m: (m != model,) * 2 for m in ("canonical", "limit-angle")})
 
     def test_undo_takes_everything_back(self):
         _, out, _ = run("ellipsoid", self.MODELS, "ellipsoid")
