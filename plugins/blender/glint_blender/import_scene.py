@@ -3,6 +3,7 @@
 import json
 import math
 import os
+import re
 
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
@@ -48,7 +49,9 @@ def run_reader(path):
         else:
             raise InputError(path, "", "is no PLY, OBJ, STL or glTF file by its name")
     except (RuntimeError, AttributeError) as e:
-        raise InputError(path, "", f"Blender cannot read it: {str(e).strip().splitlines()[-1] if str(e).strip() else e}") from None
+        lines = [line.strip() for line in str(e).splitlines() if line.strip()] or [type(e).__name__]
+        said = [line for line in lines if re.match(r"\w*(Error|Exception): ", line)] or lines
+        raise InputError(path, "", f"Blender's reader fails: {said[-1]}") from None
     made = [o for o in chosen(bpy.data.objects, before)]
     found = [o for o in made if o.type == "MESH"]
     if not found or not any(len(o.data.polygons) for o in found):

@@ -103,7 +103,7 @@ class Surfaces:
 
 
 def grid(point_of, across, along, close_across, close_along):
-    """Vertices and quads of a surface given by point_of(s, t), s and t from 0 to 1."""
+    """Vertices and quads of a surface given by point_of(s, t), s and t from 0 to 1; their normals lie along d/ds x d/dt."""
     rows = across if close_across else across + 1
     columns = along if close_along else along + 1
     vertices = [point_of(i / across, j / along) for i in range(rows) for j in range(columns)]
@@ -112,11 +112,11 @@ def grid(point_of, across, along, close_across, close_along):
         for j in range(along):
             a, b = i * columns + j, i * columns + (j + 1) % columns
             c, d = ((i + 1) % rows) * columns + (j + 1) % columns, ((i + 1) % rows) * columns + j
-            quads.append((a, b, c, d))
+            quads.append((a, d, c, b))
     return vertices, quads
 
 
-def ball(radii, steps=96):
+def ball(radii, steps=192):
     """Vertices and faces of an ellipsoid with these semi-axes around the origin, poles at +-z."""
     half = steps // 2
     vertices = [(0.0, 0.0, radii[2])]
@@ -166,7 +166,7 @@ def analytic(kind, value, size, file, place):
         return ball(radii)
     if kind == "cylinder":
         r = of("radius")
-        return grid(lambda s, t: (r * math.sin(2 * math.pi * s), (t - 0.5) * size, r * math.cos(2 * math.pi * s)), 128, 8, True, False)
+        return grid(lambda s, t: (r * math.sin(2 * math.pi * s), (t - 0.5) * size, r * math.cos(2 * math.pi * s)), 192, 8, True, False)
     if kind == "sheet":
         k = number(value.get("curvature"), file, f"{place}.curvature")
         arc = of("length") if value.get("length") is not None else min(size, math.pi / abs(k) if k else size)
@@ -177,7 +177,7 @@ def analytic(kind, value, size, file, place):
         def point(s, t):
             a, b = 2 * math.pi * s, 2 * math.pi * t
             return ((major + minor * math.cos(b)) * math.cos(a), (major + minor * math.cos(b)) * math.sin(a), minor * math.sin(b))
-        return grid(point, 128, 64, True, True)
+        return grid(point, 192, 96, True, True)
     return None
 
 

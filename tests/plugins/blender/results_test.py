@@ -161,7 +161,7 @@ class Ellipsoid(unittest.TestCase):
                 self.assertLess(math.dist(host.project(scene["camera"], pose, x), pixel), 0.01)
                 level = (x[0] / 0.6) ** 2 + (x[1] / 0.35) ** 2 + (x[2] / 0.25) ** 2
                 self.assertLess(level, 1 + 1e-5)  # a chord lies inside
-                self.assertGreater(level, math.cos(math.pi / 48) ** 4 - 1e-5)  # 96 steps around, 48 from pole to pole
+                self.assertGreater(level, math.cos(math.pi / 96) ** 4 - 1e-5)  # 192 steps around, 96 from pole to pole
 
     def check_list(self, evaluation):
         settings = bpy.context.scene.glint
