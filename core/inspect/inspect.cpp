@@ -13,6 +13,7 @@
 #include "core/fit/several_lights.h"
 #include "core/fit/training.h"
 #include "core/inspect/fit_band.h"
+#include "core/inspect/fit_remarks.h"
 #include "core/inspect/inspection.h"
 #include "core/inspect/live_prediction.h"
 #include "core/inspect/lobe_stage.h"
@@ -109,47 +110,6 @@ class Run {
     return s ? failure : s.failure();
   }
   std::vector<Group> groups() const;
-  /// Some frame, whether it trains or not, shows a highlight of this light.
-  bool seen(const std::string& light) const {
-    return std::any_of(r_.evidence.begin(), r_.evidence.end(), [&](const FrameEvidence& e) {
-      return std::any_of(e.highlights.begin(), e.highlights.end(), [&](const Highlight& h) { return h.light == light; });
-    });
-  }
-  /// Lights that are on in most frames of a fit and show no highlight of their own in any frame: this one's may be theirs too. "" where none is.
-  std::string mergedRemark(const ModelFit& fit) const {
-    std::map<std::string, int> on;
-    for (const int frame : fit.frames)
-      for (const std::string& light : r_.scene->frames[std::size_t(frame)].lightsOn)
-        if (light != fit.light && isOn(*r_.scene, r_.request.whatIf, frame, light)) ++on[light];
-    std::string names;
-    int most = 0;
-    for (const auto& [light, frames] : on) {
-      if (2 * frames < static_cast<int>(fit.frames.size()) || seen(light)) continue;
-      names += (names.empty() ? "" : ", ") + light;
-      most = std::max(most, frames);
-    }
-    if (names.empty()) return "";
-    return "also on in " + std::to_string(most) + " of " + std::to_string(fit.frames.size()) +
-           " training frames, without a separate highlight: " + names +
-           "; where highlights of several lights merge, the estimated light lies between these lights";
-  }
-  /// Training frames that show the fit's light and have no view because they repeat another one. "" where there are none.
-  std::string repeatedRemark(const ModelFit& fit) const {
-    std::string names;
-    int count = 0;
-    for (const int frame : r_.train.frames) {
-      const std::vector<int>& excluded = r_.request.excluded;
-      if (std::find(excluded.begin(), excluded.end(), frame) != excluded.end()) continue;
-      if (r_.keyFor(frame, fit.light).surface != fit.surface) continue;
-      const std::vector<Highlight>& highlights = r_.evidence[std::size_t(frame)].highlights;
-      if (std::none_of(highlights.begin(), highlights.end(), [&](const Highlight& h) { return h.light == fit.light; })) continue;
-      if (std::any_of(r_.views.begin(), r_.views.end(), [&](const TrainingView& v) { return v.frame == frame; })) continue;
-      names += (count++ == 0 ? "" : ", ") + r_.scene->frames[std::size_t(frame)].id;
-    }
-    if (count == 0) return "";
-    return std::to_string(count) + (count == 1 ? " training frame repeats" : " training frames repeat") +
-           " another one exactly and count once: " + names;
-  }
   bool anyModel(bool (HighlightModel::*needs)() const) const {
     return std::any_of(r_.request.models.begin(), r_.request.models.end(),
                        [&](const std::string& m) { return (modelByName(m).*needs)(); });
@@ -372,7 +332,7 @@ void Run::lights() {
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (!report(progress_, {"light", static_cast<int>(i), static_cast<int>(all.size())})) throw Stopped{};
     const FitKey& key = all[i].key;
-    if (!seen(key.light)) {
+    if (!isSeen(r_, key.light)) {
       r_.lights.insert_or_assign(
           key, Failure{Reason::NoHighlight, key.light + " has none that can be distinguished from those of other lights"});
       continue;
@@ -442,8 +402,8 @@ void Run::modelFits() {
         fit->model = name;
         fit->light = g.key.light;
         fit->surface = g.key.surface;
-        if (std::string merged = mergedRemark(*fit); !merged.empty()) fit->remarks.push_back(std::move(merged));
-        if (std::string repeated = repeatedRemark(*fit); !repeated.empty()) fit->remarks.push_back(std::move(repeated));
+        if (std::string merged = mergedRemark(r_, *fit); !merged.empty()) fit->remarks.push_back(std::move(merged));
+        if (std::string repeated = repeatedRemark(r_, *fit); !repeated.empty()) fit->remarks.push_back(std::move(repeated));
         if (std::string texture = textureRemark(r_); !texture.empty()) fit->remarks.push_back(std::move(texture));
         if (r_.surfaces)
           if (std::string fused = r_.surfaces->fusionRemark(fit->frames); !fused.empty())
