@@ -73,4 +73,11 @@ if(GLINT_GUI)
   install(FILES resources/icons/glint.svg DESTINATION ${CMAKE_INSTALL_DATADIR}/icons/hicolor/scalable/apps COMPONENT inspector)
 endif()
 
+# The Python module where Debian's interpreter looks: below /usr it is found, below another prefix by PYTHONPATH.
+if(TARGET glint_python)
+  set(glint_python_packages lib/python3/dist-packages/glint)
+  install(TARGETS glint_python LIBRARY DESTINATION ${glint_python_packages} COMPONENT python)
+  install(FILES plugins/python/glint/__init__.py plugins/python/glint/_glint.pyi plugins/python/glint/py.typed DESTINATION ${glint_python_packages} COMPONENT python)
+endif()
+
 include(resources/install/packages.cmake)

@@ -46,6 +46,12 @@ glint_package(python python3-glint python "libglint${GLINT_SOVERSION} ${same}, p
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_RECOMMENDS "libvtk9-dev, libopencv-dev, libx11-dev")  # Glint::viz
 set(CPACK_DEBIAN_LIBRARIES_PACKAGE_CONTROL_EXTRA ${PROJECT_BINARY_DIR}/package/triggers ${PROJECT_BINARY_DIR}/package/shlibs)
 
+# Byte code goes with the package.
+foreach(script postinst prerm)
+  configure_file(${PROJECT_SOURCE_DIR}/resources/install/python_${script}.sh ${PROJECT_BINARY_DIR}/package/python/${script} COPYONLY)
+endforeach()
+set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA ${PROJECT_BINARY_DIR}/package/python/postinst ${PROJECT_BINARY_DIR}/package/python/prerm)
+
 # Their texts, with dates from the source alone, so that two builds give the same bytes.
 file(READ ${PROJECT_SOURCE_DIR}/LICENSE glint_license)
 string(REGEX REPLACE "\n\n" "\n.\n" glint_license "${glint_license}")

@@ -20,6 +20,7 @@ HOLDS = {  # package -> patterns of files that it must contain
     "glint-inspector": [r"bin/glint-inspector$", r"man1/glint-inspector\.1\.gz", r"applications/glint-inspector\.desktop", r"mime/packages/glint\.xml",
                         r"metainfo/glint-inspector\.metainfo\.xml", r"icons/hicolor/scalable/apps/glint\.svg"],
 }
+PYTHON = [r"dist-packages/glint/_glint\..*\.so$", r"dist-packages/glint/__init__\.py$", r"dist-packages/glint/py\.typed$"]
 EVERY = [r"share/doc/{name}/copyright", r"share/doc/{name}/changelog\.gz"]
 
 
@@ -69,6 +70,13 @@ def check_use(packages, folder):
         run("desktop-file-validate", root / "usr/share/applications/glint-inspector.desktop")
     if shutil.which("appstreamcli"):
         run("appstreamcli", "validate", "--no-net", root / "usr/share/metainfo/glint-inspector.metainfo.xml")
+    modules = root / "usr/lib/python3/dist-packages"
+    if modules.is_dir() and shutil.which("python3"):
+        told = run("/usr/bin/python3", "-c", "import glint; print('python3 imports glint', glint.__version__, 'from', glint.__file__)",
+                   env=dict(environment, PYTHONPATH=str(modules), PYTHONDONTWRITEBYTECODE="1"))
+        if str(modules) not in told:
+            sys.exit(f"python3 imports another glint: {told}")
+        print("python3 imports the package's module")
     # Double click: the system's table leads from *.glint to the inspector.
     if shutil.which("update-mime-database"):
         run("update-mime-database", root / "usr/share/mime")
@@ -90,6 +98,8 @@ def main():
     if not shutil.which("dpkg-shlibdeps"):
         print("skipped: no dpkg-shlibdeps (package dpkg-dev)")
         sys.exit(SKIPPED)
+    if (options.build / "python/glint").is_dir():  # the module is part of this build
+        HOLDS["python3-glint"] = PYTHON
     folder = pathlib.Path(tempfile.mkdtemp(prefix="glint_packages_"))
     try:
         packages = packed(options.build.resolve(), folder / "first")

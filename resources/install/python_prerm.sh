@@ -1,0 +1,6 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
+set -e
+if command -v py3clean >/dev/null 2>&1; then
+  py3clean -p python3-glint
+fi
