@@ -161,6 +161,17 @@ TEST(HighlightMotion, ATurningObjectUnderALampThatStandsWithTheCamera) {
   EXPECT_GE(j.count(true, Kind::Texture), j.all(true) - 2);
 }
 
+/// A turntable between camera and lamp: the highlight on its axis stays on its point, and a lamp that stood still in the object's frame would move it.
+TEST(HighlightMotion, AHighlightOnTheAxisOfATurntable) {
+  Painted p = paintedBall();
+  p.paint.clear();
+  p.cameras = arc(12, 330, 0.5);
+  for (const Camera& c : p.cameras) p.lampIn.push_back(c.centreInWorld().cwiseProduct(Eigen::Vector3d(-1, -1, 1)));
+  const Judged j = judged(p);
+  row("ball that is turned about an axis through the highlight", j);
+  EXPECT_EQ(j.count(false, Kind::CannotTell), 12);
+}
+
 /// The nearer the lamp, the less its highlight moves: at a hundredth of the cameras' distance it stays within a few pixels.
 TEST(HighlightMotion, AHighlightOfALampCloseToTheSurfaceIsNotRejected) {
   for (Painted p : {paintedBall(), paintedPlane()}) {
