@@ -34,8 +34,8 @@ def surface_objects(context, which, collection=None):
     elif which == "COLLECTION":
         chosen = collection.all_objects if collection else []
     else:
-        chosen = [o for o in context.scene.objects if not o.hide_render and "glint_result" not in o]
-    return [o for o in chosen if o.type in meshes.KINDS]
+        chosen = [o for o in context.scene.objects if not o.hide_render]
+    return [o for o in chosen if o.type in meshes.KINDS and "glint_result" not in o]
 
 
 def pictures_of(scene, request):

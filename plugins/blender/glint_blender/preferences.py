@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Where the program is."""
 import bpy
-from bpy.props import StringProperty
+from bpy.props import BoolProperty, StringProperty
 
 from . import program
 from .failures import InputError
@@ -11,10 +11,19 @@ class GlintPreferences(bpy.types.AddonPreferences):
     bl_idname = __package__
     program: StringProperty(name="Program", description="The program glint; empty: the one on PATH", subtype="FILE_PATH")
 
+    use_module: BoolProperty(name="Use the Python Module", description="Run in Blender's own process by the Python module glint, where Python finds it; "
+                             "the program is not needed then", default=False)
+
     def draw(self, context):
         layout = self.layout
         layout.prop(self, "program")
+        layout.prop(self, "use_module")
         layout.operator("glint.check_program")
+
+
+def uses_module(context):
+    addon = context.preferences.addons.get(__package__)
+    return bool(addon and addon.preferences.use_module)
 
 
 def program_path(context):

@@ -81,7 +81,7 @@ class GlintSettings(bpy.types.PropertyGroup):
     """scene.glint"""
     origin: EnumProperty(name="Scene", description="What Glint reads",
                          items=[("BLENDER", "This Blender Scene", "Export this scene before each run"),
-                                ("FILE", "Scene File", "A scene.json, or anything else that Glint reads: it is used as it is")], default="BLENDER")
+                                ("FILE", "Scene File", "The scene.json that was imported, as it is")], default="BLENDER")
     input: StringProperty(name="Input", description="Scene file that Glint reads", subtype="FILE_PATH")
     folder: StringProperty(name="Folder", description="Where the run writes its files: scene, session, predictions, evaluation", subtype="DIR_PATH")
     surfaces: EnumProperty(name="Surface", description="What the glossy surface is",

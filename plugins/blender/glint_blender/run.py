@@ -7,9 +7,9 @@ import re
 import bpy
 from bpy.props import BoolProperty, IntProperty
 
-from . import export_scene, import_results, program
+from . import export_scene, import_results, module_run, program
 from .failures import InputError
-from .preferences import program_path
+from .preferences import program_path, uses_module
 
 INTERVAL = 0.1  # s between two looks at the program
 DEFAULT_KINDS = {"ELLIPSOIDS", "LIGHTS", "PLANES", "CONTOURS", "MATERIAL"}
@@ -44,18 +44,28 @@ def export_for_run(context, folder):
     return path, warnings
 
 
-def commands(program_file, settings, scene_path, folder):
-    """The steps of a run, as Sequence takes them."""
-    models = ",".join(m for m in ("limit-angle", "canonical", "reflectance", "dual", "primal") if m in settings.models)
+def asked_of(settings):
+    """What the panel asks for: models, and settings by their dotted names."""
+    models = [m for m in ("limit-angle", "canonical", "reflectance", "dual", "primal") if m in settings.models]
     if not models:
         raise InputError("models", "", "choose a model")
     level = float(f"{settings.level:.7g}")  # the property is single precision
-    more = ["--set", f"detect.level={level!r}"] if abs(level - 0.5) > 1e-6 else []
+    values = {"detect.level": repr(level)} if abs(level - 0.5) > 1e-6 else {}
     for word in settings.more.split():
         if not re.fullmatch(r"[A-Za-z0-9_.]+=\S+", word):
             raise InputError("settings", word, "must be KEY=VALUE")
-        more += ["--set", word]
-    common = ["--train", settings.train_spec(), "--source", settings.source] + more
+        key, _, value = word.partition("=")
+        values[key] = value
+    return models, values
+
+
+def commands(program_file, settings, scene_path, folder):
+    """The steps of a run, as Sequence takes them."""
+    models, values = asked_of(settings)
+    models = ",".join(models)
+    common = ["--train", settings.train_spec(), "--source", settings.source]
+    for key, value in values.items():
+        common += ["--set", f"{key}={value}"]
     session, evaluation = os.path.join(folder, "run.glint"), os.path.join(folder, "evaluation.json")
     predictions = os.path.join(folder, "predictions")
     return [("Fit", [program_file, "reconstruct", scene_path, "--model", models, *common, "-o", session], {0}),
@@ -93,7 +103,9 @@ class GLINT_OT_run(bpy.types.Operator):
     def prepare(self, context):
         """Exports where asked for, and starts the first command."""
         settings = context.scene.glint
-        found = program_path(context)
+        found = None if uses_module(context) else program_path(context)
+        if found is None:
+            module_run.module()  # before anything is written
         folder = folder_of(settings)
         warnings = []
         if settings.origin == "BLENDER":
@@ -101,7 +113,11 @@ class GLINT_OT_run(bpy.types.Operator):
         else:
             path = bpy.path.abspath(settings.input)
         self.folder, self.scene_path = folder, path
-        self.sequence = program.Sequence(commands(found, settings, path, folder))
+        if found is None:
+            models, values = asked_of(settings)
+            self.sequence = module_run.InProcess(path, folder, {"models": models, "train": settings.train_spec(), "source": settings.source, **values})
+        else:
+            self.sequence = program.Sequence(commands(found, settings, path, folder))
         export_scene.told(self, warnings)
 
     def finish(self, context):

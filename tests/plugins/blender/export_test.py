@@ -138,6 +138,15 @@ class Meshes(unittest.TestCase):
         self.assertIn((0.01, 0.03, -0.02), [tuple(round(c, 9) for c in v) for v in vertices])  # (x, z, -y)
         self.assertEqual([round(c, 6) for c in normals[0]], [0, 1, 0])  # Blender's up is y there
 
+    def test_results_are_no_surface(self):
+        cube, shown = host.mesh("Cube", CUBE, CUBE_FACES), host.mesh("Ellipsoid", CUBE, CUBE_FACES)
+        shown["glint_result"] = "{}"
+        host.select(cube, shown)
+        for which in ("SELECTED", "VISIBLE"):
+            document, folder = export("no_results", surfaces=which)
+            vertices, _, _ = host.read_ply(os.path.join(folder, document["surfaces"]["surface_0000"]["mesh"]))
+            self.assertEqual(len(vertices), 24)
+
     def test_several_objects_are_one_surface(self):
         a, b = host.mesh("A", CUBE, CUBE_FACES), host.mesh("B", CUBE, CUBE_FACES)
         b.location.x = 5

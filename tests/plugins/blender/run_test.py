@@ -2,6 +2,7 @@
 """The program beside Blender: found or not, too old, its messages, its progress, and its end on request; the operator from start to end."""
 import json
 import os
+import shutil
 import stat
 import sys
 import time
@@ -195,6 +196,19 @@ class Operator(unittest.TestCase):
         with self.assertRaisesRegex(RuntimeError, "is relative to the .blend file, which is not saved yet"):
             bpy.ops.glint.run()
 
+    def test_presets_keep_the_request(self):
+        settings = self.scene.glint
+        asked = {"models": {"dual", "reflectance"}, "training": "FIRST", "count": 9, "source": "image", "more": "fit.lobe=ggx"}
+        before = {name: getattr(settings, name) for name in asked}
+        for name, value in asked.items():
+            setattr(settings, name, value)
+        self.assertEqual(bpy.ops.glint.preset_add(name="Shiny"), {"FINISHED"})
+        for name, value in before.items():
+            setattr(settings, name, value)
+        path = os.path.join(os.environ["BLENDER_USER_SCRIPTS"], "presets", "glint", "run", "Shiny.py")
+        bpy.ops.script.execute_preset(filepath=path, menu_idname="GLINT_MT_presets")
+        self.assertEqual({name: getattr(settings, name) for name in asked}, asked)
+
     def test_commands_say_what_the_panel_says(self):
         from glint_blender import run
         settings = self.scene.glint
@@ -211,6 +225,80 @@ class Operator(unittest.TestCase):
         settings.models = set()
         with self.assertRaisesRegex(Exception, "choose a model"):
             run.commands("glint", settings, "scene.json", "out")
+
+
+class Module(unittest.TestCase):
+    """The Python module in place of the program, where the build has one."""
+
+    def setUp(self):
+        self.scene = host.empty()
+        self.preferences = bpy.context.preferences.addons["glint_blender"].preferences
+        self.preferences.use_module, self.preferences.program = True, "/nowhere/glint"
+        self.assertEqual(bpy.ops.glint.import_scene(filepath=ELLIPSOID), {"FINISHED"})
+        self.settings = self.scene.glint
+        self.settings.models, self.settings.source, self.settings.more = {"limit-angle", "canonical"}, "image", "fit.most_residual=0.3"
+        self.path = list(sys.path)
+
+    def tearDown(self):
+        self.preferences.use_module = False
+        sys.path[:] = self.path
+        sys.modules.pop("glint", None)
+
+    def test_missing_or_another_module_is_said(self):
+        self.settings.folder = host.folder("no_module")
+        with self.assertRaisesRegex(RuntimeError, "module glint: cannot be imported: .*switch off Use the Python Module"):
+            bpy.ops.glint.run()
+        with open(os.path.join(host.folder("another"), "glint.py"), "w", encoding="ascii") as file:
+            file.write("pass")
+        sys.path.insert(0, host.folder("another"))
+        with self.assertRaisesRegex(RuntimeError, "is another module of this name"):
+            bpy.ops.glint.run()
+        self.assertEqual(os.listdir(host.folder("no_module")), [])
+
+    def test_the_same_numbers_as_the_program(self):
+        sys.path.insert(0, os.path.join(os.path.dirname(os.path.dirname(host.GLINT)), "python"))
+        try:
+            import glint
+        except ImportError:
+            self.skipTest("there is no Python module glint in this build")
+        documents = []
+        for use in (True, False):
+            self.preferences.use_module, self.preferences.program = use, "/nowhere/glint" if use else host.GLINT
+            self.settings.folder = host.folder(f"module_{use}")
+            self.assertEqual(bpy.ops.glint.run(), {"FINISHED"})
+            read = []
+            for name in ("evaluation.json", "predictions/predictions.json"):
+                with open(os.path.join(self.settings.folder, name), encoding="utf-8") as file:
+                    read.append(json.load(file)["models"])
+            documents.append((read, sorted(json.loads(o["glint_result"])["kind"] for o in bpy.data.objects if "glint_result" in o)))
+        (a, objects_a), (b, objects_b) = documents
+        self.assertEqual(objects_a, objects_b)
+        for model in ("limit-angle", "canonical"):
+            for x, y in zip(a[0][model]["fits"], b[0][model]["fits"]):
+                self.assertEqual({k: v for k, v in x.items() if k != "time_us"}, {k: v for k, v in y.items() if k != "time_us"})
+            for x, y in zip(a[0][model]["frames"], b[0][model]["frames"]):
+                self.assertEqual({k: v for k, v in x.items() if k != "time_us"}, {k: v for k, v in y.items() if k != "time_us"})
+            self.assertEqual(len(a[1][model]), len(b[1][model]))
+            for x, y in zip(a[1][model], b[1][model]):
+                self.assertEqual([h["contour"] for h in x["highlights"]], [h["contour"] for h in y["highlights"]])
+                self.assertEqual([(h["brightest_point"], h["normal"], h["peak"]) for h in x["highlights"]],
+                                 [(h["brightest_point"], h["normal"], h["peak"]) for h in y["highlights"]])
+
+    def test_it_stops_on_request(self):
+        sys.path.insert(0, os.path.join(os.path.dirname(os.path.dirname(host.GLINT)), "python"))
+        try:
+            import glint
+        except ImportError:
+            self.skipTest("there is no Python module glint in this build")
+        from glint_blender import module_run
+        out = host.folder("module_stopped")
+        run = module_run.InProcess(ELLIPSOID, out, {"models": ["reflectance", "limit-angle"], "train": "spread:6", "source": "image"})
+        time.sleep(0.3)
+        self.assertFalse(run.done())
+        run.cancel()
+        run.finish()
+        self.assertTrue(run.cancelled)
+        self.assertEqual((run.failed, os.listdir(out)), ("", []))
 
 
 class AddOn(unittest.TestCase):
@@ -247,7 +335,7 @@ class AddOn(unittest.TestCase):
                                 self.assertTrue(prop.description, (class_, name))
             self.assertEqual(bpy.ops.preferences.addon_disable(module="glint_blender"), {"FINISHED"})
             self.assertFalse(hasattr(bpy.types.Scene, "glint"))
-            self.assertEqual(bpy.ops.preferences.addon_remove(module="glint_blender"), {"FINISHED"})
+            shutil.rmtree(os.path.dirname(glint_blender.__file__))  # Blender's own operator for this needs a window
         finally:
             for name in [m for m in sys.modules if m.split(".")[0] == "glint_blender"]:
                 del sys.modules[name]
