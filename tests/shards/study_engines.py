@@ -239,7 +239,8 @@ def slurm(glint, project, folder):
                               env=cluster.environment, timeout=120)
         if not common.check(done.returncode == 0 and "shards 1-4" in done.stdout, "submit.sh: %s%s" % (done.stdout, done.stderr)):
             return cluster.logs()
-        until(lambda: "RUNNING" in cluster.say("squeue", "-h", "-o", "%T"), "a running task", 120)
+        # Not as soon as Slurm says that it runs: a task that the daemon has not started yet would be a lost launch, which Slurm notices late.
+        until(lambda: (folder / "runs.txt").exists(), "a task that computes")
         cluster.kill_node()
         time.sleep(2)
         cluster.start_node()
