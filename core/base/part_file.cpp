@@ -2,6 +2,8 @@
 #include "core/base/part_file.h"
 
 #include <algorithm>
+#include <optional>
+#include <string_view>
 
 #include "core/base/atomic_file.h"
 #include "core/base/json_dom.h"
@@ -30,16 +32,18 @@ std::string shown(const Json* value) {
   return text.size() > kMostShown ? text.substr(0, kMostShown) + "..." : text;
 }
 
-const Json* valueOf(const PartFile& part, const std::string& key) {
-  const bool inShard = key.rfind("shard.", 0) == 0;
-  const Json& object = inShard ? part.document->at("shard") : *part.document;
-  const auto found = object.find(inShard ? key.substr(6) : key);
-  return found == object.end() ? nullptr : &*found;
+std::optional<Json> valueOf(const PartFile& part, const std::string& key) {
+  constexpr std::string_view kInside = "shard.";
+  const bool inside = key.rfind(kInside, 0) == 0;
+  const std::optional<JsonNode> value =
+      inside ? part.checked.at("shard").find(key.substr(kInside.size())) : part.checked.find(key);
+  return value ? std::optional(json_dom::parse(value->dump(), part.file)) : std::nullopt;
 }
 
 }  // namespace
 
-std::string partText(Json document, const Shard& shard, const std::string& program) {
+std::string partText(const std::string& text, const Shard& shard, const std::string& program) {
+  Json document = json_dom::parse(text, "part");
   Json& about = document["shard"];
   about["index"] = shard.index;
   about["of"] = shard.of;
@@ -56,15 +60,13 @@ PartFile readPart(const std::string& file) {
     throw InputError(file, "",
                      "is no part of a work: it has no key \"shard\", which evaluate, synth and tradeoff write with --shard i/n");
   const JsonNode about = checked.at("shard");
-  PartFile part{
-      file,   checked.keys().front(), {}, about.at("program").text(), std::make_shared<const Json>(json_dom::parse(text, file)),
-      checked};
+  PartFile part{file, checked.keys().front(), {}, about.at("program").text(), checked};
   part.shard = {about.at("index").integer(), about.at("of").integer()};
   if (part.shard.of < 1 || part.shard.of > kMostShards)
     about.at("of").fail("must be between 1 and " + std::to_string(kMostShards));
   if (part.shard.index < 1 || part.shard.index > part.shard.of)
     about.at("index").fail("must be between 1 and " + std::to_string(part.shard.of));
-  if (about.at("sha256").text() != digestOfPart(*part.document))
+  if (about.at("sha256").text() != digestOfPart(json_dom::parse(text, file)))
     throw InputError(file, "shard.sha256", "does not match the content: the part is damaged or was changed; make it again");
   return part;
 }
@@ -103,7 +105,7 @@ std::vector<PartFile> readParts(const std::vector<std::string>& files) {
 }
 
 void requireSame(const PartFile& first, const PartFile& second, const std::string& key) {
-  const Json *a = valueOf(first, key), *b = valueOf(second, key);
+  const std::optional<Json> a = valueOf(first, key), b = valueOf(second, key);
   if ((!a && !b) || (a && b && *a == *b)) return;
   std::string place = key;
   if (a && b && a->is_object() && b->is_object()) {
@@ -113,7 +115,7 @@ void requireSame(const PartFile& first, const PartFile& second, const std::strin
     if (i != a->end() && k != b->end() && i.key() == k.key())
       throw InputError(second.file, place + "." + i.key(), "is " + shown(&*k) + ", in " + first.file + " " + shown(&*i));
   }
-  throw InputError(second.file, place, "is " + shown(b) + ", in " + first.file + " " + shown(a));
+  throw InputError(second.file, place, "is " + shown(b ? &*b : nullptr) + ", in " + first.file + " " + shown(a ? &*a : nullptr));
 }
 
 }  // namespace glint

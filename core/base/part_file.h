@@ -3,8 +3,6 @@
 
 // Internal to core: the envelope of what `--shard i/n` writes, whatever it holds.
 
-#include <memory>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -18,13 +16,12 @@ struct PartFile {
   std::string file;  ///< as the user named it
   std::string kind;  ///< its first key: "glint_evaluation", ...
   Shard shard;
-  std::string program;                                     ///< that wrote it, with its version
-  std::shared_ptr<const nlohmann::ordered_json> document;  ///< with the key `shard`
-  JsonNode checked;                                        ///< the same, for reading with places
+  std::string program;  ///< that wrote it, with its version
+  JsonNode checked;     ///< the document, with the key `shard`
 };
 
-/// The text of a part: the document with `index`, `of`, `program` and the digest of everything in its object `shard`.
-std::string partText(nlohmann::ordered_json document, const Shard& shard, const std::string& program);
+/// The text of a part: the JSON document, which has an object `shard`, with `index`, `of`, `program` and the digest of everything in that object.
+std::string partText(const std::string& document, const Shard& shard, const std::string& program);
 
 /// InputError: no JSON, not written by `--shard`, damaged, beyond the limits of JSON files.
 PartFile readPart(const std::string& file);

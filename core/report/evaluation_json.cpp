@@ -14,6 +14,8 @@ namespace glint {
 namespace evaluation {
 namespace {
 
+using json_dom::Json;
+
 using json_dom::numberOrNull;
 
 template <class Matrix>
@@ -170,6 +172,68 @@ void metricsJson(const FrameComparison::Row* row, const FrameComparison& c, Json
   j["time_us"] = numberOrNull(c.prediction.timeUs);
 }
 
+/// Appends one row per highlight of a comparison, or one that says why there is none.
+void addRows(const Inspection& inspection, const FrameComparison& c, Json& out) {
+  const auto base = [&](int highlight) {
+    Json j;
+    j["index"] = c.frame;
+    j["id"] = inspection.scene->frames[c.frame].id;
+    j["light"] = c.light;
+    j["highlight"] = highlight;
+    return j;
+  };
+  const FrameEvidence& e = inspection.evidence[c.frame];
+  if (c.rows.empty() && c.prediction.highlights().empty()) {
+    Json j = base(0);
+    j["status"] = e.scoringFailure() ? "nothing observed" : "failed";
+    j["reason"] = e.scoringFailure()       ? e.scoringFailure()->message()
+                  : c.prediction.failure() ? c.prediction.failure()->message()
+                                           : "no highlight";
+    metricsJson(nullptr, c, j);
+    out.push_back(j);
+    return;
+  }
+  for (const FrameComparison::Row& row : c.rows) {
+    Json j = base(row.observed >= 0 ? row.observed : row.predicted);
+    j["status"] = row.metrics ? "ok" : row.observed >= 0 ? "missed" : row.predicted >= 0 ? "spurious" : "failed";
+    j["reason"] = row.failure                              ? row.failure->message()
+                  : row.observed < 0 && e.scoringFailure() ? e.scoringFailure()->message()
+                                                           : "";
+    metricsJson(&row, c, j);
+    out.push_back(j);
+  }
+}
+
+Json summaryValues(const ModelSummary& s) {
+  return {{"frames", s.frames},
+          {"predicted", s.predicted},
+          {"contour_error_pct", statistic(s.contourErrorPct)},
+          {"contour_error_px", statistic(s.contourErrorPx)},
+          {"ellipse_error_pct", statistic(s.ellipseErrorPct)},
+          {"hausdorff_px", statistic(s.hausdorffPx)},
+          {"iou", statistic(s.iou)},
+          {"matched", s.matched},
+          {"missed", s.missed},
+          {"spurious", s.spurious},
+          {"peak_offset_px", statistic(s.peakOffsetPx)},
+          {"coverage", statistic(s.coverage)},
+          {"time_us", {{"median", numberOrNull(s.timeUs.median)}, {"p99", numberOrNull(s.timeP99Us)}}}};
+}
+
+Json bandOf(const std::optional<BandScore>& score) {
+  return {{"sigma_px", score ? numberOrNull(score->sigmaPx) : Json(nullptr)},
+          {"coverage_95", score ? numberOrNull(score->coverage) : Json(nullptr)}};
+}
+
+Json detectionOfAll(const DetectionError& d) {
+  return {{"frames", d.frames},
+          {"missed", d.missed},
+          {"contour_error_pct", statistic(d.contourErrorPct)},
+          {"contour_error_px", statistic(d.contourErrorPx)}};
+}
+
+std::string textOf(const Json& value) { return value.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
 Json modelJson(const Inspection& inspection, const ModelResult& result) {
   const ModelSummary s = summarise(inspection, result);
   Json j;
@@ -177,10 +241,10 @@ Json modelJson(const Inspection& inspection, const ModelResult& result) {
   j["reason"] = s.reason;
   j["fits"] = Json::array();
   for (const ModelResult::Fit& f : result.fits) j["fits"].push_back(fitJson(f));
-  j["summary"] = summaryJson(s);
+  j["summary"] = summaryValues(s);
   if (inspection.request.settings.flag("predict.band")) {
     const std::optional<BandScore> band = bandSummary(inspection, result);
-    setBand(j["band"], band);
+    j["band"] = bandOf(band);
     j["band"].update({{"scale_tolerance", inspection.request.settings.number("input.scale_tolerance")},
                       {"focal_tolerance", inspection.request.settings.number("input.focal_tolerance")},
                       {"remarks", Json::array()}});
@@ -218,65 +282,6 @@ Json trainingJson(const Inspection& inspection) {
 
 }  // namespace
 
-void addRows(const Inspection& inspection, const FrameComparison& c, Json& out) {
-  const auto base = [&](int highlight) {
-    Json j;
-    j["index"] = c.frame;
-    j["id"] = inspection.scene->frames[c.frame].id;
-    j["light"] = c.light;
-    j["highlight"] = highlight;
-    return j;
-  };
-  const FrameEvidence& e = inspection.evidence[c.frame];
-  if (c.rows.empty() && c.prediction.highlights().empty()) {
-    Json j = base(0);
-    j["status"] = e.scoringFailure() ? "nothing observed" : "failed";
-    j["reason"] = e.scoringFailure()       ? e.scoringFailure()->message()
-                  : c.prediction.failure() ? c.prediction.failure()->message()
-                                           : "no highlight";
-    metricsJson(nullptr, c, j);
-    out.push_back(j);
-    return;
-  }
-  for (const FrameComparison::Row& row : c.rows) {
-    Json j = base(row.observed >= 0 ? row.observed : row.predicted);
-    j["status"] = row.metrics ? "ok" : row.observed >= 0 ? "missed" : row.predicted >= 0 ? "spurious" : "failed";
-    j["reason"] = row.failure                              ? row.failure->message()
-                  : row.observed < 0 && e.scoringFailure() ? e.scoringFailure()->message()
-                                                           : "";
-    metricsJson(&row, c, j);
-    out.push_back(j);
-  }
-}
-
-Json summaryJson(const ModelSummary& s) {
-  return {{"frames", s.frames},
-          {"predicted", s.predicted},
-          {"contour_error_pct", statistic(s.contourErrorPct)},
-          {"contour_error_px", statistic(s.contourErrorPx)},
-          {"ellipse_error_pct", statistic(s.ellipseErrorPct)},
-          {"hausdorff_px", statistic(s.hausdorffPx)},
-          {"iou", statistic(s.iou)},
-          {"matched", s.matched},
-          {"missed", s.missed},
-          {"spurious", s.spurious},
-          {"peak_offset_px", statistic(s.peakOffsetPx)},
-          {"coverage", statistic(s.coverage)},
-          {"time_us", {{"median", numberOrNull(s.timeUs.median)}, {"p99", numberOrNull(s.timeP99Us)}}}};
-}
-
-void setBand(Json& band, const std::optional<BandScore>& score) {
-  band["sigma_px"] = score ? numberOrNull(score->sigmaPx) : Json(nullptr);
-  band["coverage_95"] = score ? numberOrNull(score->coverage) : Json(nullptr);
-}
-
-Json detectionJson(const DetectionError& d) {
-  return {{"frames", d.frames},
-          {"missed", d.missed},
-          {"contour_error_pct", statistic(d.contourErrorPct)},
-          {"contour_error_px", statistic(d.contourErrorPx)}};
-}
-
 BestModel bestOf(const std::vector<std::pair<std::string, ModelSummary>>& models) {
   BestModel best;
   int mostPredicted = 0;
@@ -297,7 +302,24 @@ BestModel bestOf(const std::vector<std::pair<std::string, ModelSummary>>& models
   return best;
 }
 
-Json document(const Inspection& inspection, const ReportContext& context) {
+std::string rowsJson(const Inspection& inspection, const FrameComparison& comparison) {
+  Json rows = Json::array();
+  addRows(inspection, comparison, rows);
+  return textOf(rows);
+}
+
+int rowCount(const FrameComparison& c) {
+  return c.rows.empty() && c.prediction.highlights().empty() ? 1 : static_cast<int>(c.rows.size());
+}
+
+std::string summaryJson(const ModelSummary& summary) { return textOf(summaryValues(summary)); }
+std::string bandJson(const std::optional<BandScore>& score) { return textOf(bandOf(score)); }
+std::string detectionJson(const DetectionError& error) { return textOf(detectionOfAll(error)); }
+
+}  // namespace evaluation
+
+std::string evaluationJson(const Inspection& inspection, const ReportContext& context) {
+  using namespace evaluation;
   Json j;
   j["glint_evaluation"] = 1;
   j["input"] = context.input;
@@ -314,21 +336,13 @@ Json document(const Inspection& inspection, const ReportContext& context) {
   j["warnings"] = warningsOf(inspection);
   j["chosen_model"] = context.chosenModel.empty() ? Json(nullptr) : Json(context.chosenModel);
   j["why_chosen"] = context.whyChosen;
-  if (const std::optional<DetectionError> d = detectionError(inspection)) j["detection"] = detectionJson(*d);
+  if (const std::optional<DetectionError> d = detectionError(inspection)) j["detection"] = detectionOfAll(*d);
   if (context.selection) j["selection"] = selectionJson(*context.selection);
   j["models"] = Json::object();
   for (const std::string& name : inspection.request.models)
     if (const auto it = inspection.models.find(name); it != inspection.models.end())
       j["models"][name] = modelJson(inspection, it->second);
-  return j;
-}
-
-std::string textOf(const Json& document) { return document.dump(1, ' ', false, Json::error_handler_t::replace) + "\n"; }
-
-}  // namespace evaluation
-
-std::string evaluationJson(const Inspection& inspection, const ReportContext& context) {
-  return evaluation::textOf(evaluation::document(inspection, context));
+  return j.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace glint

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Internal to this folder: the evaluation as a JSON document, and its pieces that a merge of parts makes anew.
+// Internal to this folder: the evaluation as JSON text, and the pieces of it that a merge of parts makes anew. Texts, because the JSON library's
+// document stays in sources.
 
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "core/inspect/summary.h"
 #include "core/report/detection_error.h"
@@ -13,18 +15,13 @@
 
 namespace glint::evaluation {
 
-using Json = nlohmann::ordered_json;
-
-/// docs/formats.md, "evaluate --json".
-Json document(const Inspection& inspection, const ReportContext& context);
-std::string textOf(const Json& document);
-
-/// Appends one row per highlight of a comparison, or one that says why there is none.
-void addRows(const Inspection& inspection, const FrameComparison& comparison, Json& rows);
-Json summaryJson(const ModelSummary& summary);
-Json detectionJson(const DetectionError& error);
+/// One row per highlight of a comparison, or one that says why there is none: an array, and how many it has.
+std::string rowsJson(const Inspection& inspection, const FrameComparison& comparison);
+int rowCount(const FrameComparison& comparison);
+std::string summaryJson(const ModelSummary& summary);
+std::string detectionJson(const DetectionError& error);
 /// `sigma_px` and `coverage_95` of a model's `band`.
-void setBand(Json& band, const std::optional<BandScore>& score);
+std::string bandJson(const std::optional<BandScore>& score);
 
 /// By name, in the order of the request.
 BestModel bestOf(const std::vector<std::pair<std::string, ModelSummary>>& models);

@@ -46,13 +46,11 @@ Json recordsOf(const Inspection& inspection, const ModelResult& result) {
   for (const ModelResult::Fit& f : result.fits) {
     FitOrder order = orderOf(inspection, f.key());
     order.bandRemarks = static_cast<int>(f.bandRemarks.size());
-    fits.push_back(jsonOf(order));
+    fits.push_back(Json::parse(jsonOf(order)));
   }
   for (const FrameComparison& c : result.frames) {
     if (!inspection.isHeldOut(c.frame)) continue;
-    Json rows = Json::array();
-    evaluation::addRows(inspection, c, rows);
-    comparisons.push_back(jsonOf(ComparisonRecord{tallyOf(c), static_cast<int>(rows.size())}));
+    comparisons.push_back(Json::parse(jsonOf(ComparisonRecord{tallyOf(c), evaluation::rowCount(c)})));
   }
   return {{"fits", std::move(fits)}, {"comparisons", std::move(comparisons)}};
 }
@@ -63,7 +61,7 @@ std::string evaluationPart(const Inspection& inspection, const ReportContext& co
                            const ProgressFn& progress) {
   const std::vector<int> frames = framesOfShard(shard, inspection);
   const InspectionRequest& request = inspection.request;
-  Json document = evaluation::document(inspection, context);
+  Json document = json_dom::parse(evaluationJson(inspection, context), "part");
   Json& about = document["shard"];
   about = {{"frames", frames},
            {"scene_frames", inspection.scene->frames.size()},
@@ -75,10 +73,10 @@ std::string evaluationPart(const Inspection& inspection, const ReportContext& co
   about["records"] = Json::array();
   for (const int f : frames)
     about["records"].push_back(
-        jsonOf(FrameRecord{noteOf(inspection, f), detectionOf(inspection.evidence[static_cast<std::size_t>(f)])}));
+        Json::parse(jsonOf(FrameRecord{noteOf(inspection, f), detectionOf(inspection.evidence[static_cast<std::size_t>(f)])})));
   about["models"] = Json::object();
   for (const std::string& name : request.models) about["models"][name] = recordsOf(inspection, inspection.models.at(name));
-  return partText(std::move(document), shard, context.program);
+  return partText(document.dump(-1, ' ', false, Json::error_handler_t::replace), shard, context.program);
 }
 
 }  // namespace glint

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
+#include <memory>
 
 #include "core/base/json_dom.h"
 #include "core/base/outcome.h"
@@ -95,7 +96,7 @@ Json withoutTimes(Json fit) {
 
 struct OrderedFit {
   FitOrder order;
-  const Json* fit;
+  Json fit;
   std::vector<std::string> bandRemarks;
 };
 
@@ -117,9 +118,10 @@ std::vector<OrderedFit> fitsOf(const PartFile& part, const std::string& name) {
   std::vector<OrderedFit> found;
   auto next = remarks.begin();
   for (std::size_t i = 0; i < fits.size(); ++i) {
+    if (!fits.at(i).isObject()) fits.at(i).fail("must be an object");
     const FitOrder order = evaluation::readFitOrder(orders.at(i));
     if (order.bandRemarks > remarks.end() - next) orders.at(i).fail("has more remarks than the band are left");
-    found.push_back({order, &part.document->at("models").at(name).at("fits").at(i), {next, next + order.bandRemarks}});
+    found.push_back({order, json_dom::parse(fits.at(i).dump(), part.file), {next, next + order.bandRemarks}});
     next += order.bandRemarks;
   }
   return found;
@@ -135,7 +137,7 @@ void mergeFits(const std::vector<PartFile>& parts, bool perSurface, MergedModel&
       continue;
     }
     bool same = others.size() == fits.size();
-    for (std::size_t i = 0; same && i < fits.size(); ++i) same = withoutTimes(*fits[i].fit) == withoutTimes(*others[i].fit);
+    for (std::size_t i = 0; same && i < fits.size(); ++i) same = withoutTimes(fits[i].fit) == withoutTimes(others[i].fit);
     if (!same)
       throw InputError(parts[p].file, "models." + model.name + ".fits",
                        "differ from those of " + parts.front().file +
@@ -144,7 +146,7 @@ void mergeFits(const std::vector<PartFile>& parts, bool perSurface, MergedModel&
   if (perSurface)
     std::stable_sort(fits.begin(), fits.end(), [](const OrderedFit& a, const OrderedFit& b) { return a.order.before(b.order); });
   for (const OrderedFit& f : fits) {
-    model.fits.push_back(*f.fit);
+    model.fits.push_back(f.fit);
     for (const std::string& remark : f.bandRemarks) model.remarks.push_back(remark);
   }
 }
@@ -164,14 +166,14 @@ void readFits(const std::string& file, MergedModel& model) {
 void mergeComparisons(const std::vector<PartFile>& parts, const std::vector<FrameRecord>& records, MergedModel& model) {
   struct Found {
     ComparisonTally tally;
-    const Json* rows;
+    std::shared_ptr<const Json> rows;  ///< of the part
     std::size_t first, count;
   };
   std::vector<Found> found;
   for (const PartFile& part : parts) {
     const JsonNode comparisons = listAt(part.checked.at("shard").at("models").at(model.name), "comparisons");
     const JsonNode rows = listAt(part.checked.at("models").at(model.name), "frames");
-    const Json& raw = part.document->at("models").at(model.name).at("frames");
+    const auto raw = std::make_shared<const Json>(json_dom::parse(rows.dump(), part.file));
     std::size_t at = 0;
     for (std::size_t i = 0; i < comparisons.size(); ++i) {
       ComparisonRecord r = evaluation::readComparisonRecord(comparisons.at(i));
@@ -181,7 +183,7 @@ void mergeComparisons(const std::vector<PartFile>& parts, const std::vector<Fram
         comparisons.at(i).fail("counts more highlights than rows");
       const std::size_t count = static_cast<std::size_t>(r.rows);
       if (count > rows.size() - at) comparisons.at(i).fail("has more rows than the model's `frames` are left");
-      found.push_back({std::move(r.tally), &raw, at, count});
+      found.push_back({std::move(r.tally), raw, at, count});
       at += count;
     }
     if (at != rows.size()) rows.fail("has rows of no comparison");
@@ -198,8 +200,8 @@ void mergeBand(const PartFile& first, MergedModel& model) {
   const JsonNode of = first.checked.at("models").at(model.name);
   if (!of.has("band")) return;
   if (!of.at("band").isObject()) of.at("band").fail("must be an object");
-  model.band = first.document->at("models").at(model.name).at("band");
-  evaluation::setBand(model.band, bandSummary(model.tallies));
+  model.band = json_dom::parse(of.at("band").dump(), first.file);
+  model.band.update(Json::parse(evaluation::bandJson(bandSummary(model.tallies))));
   model.band["remarks"] = model.remarks;
 }
 
@@ -209,7 +211,7 @@ Json trainingOf(const std::vector<PartFile>& parts, bool perSurface) {
     const JsonNode rows = listAt(part.checked, "training");
     for (std::size_t i = 0; i < rows.size(); ++i) {
       rows.at(i).at("index").integer();
-      all.push_back(part.document->at("training").at(i));
+      all.push_back(json_dom::parse(rows.at(i).dump(), part.file));
     }
     if (!perSurface) return all;
   }
@@ -234,7 +236,8 @@ Json documentOf(const std::vector<PartFile>& parts, const std::vector<FrameNote>
   const PartFile& first = parts.front();
   const bool perSurface = first.checked.at("shard").at("per_surface").boolean();
   Json whole = Json::object();
-  for (const auto& item : first.document->items())
+  const Json document = json_dom::parse(first.checked.dump(), first.file);
+  for (const auto& item : document.items())
     if (item.key() != "shard" && item.key() != "detection" && item.key() != "models")
       json_dom::append(whole, item.key(), item.value());
   whole["training"] = trainingOf(parts, perSurface);
@@ -242,7 +245,8 @@ Json documentOf(const std::vector<PartFile>& parts, const std::vector<FrameNote>
   whole["warnings"] = std::move(warnings);
   whole["chosen_model"] = best.model.empty() ? Json(nullptr) : Json(best.model);
   whole["why_chosen"] = best.why;
-  if (const std::optional<DetectionError> d = detectionError(detections)) whole["detection"] = evaluation::detectionJson(*d);
+  if (const std::optional<DetectionError> d = detectionError(detections))
+    whole["detection"] = Json::parse(evaluation::detectionJson(*d));
   whole["models"] = std::move(models);
   return whole;
 }
@@ -289,13 +293,14 @@ MergedEvaluation mergedEvaluation(const std::vector<std::string>& files) {
     summaries.emplace_back(name, summaryOf(m.tallies, m.fitFailure, heldOut));
     const ModelSummary& s = summaries.back().second;
     Json j = {{"status", s.answered ? "ok" : "failed"}, {"reason", s.reason}, {"fits", std::move(m.fits)}};
-    j["summary"] = evaluation::summaryJson(s);
+    j["summary"] = Json::parse(evaluation::summaryJson(s));
     if (!m.band.is_null()) j["band"] = std::move(m.band);
     j["frames"] = std::move(m.rows);
     json_dom::append(models, name, std::move(j));
   }
   const Json whole = documentOf(parts, notes, detections, std::move(warnings), evaluation::bestOf(summaries), std::move(models));
-  return {evaluation::textOf(whole), static_cast<int>(records.size()), reasonOf(summaries)};
+  return {whole.dump(1, ' ', false, Json::error_handler_t::replace) + "\n", static_cast<int>(records.size()),
+          reasonOf(summaries)};
 }
 
 }  // namespace glint

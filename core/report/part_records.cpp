@@ -40,7 +40,7 @@ int countIn(const JsonNode& node) {
 
 }  // namespace
 
-Json jsonOf(const FrameRecord& r) {
+std::string jsonOf(const FrameRecord& r) {
   Json j = {{"frame", r.note.frame},       {"training", r.note.training},      {"held_out", r.note.heldOut},
             {"clipped", r.note.clipped},   {"level_known", r.note.levelKnown}, {"given", r.note.given},
             {"detected", r.note.detected}, {"unreadable", r.note.unreadable}};
@@ -48,7 +48,7 @@ Json jsonOf(const FrameRecord& r) {
     j["detection"] = {{"missed", r.detection->missed},
                       {"contour_error_pct", numbersJson(r.detection->percent)},
                       {"contour_error_px", numbersJson(r.detection->pixels)}};
-  return j;
+  return j.dump();
 }
 
 FrameRecord readFrameRecord(const JsonNode& j) {
@@ -70,7 +70,7 @@ FrameRecord readFrameRecord(const JsonNode& j) {
   return r;
 }
 
-Json jsonOf(const ComparisonRecord& r) {
+std::string jsonOf(const ComparisonRecord& r) {
   const ComparisonTally& t = r.tally;
   Json j = {{"frame", t.frame},           {"rows", r.rows},
             {"predicted", t.predicted},   {"observed", t.observed},
@@ -84,7 +84,7 @@ Json jsonOf(const ComparisonRecord& r) {
         numbersJson({m.contourErrorPct, m.contourErrorPx, m.ellipseErrorPct, m.hausdorffPx, m.peakOffsetPx, m.coverage}));
   if (!t.bands.empty()) j["bands"] = Json::array();
   for (const BandScore& b : t.bands) j["bands"].push_back(numbersJson({b.sigmaPx, b.coverage}));
-  return j;
+  return j.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 ComparisonRecord readComparisonRecord(const JsonNode& j) {
@@ -114,7 +114,7 @@ ComparisonRecord readComparisonRecord(const JsonNode& j) {
   return r;
 }
 
-Json jsonOf(const FitOrder& order) { return {order.seenBy, order.frame, order.bandRemarks}; }
+std::string jsonOf(const FitOrder& order) { return Json{order.seenBy, order.frame, order.bandRemarks}.dump(); }
 
 FitOrder readFitOrder(const JsonNode& node) {
   if (node.size() != 3) node.fail("must have 3 numbers");

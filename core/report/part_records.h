@@ -3,8 +3,8 @@
 
 // Internal to this folder: what a part of an evaluation holds beside the evaluation itself, so that the whole can be computed from parts.
 
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "core/base/json_text.h"
@@ -29,10 +29,10 @@ struct FitOrder {
   bool before(const FitOrder& other) const { return seenBy != other.seenBy ? seenBy < other.seenBy : frame < other.frame; }
 };
 
-// Numbers that are not finite are null, and NaN when they are read back.
-nlohmann::ordered_json jsonOf(const FrameRecord& record);
-nlohmann::ordered_json jsonOf(const ComparisonRecord& record);
-nlohmann::ordered_json jsonOf(const FitOrder& order);
+// As JSON text. Numbers that are not finite are null, and NaN when they are read back.
+std::string jsonOf(const FrameRecord& record);
+std::string jsonOf(const ComparisonRecord& record);
+std::string jsonOf(const FitOrder& order);
 
 // InputError (file, place) for another form and for counts below 0.
 FrameRecord readFrameRecord(const JsonNode& node);

@@ -46,7 +46,8 @@ std::string evaluationCsv(const Inspection& inspection) {
     if (it == inspection.models.end()) continue;
     ordered_json rows = ordered_json::array();
     for (const FrameComparison& c : it->second.frames)
-      if (inspection.isHeldOut(c.frame)) evaluation::addRows(inspection, c, rows);
+      if (inspection.isHeldOut(c.frame))
+        for (ordered_json& row : ordered_json::parse(evaluation::rowsJson(inspection, c))) rows.push_back(std::move(row));
     for (const ordered_json& r : rows) {
       out += csvText(name) + "," + r["index"].dump() + "," + csvText(r["id"]) + "," + csvText(r["light"]) + "," +
              r["highlight"].dump() + "," + csvText(r["status"]) + "," + csvText(r["reason"]);

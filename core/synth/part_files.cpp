@@ -59,8 +59,7 @@ class Folders {
   std::vector<fs::path> made_;
 };
 
-Json withoutFrames(const PartFile& part) {
-  Json scene = part.document->at("scene");
+Json withoutFrames(Json scene) {
   scene.erase("frames");
   return scene;
 }
@@ -103,7 +102,7 @@ std::string synthPartText(const SynthPartContent& c, const Shard& shard, const s
                        {"spec", sha256OfFile(c.specFile)},
                        {"brightest", c.top},
                        {"files", std::move(files)}};
-  return partText(std::move(document), shard, program);
+  return partText(document.dump(), shard, program);
 }
 
 MergedSynth mergedSynth(const std::vector<std::string>& files, const fs::path& sceneFile) {
@@ -112,7 +111,7 @@ MergedSynth mergedSynth(const std::vector<std::string>& files, const fs::path& s
   if (first.kind != kKind) throw InputError(first.file, "", "is no part of a synthetic scene");
   const fs::path folder = fs::absolute(sceneFile).lexically_normal().parent_path();
   MergedSynth merged;
-  Json frames = Json::array();
+  Json frames = Json::array(), scene;
   for (const PartFile& part : parts) {
     if (part.checked.at(kKind).integer() != 1) part.checked.at(kKind).fail("only version 1 is supported");
     if (realPath(fs::absolute(part.file)).parent_path().parent_path() != realPath(folder))
@@ -121,14 +120,15 @@ MergedSynth mergedSynth(const std::vector<std::string>& files, const fs::path& s
     for (const char* key : {"shard.spec", "shard.scene_frames", "shard.brightest"}) requireSame(first, part, key);
     const JsonNode own = part.checked.at("scene").at("frames"), about = part.checked.at("shard");
     if (!own.isArray()) own.fail("must be an array");
-    if (withoutFrames(part) != withoutFrames(first))
-      throw InputError(part.file, "scene", "is another one than that of " + first.file);
+    Json read = json_dom::parse(part.checked.at("scene").dump(), part.file);
+    if (&part == &first) scene = withoutFrames(read);
+    if (withoutFrames(read) != scene) throw InputError(part.file, "scene", "is another one than that of " + first.file);
     if (about.at("first_frame").integer() != static_cast<int>(frames.size()))
       throw InputError(part.file, "shard.first_frame",
                        "must be " + std::to_string(frames.size()) + ", behind the part before it");
     for (std::size_t i = 0; i < own.size(); ++i) {
       if (const std::optional<JsonNode> h = own.at(i).find("highlights")) merged.highlights += static_cast<int>(h->size());
-      frames.push_back(part.document->at("scene").at("frames").at(i));
+      frames.push_back(std::move(read.at("frames").at(i)));
     }
     const JsonNode written = about.at("files");
     for (const std::string& name : written.keys()) {
@@ -143,9 +143,10 @@ MergedSynth mergedSynth(const std::vector<std::string>& files, const fs::path& s
   merged.frames = static_cast<int>(frames.size());
   if (first.checked.at("shard").at("scene_frames").integer() != merged.frames)
     throw InputError(parts.back().file, "scene.frames", "the parts have " + std::to_string(merged.frames) + " frames, not all");
-  Json scene = first.document->at("scene");
-  scene["frames"] = std::move(frames);
-  merged.sceneJson = prettyJson(json_dom::textWithPaths(scene, sceneFile.string()));
+  // In the place where scene files have them.
+  Json whole = json_dom::parse(first.checked.at("scene").dump(), first.file);
+  whole["frames"] = std::move(frames);
+  merged.sceneJson = prettyJson(json_dom::textWithPaths(whole, sceneFile.string()));
   return merged;
 }
 

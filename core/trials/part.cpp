@@ -130,7 +130,7 @@ std::string tradeoffPart(std::shared_ptr<const Scene> scene, const InspectionReq
                        {"seed", request.seed},
                        {"truth", !request.truthFolder.empty()},
                        {"inputs", std::move(inputs)}};
-  return partText(std::move(document), shard, "glint " + options.program);
+  return partText(document.dump(-1, ' ', false, Json::error_handler_t::replace), shard, "glint " + options.program);
 }
 
 Tradeoff mergedTradeoff(const std::vector<std::string>& files) {
