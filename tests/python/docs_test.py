@@ -29,9 +29,9 @@ def test_the_example(tmp_path):
     done = subprocess.run([sys.executable, "-B", EXAMPLES / "highlights.py", "--pictures", tmp_path], capture_output=True, text=True, check=False,
                           env={**os.environ, "MPLBACKEND": "Agg", "MPLCONFIGDIR": str(tmp_path)})
     assert done.returncode == 0, done.stderr
-    assert {"python_frame.png", "python_errors.png"} <= {f.name for f in tmp_path.iterdir()}
+    assert {"python-frame.png", "python-errors.png"} <= {f.name for f in tmp_path.iterdir()}
     off = float(re.search(r"off by +([0-9.]+) mm", done.stdout)[1])
-    assert off < 5, done.stdout  # the lamp of the scene is known; it is 2 m away
+    assert off < 1, done.stdout  # the lamp of the scene is known; it is 2.6 m away
 
 
 def test_the_notebook_is_the_example():

@@ -3,7 +3,7 @@
 # %% [markdown]
 # # From highlights to predictions
 #
-# A session that comes with Glint: photographs of an ellipsoid, made by `glint synth`, so the lamp's true place is known. The first six frames
+# A session that comes with Glint: photographs of an ellipsoid, made by `glint synth`, so the lamp's true place is known. Six of the 24 frames
 # train; the others are predicted.
 
 # %%
@@ -38,19 +38,18 @@ print(inspection.table())
 
 # %% [markdown]
 # ## The lamp
-# Estimated from contours alone; the scene's true lamp is only looked at to see how far off that is.
+# Measured from the highlights alone, as `glint lights` does; the scene's true lamp is only looked at to see how far off that is.
 
 # %%
-estimate = inspection.lights()["lamp"]
+lamp, = glint.lights(session).lamps
 true = scene.lights[0]["position"]
-print("estimated ", np.round(estimate.light.position, 5), "m")
+print("measured  ", np.round(lamp.position, 5), "m")
 print("true      ", true, "m")
-print(f"off by    {1e3 * np.linalg.norm(estimate.light.position - true):.3f} mm")
-print(f"sigma     {np.round(1e3 * np.sqrt(np.diag(estimate.covariance)), 3)} mm")
+print(f"off by    {1e3 * np.linalg.norm(lamp.position - true):.3f} mm, sigma {np.round(1e3 * np.sqrt(np.diag(lamp.covariance)), 3)} mm")
 
 # %% [markdown]
 # ## A held-out frame
-# The photograph with the contour that was observed (white) and those that the models predict. Contours are NumPy arrays: views of Glint's memory.
+# The photograph with the contour that was observed (white) and those that the session's models predict. Contours are NumPy arrays: views of Glint's memory.
 
 # %%
 frame = inspection.held_out[len(inspection.held_out) // 2]
@@ -59,36 +58,34 @@ fig, (whole, close) = plt.subplots(1, 2, figsize=(11, 4.2))
 for axes in (whole, close):
     axes.imshow(scene.photograph(frame))
     axes.fill(*observed.T, fill=False, edgecolor="white", linewidth=3, label="observed")
-    for model in glint.models():
-        result = inspection.models[model.id]
-        for row in (c for c in result.frames if c.frame == frame):
-            for highlight in row.prediction.highlights:
-                axes.fill(*highlight.contour.T, fill=False, edgecolor=model.colour, linewidth=1.2, label=model.id)
+    for name, result in inspection.models.items():
+        for comparison in (c for c in result.frames if c.frame == frame):
+            for highlight in comparison.prediction.highlights:
+                axes.fill(*highlight.contour.T, fill=False, edgecolor=glint.model(name).colour, linewidth=1.2, label=name)
     axes.set_axis_off()
 margin = 12
 close.set_xlim(observed[:, 0].min() - margin, observed[:, 0].max() + margin)
 close.set_ylim(observed[:, 1].max() + margin, observed[:, 1].min() - margin)
 close.legend(loc="upper right", fontsize=8)
-whole.set_title(f"frame {scene.frames[frame].id}")
+whole.text(12, 40, f"frame {scene.frames[frame].id}", color="white")
 fig.tight_layout()
 if "--pictures" in sys.argv:
-    fig.savefig(pathlib.Path(sys.argv[sys.argv.index("--pictures") + 1]) / "python_frame.png", dpi=110)
+    fig.savefig(pathlib.Path(sys.argv[sys.argv.index("--pictures") + 1]) / "python-frame.png", dpi=110)
 
 # %% [markdown]
 # ## Errors over frames
 
 # %%
 fig, axes = plt.subplots(figsize=(8, 3.4))
-for model in glint.models():
-    points = [(c.frame, row.metrics.contour_error_pct) for c in inspection.models[model.id].frames
-              if c.frame in inspection.held_out for row in c.rows if row.metrics]
-    axes.semilogy(*np.transpose(points), ".-", color=model.colour, label=model.id)
+for name, result in inspection.models.items():
+    points = [(c.frame, row.metrics.contour_error_pct) for c in result.frames if c.frame in inspection.held_out for row in c.rows if row.metrics]
+    axes.semilogy(*np.transpose(points), ".-", color=glint.model(name).colour, label=name)
 axes.set_xlabel("frame")
 axes.set_ylabel("contour error, %")
 axes.legend(fontsize=8)
 fig.tight_layout()
 if "--pictures" in sys.argv:
-    fig.savefig(pathlib.Path(sys.argv[sys.argv.index("--pictures") + 1]) / "python_errors.png", dpi=110)
+    fig.savefig(pathlib.Path(sys.argv[sys.argv.index("--pictures") + 1]) / "python-errors.png", dpi=110)
 
 # %% [markdown]
 # ## Without files

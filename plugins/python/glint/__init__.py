@@ -13,9 +13,9 @@ Settings are keyword arguments with the names of `glint evaluate --set`, an unde
 """
 from __future__ import annotations
 
+import collections.abc as _abc
 import json as _json
 import os as _os
-from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, NoReturn, Optional, Union
 
 from numpy.typing import ArrayLike
@@ -78,8 +78,8 @@ __all__ = [
 ]
 
 Path = Union[str, "_os.PathLike[str]"]
-Progress = Callable[[str, int, int], Optional[bool]]
-Frames = Union[str, int, Iterable[int]]
+Progress = _abc.Callable[[str, int, int], Optional[bool]]
+Frames = Union[str, int, _abc.Iterable[int]]
 
 
 def _raise(failure: tuple[str, str, str], **attributes: Any) -> NoReturn:
@@ -104,7 +104,7 @@ def _spec(frames: Optional[Frames]) -> Optional[str]:
     return ",".join(str(n) for n in numbers)
 
 
-def _files(given: Union[None, Path, Iterable[Path]]) -> list[str]:
+def _files(given: Union[None, Path, _abc.Iterable[Path]]) -> list[str]:
     if given is None:
         return []
     if isinstance(given, (str, _os.PathLike)):
@@ -112,9 +112,9 @@ def _files(given: Union[None, Path, Iterable[Path]]) -> list[str]:
     return [_os.fspath(f) for f in given]
 
 
-def open(input: Path, *, allow_outside: bool = False, photographs: Union[None, Path, Iterable[Path]] = None,
-         files: Optional[Mapping[str, Path]] = None, mesh: Optional[Mapping[str, Path]] = None,
-         meshes: Union[None, Path, Iterable[Path]] = None, **reading: Any) -> Union[Scene, Session]:
+def open(input: Path, *, allow_outside: bool = False, photographs: Union[None, Path, _abc.Iterable[Path]] = None,
+         files: Optional[_abc.Mapping[str, Path]] = None, mesh: Optional[_abc.Mapping[str, Path]] = None,
+         meshes: Union[None, Path, _abc.Iterable[Path]] = None, **reading: Any) -> Union[Scene, Session]:
     """Opens a scene file, a capture of another program, a folder with one, or a session.
 
     Parameters
@@ -145,7 +145,7 @@ def open(input: Path, *, allow_outside: bool = False, photographs: Union[None, P
 def _text(value: Any) -> str:
     if isinstance(value, (str, _os.PathLike)):
         return str(_os.fspath(value))
-    if isinstance(value, Iterable):
+    if isinstance(value, _abc.Iterable):
         return ",".join(repr(float(v)) for v in value)
     return str(value)
 
@@ -183,7 +183,7 @@ def depth_map(depth: ArrayLike, camera: Camera, **settings: Any) -> Surface:
     return Surface._depth_map(depth, camera, settings)
 
 
-def scene(frames: Sequence[Frame], surfaces: Mapping[str, Union[Path, Mapping[str, Any]]], name: str = "") -> Scene:
+def scene(frames: _abc.Sequence[Frame], surfaces: _abc.Mapping[str, Union[Path, _abc.Mapping[str, Any]]], name: str = "") -> Scene:
     """A scene from memory.
 
     Parameters
@@ -196,7 +196,7 @@ def scene(frames: Sequence[Frame], surfaces: Mapping[str, Union[Path, Mapping[st
     files: dict[str, str] = {}
     analytic: dict[str, Any] = {}
     for key, surface in surfaces.items():
-        if isinstance(surface, Mapping):
+        if isinstance(surface, _abc.Mapping):
             keys = dict(surface)
             if "type" not in keys:
                 raise ValueError(f"surfaces: '{key}' says no type")
@@ -229,7 +229,7 @@ def detect(image: ArrayLike, mask: Optional[ArrayLike] = None, *, camera: Option
     return found if camera is None else [h.undistorted(camera) for h in found]
 
 
-def estimate_light(views: Sequence[TrainingView], **settings: Any) -> LightEstimate:
+def estimate_light(views: _abc.Sequence[TrainingView], **settings: Any) -> LightEstimate:
     """The light of some training views of one light: triangulated, then from whole contours (`light_solver`).
 
     Raises CannotAnswer: "too few views", "light behind surface", "not converged" ...
@@ -237,7 +237,7 @@ def estimate_light(views: Sequence[TrainingView], **settings: Any) -> LightEstim
     return _glint._estimate_light(list(views), settings)
 
 
-def fit(model: Union[str, Model], views: Sequence[TrainingView], light: Union[None, Light, LightEstimate] = None, *,
+def fit(model: Union[str, Model], views: _abc.Sequence[TrainingView], light: Union[None, Light, LightEstimate] = None, *,
         progress: Optional[Progress] = None, **settings: Any) -> ModelFit:
     """Fits a model to training views of one light.
 
@@ -275,7 +275,7 @@ def _model(which: Union[str, Model]) -> Model:
     return model(which) if isinstance(which, str) else which
 
 
-def inspect(scene: Union[Scene, Session], models: Union[None, str, Sequence[str]] = None, *, train: Optional[Frames] = None,
+def inspect(scene: Union[Scene, Session], models: Union[None, str, _abc.Sequence[str]] = None, *, train: Optional[Frames] = None,
             exclude: Optional[Frames] = None, level: Union[None, float, str] = None, source: Optional[str] = None,
             truth: Optional[Path] = None, noise_px: float = 0.0, seed: int = 1, good_enough_pct: Optional[float] = None,
             previous: Optional[Inspection] = None, progress: Optional[Progress] = None, **settings: Any) -> Inspection:
@@ -347,8 +347,8 @@ def lights(scene: Union[Scene, Session], *, exclude: Optional[Frames] = None, so
     return _answered(_glint._lights(where, _spec(exclude), source, settings, progress))
 
 
-def lights_of_balls(folder: Path, balls: Union[str, Sequence[str]], *, ball_radius: Optional[float] = None,
-                    camera: Union[None, str, Sequence[float]] = None, exclude: Optional[Frames] = None, outlines: str = "fitted",
+def lights_of_balls(folder: Path, balls: Union[str, _abc.Sequence[str]], *, ball_radius: Optional[float] = None,
+                    camera: Union[None, str, _abc.Sequence[float]] = None, exclude: Optional[Frames] = None, outlines: str = "fitted",
                     outline_sigma: float = 1.0, response: str = "", progress: Optional[Progress] = None) -> Lamps:
     """Where the lamps of photographs of mirror balls are, one lamp in each photograph, the camera at the origin.
 

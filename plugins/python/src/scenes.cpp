@@ -46,22 +46,22 @@ const Frame& frameIn(const SceneHandle& s, const FrameName& frame) {
   return s.scene->frames[static_cast<std::size_t>(s.frameOf(frame))];
 }
 
-/// An array of what a reader of frames says.
+/// An array of what a reader of frames says: no copy of it.
 template <class Read>
-py::object arrayOf(const Read& read) {
+std::optional<py::array> arrayOf(const Read& read) {
   auto kept = std::make_unique<Image>();
   {
     const py::gil_scoped_release release;
     std::optional<Image> image = read();
     if (image) *kept = std::move(*image);
   }
-  if (kept->empty()) return py::none();
+  if (kept->empty()) return std::nullopt;
   Image* const image = kept.release();
   const py::capsule owner(image, [](void* p) { delete static_cast<Image*>(p); });
   return viewOf(*image, owner);
 }
 
-py::object linearOf(const SceneHandle& s, const FrameName& frame, const std::string& source) {
+std::optional<py::array> linearOf(const SceneHandle& s, const FrameName& frame, const std::string& source) {
   const Frame& f = frameIn(s, frame);
   const FrameSource from = sourceFrom(source);
   return arrayOf([&] { return std::optional(valueOf(readLinear(f, from))); });
