@@ -428,7 +428,7 @@ def _training(answers, view):
         _draw_canonical(ellipses, v.camera, v.tangent_plane, v.canonical, **where)
         b = v.brightest_point
         points.add([b.position], None, {"normals": [b.normal], "pixel": [b.pixel], "alpha_deg": [math.degrees(b.alpha)]}, **where)
-    return {"Virtual cameras": cameras.data(), "Tangent planes": planes.data(), "Canonical ellipses": ellipses.data(), "Brightest points": points.data()}
+    return {"VirtualCameras": cameras.data(), "TangentPlanes": planes.data(), "CanonicalEllipses": ellipses.data(), "BrightestPoints": points.data()}
 
 
 def _observed(answers, view):
@@ -450,8 +450,8 @@ def _observed(answers, view):
         b = seen.brightest_point
         points.add([b.position], None, {"normals": [b.normal], "pixel": [b.pixel]}, **where)
         _draw_mirror(view, planes, cameras, view.camera, seen.tangent_plane, b, h.contour, **where)
-    return {"Contours in the image": image.data(), "Contours on the surface": on_surface.data(), "Brightest points": points.data(),
-            "Tangent planes": planes.data(), "Virtual cameras": cameras.data()}
+    return {"ContoursInImage": image.data(), "ContoursOnSurface": on_surface.data(), "BrightestPoints": points.data(),
+            "TangentPlanes": planes.data(), "VirtualCameras": cameras.data()}
 
 
 class _Predicted:
@@ -484,9 +484,9 @@ class _Predicted:
 
     def tree(self):
         named = {"model": self.model}
-        return {"Contours in the image": self.image.data(**named), "Contours on the surface": self.on_surface.data(**named),
-                "Brightest points": self.points.data(**named), "Tangent planes": self.planes.data(**named),
-                "Virtual cameras": self.cameras.data(**named), "Canonical ellipses": self.ellipses.data(**named)}
+        return {"ContoursInImage": self.image.data(**named), "ContoursOnSurface": self.on_surface.data(**named),
+                "BrightestPoints": self.points.data(**named), "TangentPlanes": self.planes.data(**named),
+                "VirtualCameras": self.cameras.data(**named), "CanonicalEllipses": self.ellipses.data(**named)}
 
 
 def _predicted(answers, view, model):
@@ -526,7 +526,7 @@ def _ellipsoids(answers, surface_key):
             if fit is not None and fit.ellipsoid is not None:
                 numbers.update(centre=fit.ellipsoid.centre, semi_axes=fit.ellipsoid.semi_axes,
                                world_from_ellipsoid=fit.ellipsoid.world_from_ellipsoid)
-            tree[" ".join([model, f.light] + ([f.surface] if f.surface else []))] = out.data(model=model, light=f.light, **numbers)
+            tree["-".join([model, f.light] + ([f.surface] if f.surface else []))] = out.data(model=model, light=f.light, **numbers)
     return tree
 
 
@@ -567,8 +567,8 @@ def _lights(answers, scene, frame, surface_key, middle, reach):
         _draw_light(true, _Parts("lines"), middle, reach, light["id"], h, light_radius=light["radius"])
     if not scene.lights:
         true.missing("the scene states no true lights")
-    return {"Estimated": estimated.data(), "Of the models": lamps.data(), "True": true.data(), "Lamps with a length": tubes.data(),
-            "From the object": lines.data()}
+    return {"Estimated": estimated.data(), "OfModels": lamps.data(), "True": true.data(), "LongLamps": tubes.data(),
+            "FromObject": lines.data()}
 
 
 def _camera_numbers(scene, frame):
@@ -592,7 +592,7 @@ def _cameras(scene, frame, depth, train, held_out):
     now.add(*_frustum(scene.frames[frame].camera, depth))
     numbers = _camera_numbers(scene, frame)
     numbers.pop("units")
-    return {"All": out.data(), "Of the frame": now.data(**numbers)}
+    return {"All": out.data(), "OfFrame": now.data(**numbers)}
 
 
 def _photograph(scene, frame, depth, largest):
@@ -749,7 +749,7 @@ class _Algorithm(VTKPythonAlgorithmBase):
         self.spoken = set()
 
     def GetMessages(self):
-        return self.messages or [""]
+        return ["\n".join(self.messages)]
 
     def ReadAgain(self):
         _inputs.clear()
