@@ -264,6 +264,7 @@ def main():
     if missing:
         print("skipped: %s is not installed (resources/setup/packages-hosts.txt)" % ", ".join(missing))
         return 77
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # a test that is ended from outside ends its daemons, too
     # Short, because a socket's path has at most 107 bytes.
     folder = pathlib.Path(tempfile.mkdtemp(prefix="glint-study-"))
     try:
