@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A server and a client: reader and filter run where the files are; the client gets the same numbers, warnings and errors."""
 import os
-import re
+import json
+import socket
 import subprocess
 import sys
 import time
@@ -16,17 +17,18 @@ PATIENCE = 120  # s until a server listens, whatever the machine's load
 
 
 def main():
+    with socket.socket() as probe:  # pvserver names port 11111 where it is given 0
+        probe.bind(("localhost", 0))
+        port = probe.getsockname()[1]
     log = open(WORK / "server.txt", "w+", encoding="utf-8")
-    server = subprocess.Popen([os.environ["GLINT_PVSERVER"], "--server-port=0", "--force-offscreen-rendering"], stdout=log, stderr=subprocess.STDOUT)
+    server = subprocess.Popen([os.environ["GLINT_PVSERVER"], f"--server-port={port}", "--force-offscreen-rendering"], stdout=log,
+                              stderr=subprocess.STDOUT)
     try:
-        port = None
         for _ in range(PATIENCE * 10):
-            found = re.search(r"Connection URL: cs://[^:]+:(\d+)", (WORK / "server.txt").read_text())
-            if found or server.poll() is not None:
-                port = found and int(found[1])
+            if "Accepting connection" in (WORK / "server.txt").read_text() or server.poll() is not None:
                 break
             time.sleep(0.1)
-        check(port is not None, f"the server listens: {(WORK / 'server.txt').read_text()}")
+        check(server.poll() is None, f"the server listens: {(WORK / 'server.txt').read_text()}")
         Connect("localhost", port)
         load(globals(), remote=True)
         # The client's process must not compute: there, opening fails.
@@ -54,7 +56,7 @@ def main():
     # The numbers of the same session in another process.
     asked = ("import glint, json, sys; i = glint.inspect(glint.open(sys.argv[1])); print(json.dumps({m: [[h.contour.tolist() for h in c.prediction."
              "highlights] for c in r.frames if c.frame == 4] for m, r in i.models.items()}))")
-    wanted = __import__("json").loads(subprocess.run(["/usr/bin/python3", "-c", asked, session("plane")], capture_output=True, text=True, check=True).stdout)
+    wanted = json.loads(subprocess.run(["/usr/bin/python3", "-c", asked, session("plane")], capture_output=True, text=True, check=True).stdout)
     compared = 0
     for model, frames in wanted.items():
         contours = [np.array(c) for f in frames for c in f]

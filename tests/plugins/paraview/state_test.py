@@ -5,6 +5,7 @@ import sys
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from host import SESSIONS, WORK, check, fetched, finish, leaves, load, points, session
+from paraview import smstate
 from paraview.simple import (FindSource, GetActiveViewOrCreate, LoadState, PLYReader, RenameSource, ResetSession, SaveState, Show)
 
 load(globals())
@@ -43,8 +44,7 @@ def main():
         source.UpdatePipeline(3.0)
         check(numbers(source) == wanted, "the numbers of the state")
     # The same as a Python state file.
-    SaveState(str(WORK / "state.py"))
-    text = (WORK / "state.py").read_text()
+    text = smstate.get_state()
     check("GlintReader(" in text and "GlintPredictHighlights(" in text, "a Python state names reader and filter")
 
 
