@@ -5,7 +5,6 @@ import sys
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from host import SESSIONS, WORK, check, fetched, finish, leaves, load, points, session
-from paraview import smstate
 from paraview.simple import FindSource, LoadState, PLYReader, RenameSource, ResetSession, SaveState
 
 load(globals())
@@ -40,9 +39,6 @@ def main():
     for source, wanted in zip((reader, filtered), before):
         source.UpdatePipeline(3.0)
         check(numbers(source) == wanted, "the numbers of the state")
-    # The same as a Python state file.
-    text = smstate.get_state()
-    check("GlintReader(" in text and "GlintPredictHighlights(" in text, "a Python state names reader and filter")
 
 
 main()
