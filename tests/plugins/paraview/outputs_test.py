@@ -135,7 +135,7 @@ def the_filter_on_the_scene_s_own_mesh(name="vase"):
         surface = glint.mesh(points(mesh), values(triangles).reshape(-1, 3), None if normals is None else values(normals), **fits.request.settings)
         wanted = glint.predict(fits.models["limit-angle"].fits[0].fit, inspection.scene.frames[frame].camera, surface, **fits.request.settings)
         drawn = block(fetched(filtered), "ContoursInImage")
-        check(same(of_points(drawn, "pixel"), np.concatenate([h.contour for h in wanted.highlights])), f"the filter's contour, {directions or 'the session-s'} directions")
+        check(same(of_points(drawn, "pixel"), np.concatenate([h.contour for h in wanted.highlights])), f"the filter's contour, directions {directions}")
         if not directions:
             own = next(c for c in inspection.models["limit-angle"].frames if c.frame == frame).prediction[0].contour
             off = np.abs(own[:, None] - wanted[0].contour[None]).sum(axis=2).min(axis=1).max()

@@ -40,7 +40,7 @@ def with_display(command):
         return command
     if not shutil.which("xvfb-run"):
         skip("no display, and no xvfb-run for a virtual one")
-    return ["xvfb-run", "-a", "-s", "-screen 0 1600x1000x24 -nolisten tcp", *command]
+    return ["xvfb-run", "-a", "-s", "-screen 0 1600x1000x24 -nolisten tcp -noreset", *command]
 
 
 def main():

