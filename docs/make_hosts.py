@@ -104,7 +104,7 @@ def paraview(job):
     if not (job.build / "python/glint").is_dir():
         raise Missing("the Python module is not part of this build")
     command, environment = None, dict(os.environ, PYTHONPATH=str(job.build / "python"))
-    unpacked = job.build / "hosts/paraview"
+    unpacked = ROOT / "build/hosts/paraview"  # resources/setup/unpack-paraview
     if shutil.which("pvpython"):
         command = [shutil.which("pvpython")]
     elif (unpacked / "usr/bin/pvpython").is_file():
