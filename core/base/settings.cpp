@@ -90,7 +90,7 @@ std::vector<ParamSpec>& params() {
        "detect"},
       {"detect.motion",
        "Bright texture",
-       "",
+       "ΔP",
        "",
        std::string("reject"),
        0,
@@ -99,7 +99,8 @@ std::vector<ParamSpec>& params() {
        {"reject", "flag", "off"},
        "A bright spot that stays on its point of the surface in other views, where a highlight would have moved, is texture. "
        "Reject: it is "
-       "no evidence. Flag: detect says so, and it stays evidence. Off: nothing is looked at. Given highlights are never doubted.",
+       "no evidence. Flag: detect says so, and it stays evidence. Off: nothing is looked at. Given highlights are never doubted. "
+       "Texture: ΔP = 0 on the surface.",
        "detect"},
       {"surface.normals",
        "Mesh normals",
