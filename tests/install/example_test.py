@@ -32,8 +32,8 @@ class Shell:
 
 def commands_of(page, build):
     """The commands of the page's plain blocks, with the folder of this build. The build itself and its documentation are other tests."""
-    blocks = re.findall(r"^```\n(.*?)^```", page.read_text(encoding="utf-8"), re.M | re.S)
-    commands = [line.replace("build/release", str(build)) for block in blocks for line in block.splitlines()]
+    blocks = re.findall(r"^```(\w*)\n(.*?)^```", page.read_text(encoding="utf-8"), re.M | re.S)
+    commands = [line.replace("build/release", str(build)) for language, block in blocks if not language for line in block.splitlines()]
     return [c for c in commands if not c.startswith("./glint-run") and "--target api" not in c]
 
 

@@ -63,7 +63,9 @@ def main():
     # Refused.
     common.run(glint, "merge", *parts[:2], "-o", folder / "x.json", code=2, says="part 3 of 3 is missing")
     other = folder / "other.json"
-    common.run(glint, "tradeoff", scene, *arguments, "--repeats", "2", "--shard", "3/3", "--json", other)
+    twice = list(arguments)
+    twice[twice.index("--repeats") + 1] = "2"
+    common.run(glint, "tradeoff", scene, *twice, "--shard", "3/3", "--json", other)
     common.run(glint, "merge", *parts[:2], other, "-o", folder / "x.json", code=2, says="shard.repeats")
     evil = folder / "evil.json"
     document = json.loads(parts[2].read_text())
