@@ -82,9 +82,8 @@ PARAVIEW = """
 import json, math, sys
 from paraview import servermanager
 from paraview.simple import LoadPlugin
-names = {}
-LoadPlugin(sys.argv[2], remote=False, ns=names)
-reader = names["GlintReader"](FileName=sys.argv[1])
+LoadPlugin(sys.argv[2], remote=False, ns=globals())
+reader = GlintReader(FileName=sys.argv[1])
 reader.UpdatePipeline()
 table = servermanager.Fetch(reader, idx=1)
 column = lambda name: [table.GetValueByName(i, name) for i in range(table.GetNumberOfRows())]
@@ -113,7 +112,7 @@ def paraview(job):
         environment["PYTHONPATH"] += os.pathsep + str(unpacked / "usr/lib/python3/dist-packages")
     if not command or not shutil.which("xvfb-run"):
         raise Missing("there is no pvpython, or no xvfb-run")
-    script = job.folder / "paraview.py"
+    script = job.folder / "in_paraview.py"
     # Debian's plugin loader asks for a function that Python 3.11 no longer has (docs/paraview.md).
     script.write_text("import inspect\nif not hasattr(inspect, 'getargspec'):\n    inspect.getargspec = inspect.getfullargspec\n" + PARAVIEW)
     return printed(run(["xvfb-run", "-a", *command, script, job.session, ROOT / "plugins/paraview/glint_paraview.py"], env=environment))
@@ -141,7 +140,7 @@ print(json.dumps([[m, row["id"], row["light"], row["highlight"], shown[m, row["i
 def blender(job):
     if not shutil.which("blender"):
         raise Missing("there is no blender")
-    script = job.folder / "blender.py"
+    script = job.folder / "in_blender.py"
     script.write_text(BLENDER)
     # The add-on asks its own question, of the scene; so the command line answers that one, too.
     scene, models = job.session.parent / "scene.json", ",".join(json.loads(job.session.read_text())["request"]["models"])
