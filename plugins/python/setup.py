@@ -14,7 +14,7 @@ from setuptools.command.build_ext import build_ext
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
-VERSION = re.search(r"project\(Glint VERSION ([0-9.]+)", (ROOT / "CMakeLists.txt").read_text())[1]
+VERSION = re.search(r'GLINT_VERSION "([0-9.]+)"', (ROOT / "core/base/version.h").read_text())[1]
 
 
 class BuildByCMake(build_ext):

@@ -3,6 +3,7 @@
 #include <pybind11/stl.h>
 
 #include "core/base/limits.h"
+#include "core/base/version.h"
 #include "plugins/python/src/failures.h"
 #include "plugins/python/src/options.h"
 #include "plugins/python/src/types.h"
