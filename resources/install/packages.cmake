@@ -54,17 +54,14 @@ set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA ${PROJECT_BINARY_DIR}/package/pyth
 
 # Their texts, with dates from the source alone, so that two builds give the same bytes.
 file(READ ${PROJECT_SOURCE_DIR}/LICENSE glint_license)
-string(REGEX REPLACE "\n\n" "\n.\n" glint_license "${glint_license}")
-string(REGEX REPLACE "\n" "\n " glint_license "${glint_license}")
 string(STRIP "${glint_license}" glint_license)
 file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/package/copyright CONTENT
-"Format: https://www.debian.org/doc/packaging-manuals/copyright-format/1.0/
-Upstream-Name: Glint
+"Glint
 
-Files: *
 Copyright: 2026, the Glint developers
 License: BSD-3-Clause
- @glint_license@
+
+@glint_license@
 ")
 file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/package/changelog CONTENT
 "glint (@PROJECT_VERSION@) unstable; urgency=medium
