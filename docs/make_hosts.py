@@ -115,7 +115,7 @@ def paraview(job):
     script = job.folder / "in_paraview.py"
     # Debian's plugin loader asks for a function that Python 3.11 no longer has (docs/paraview.md).
     script.write_text("import inspect\nif not hasattr(inspect, 'getargspec'):\n    inspect.getargspec = inspect.getfullargspec\n" + PARAVIEW)
-    return printed(run(["xvfb-run", "-a", *command, script, job.session, ROOT / "plugins/paraview/glint_paraview.py"], env=environment))
+    return printed(run(["xvfb-run", "-a", "-s", "-screen 0 1600x1000x24 -noreset", *command, script, job.session, ROOT / "plugins/paraview/glint_paraview.py"], env=environment))
 
 
 BLENDER = """

@@ -10,7 +10,7 @@ out=$root/docs/pictures
 mkdir -p "$out"
 
 inspector() {  # NAME SESSION FRAME THEME [MORE OPTIONS]
-  QT_QPA_PLATFORM=xcb xvfb-run -a -s "-screen 0 1600x1000x24" "$bin/glint-inspector" "$root/sessions/$2/${2##*/}.glint" --frame "$3" \
+  QT_QPA_PLATFORM=xcb xvfb-run -a -s "-screen 0 1600x1000x24 -noreset" "$bin/glint-inspector" "$root/sessions/$2/${2##*/}.glint" --frame "$3" \
     --theme "$4" --size 1500x940 --screenshot "$out/$1.png" --wait-idle "${@:5}"
 }
 picture() {  # NAME SESSION FRAME VIEW

@@ -90,9 +90,10 @@ have_display() {
 }
 
 # on_virtual_display COMMAND...: runs it on a display of its own, drawn in software. Qt's "offscreen" platform is no way out:
-# it leaves VTK's views blank without an error.
+# it leaves VTK's views blank without an error. -noreset: else the server starts again when its last client leaves, and refuses whoever
+# connects meanwhile, as tests beside each other do.
 on_virtual_display() {
   command -v xvfb-run >/dev/null || die "no display, and no xvfb-run for a virtual one (packages xvfb and xauth)"
   env -u WAYLAND_DISPLAY QT_QPA_PLATFORM=xcb LIBGL_ALWAYS_SOFTWARE=1 \
-    xvfb-run -a -s "-screen 0 1600x1000x24 -nolisten tcp" "$@" </dev/null
+    xvfb-run -a -s "-screen 0 1600x1000x24 -nolisten tcp -noreset" "$@" </dev/null
 }

@@ -39,7 +39,7 @@ def main(words):
         environment["GLINT_PROGRAM"] = rest[at + 1]
         del rest[at:at + 2]
     command = [blender, "--factory-startup", "--python-exit-code", "1", "-P", str(test), "--", *rest]
-    command = ["xvfb-run", "-a", "-s", "-screen 0 1600x1000x24", *command] if window else [command[0], "-b", *command[1:]]
+    command = ["xvfb-run", "-a", "-s", "-screen 0 1600x1000x24 -noreset", *command] if window else [command[0], "-b", *command[1:]]
     done = subprocess.run(command, cwd=folder, env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
                           errors="replace", check=False)
     print(done.stdout)
