@@ -111,5 +111,28 @@ TEST(MeasuredLamps, WhatIsHiddenUnknownOrExactIsSaidOrLeftOut) {
   EXPECT_EQ(scene.layer({broken}).drawn.size(), 1U);  // its place alone
 }
 
+/// The light of one limit angle stands on the shipped ellipsoid 16 cm from its lamp with a standard deviation of 8 mm: what it leaves out must stand
+/// beside it.
+TEST(EstimatedLight, SaysThatItsDeviationIsOfNoiseAloneAndHowFarTheLampOfALobeIs) {
+  const test::TemporaryFolder folder;
+  const auto inspection = test::smallInspection(folder.path());
+  LightEstimate& light = *inspection->lights.at({"lamp"});
+  light.covariance = 1e-6 * Eigen::Matrix3d::Identity();
+  LayerInput input;
+  input.inspection = inspection.get();
+  input.surfaceKey = inspection->surfaces->keyOf(0);
+  input.scale = sceneScale(*inspection, nullptr, {0, 1, 2}, 1);
+  const auto text = [&] { return lightLayer(input).drawn.at(0).info.text; };
+  EXPECT_NE(text().find("standard deviation, noise alone"), std::string::npos) << text();
+  EXPECT_EQ(text().find("lamp by"), std::string::npos) << "no lobe was fitted";
+  ModelFit fit;
+  fit.model = "reflectance";
+  fit.light = "lamp";
+  fit.family = ReflectanceFit{};
+  fit.lightEstimate = Light::at(light.light.position() + Eigen::Vector3d(0.12, 0, 0.09));  // 0.15 m
+  inspection->models["reflectance"].fits = {{"lamp", {}, fit, {}}};
+  EXPECT_NE(text().find("0.15 m away from here"), std::string::npos) << text();
+}
+
 }  // namespace measured_lamps_tests
 }  // namespace glint::viz

@@ -58,6 +58,20 @@ void addEstimate(LayerContent& content, const LayerInput& in, const Light& light
   content.extent.push_back(p);
 }
 
+/// How far the lamp is that a lobe explains: the noise of contours does not tell what one limit angle gets wrong.
+std::string lampBeside(const LayerInput& in, const std::string& light, const Light& estimate) {
+  if (estimate.atInfinity()) return "";
+  for (const auto& [model, result] : in.inspection->models)
+    for (const ModelResult::Fit& fit : result.fits) {
+      if (fit.light != light || !fit.fit || !fit.fit->as<ReflectanceFit>() || !fit.fit->lightEstimate) continue;
+      if (fit.fit->lightEstimate->atInfinity()) continue;
+      const double apart = (fit.fit->lightEstimate->position() - estimate.position()).norm();
+      return line("lamp by " + model,
+                  distanceText(apart) + " away from here: this light explains the contours with one limit angle");
+    }
+  return "";
+}
+
 }  // namespace
 
 LayerContent lightLayer(const LayerInput& in) {
@@ -73,8 +87,10 @@ LayerContent lightLayer(const LayerInput& in) {
     if (estimate.rmsPx > 0)  // 0: triangulated from rays alone
       info.text += line("residual", estimate.rmsPx, "px") + "(residual: " + residualMeaning(estimate) + ")\n";
     if (estimate.covariance && estimate.covariance->allFinite()) {
-      info.text += line("standard deviation", Eigen::Vector3d(estimate.covariance->diagonal().cwiseMax(0).cwiseSqrt()), "m");
+      info.text +=
+          line("standard deviation, noise alone", Eigen::Vector3d(estimate.covariance->diagonal().cwiseMax(0).cwiseSqrt()), "m");
     }
+    info.text += lampBeside(in, id, estimate.light);
     addEstimate(content, in, estimate.light, 1, kLightColour, "light " + id + " (estimate)", info);
   }
   // A model may refine the light by itself: drawn smaller, in the model's colour, where it differs from the common one.
