@@ -9,6 +9,7 @@ namespace glint::cli {
 Command compareCommand();
 Command convertCommand();
 Command detectCommand();
+Command diagnoseCommand();
 Command evaluateCommand();
 Command infoCommand();
 Command lightsCommand();

@@ -16,6 +16,7 @@ int main(int argc, char** argv) {
         predictCommand(),
         retextureCommand(),
         evaluateCommand(),
+        diagnoseCommand(),
         tradeoffCommand(),
         mergeCommand(),
         lightsCommand(),

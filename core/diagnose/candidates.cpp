@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/diagnose/candidates.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "core/base/number_text.h"
+#include "core/scene/frame_spec.h"
+
+namespace glint {
+namespace {
+
+constexpr std::size_t kMostExcluded = 3;  // frames tried one by one
+constexpr std::size_t kFewestViews = 4;   // an exclusion must leave one more than a fit with a free centre needs
+constexpr std::size_t kMoreFrames = 12;   // twice the default: enough to tell whether more help
+constexpr double kSmallRadiusPx = 6;      // a contour is known to about 0.1 px, 2 % of this
+constexpr double kLargerArea = 60;        // px^2: a radius of 4.4 px
+
+class Candidates {
+ public:
+  Candidates(const Inspection& inspection, const HighlightModel& model, const std::vector<HighlightEvidence>& evidence)
+      : r_(inspection), model_(model), evidence_(evidence) {}
+
+  std::vector<CandidateChange> run() {
+    lightSolver();
+    exclusions();
+    ellipsoidSolvers();
+    lobes();
+    surface();
+    cameras();
+    slow_ = true;
+    otherFrames();
+    detection();
+    return std::move(all_);
+  }
+
+ private:
+  void set(const std::string& key, const std::string& value, const std::string& why) {
+    Settings other = r_.request.settings;
+    other.setFromText(key, value);
+    if (!(valueOf(other, key) == valueOf(r_.request.settings, key)))
+      all_.push_back({{.set = key + "=" + value}, why, slow_, key.rfind("detect.", 0) == 0});
+  }
+  static SettingValue valueOf(const Settings& settings, const std::string& key) {
+    const auto it = settings.values().find(key);
+    return it == settings.values().end() ? paramSpec(key).defaultValue : it->second;
+  }
+
+  void lightSolver() {
+    if (!model_.needsLight()) return;
+    set("light.solver", "triangulated", "the light from peaks alone, which one odd contour does not move");
+    set("light.solver", "bundle", "the light from whole contours");
+  }
+
+  void exclusions() {
+    std::map<int, double> weights;  // by frame
+    std::set<int> frames;
+    for (const HighlightEvidence& e : evidence_) {
+      frames.insert(e.frame);
+      weights[e.frame] = std::max(weights[e.frame], e.weight);
+    }
+    if (frames.size() <= kFewestViews) return;
+    std::vector<std::pair<double, int>> worst;
+    for (const auto& [frame, weight] : weights) worst.emplace_back(-weight, frame);
+    std::sort(worst.begin(), worst.end());
+    for (std::size_t i = 0; i < worst.size() && i < kMostExcluded; ++i) {
+      if (i > 0 && worst[i].first == 0) break;  // one is tried even where none stands out
+      exclude({worst[i].second}, worst[i].first == 0 ? "no frame stands out; the first one" : "it stands against the model most");
+    }
+    if (worst.size() > kFewestViews + 1 && worst[1].first < 0)
+      exclude({worst[0].second, worst[1].second}, "the two frames that stand against the model most");
+  }
+  void exclude(std::vector<int> frames, const std::string& why) {
+    frames.insert(frames.end(), r_.request.excluded.begin(), r_.request.excluded.end());  // the flag replaces those
+    std::sort(frames.begin(), frames.end());
+    frames.erase(std::unique(frames.begin(), frames.end()), frames.end());
+    all_.push_back({{.exclude = frameSpec(frames, *r_.scene)}, why});
+  }
+
+  void otherFrames() {
+    if (r_.train.perSurface) return;
+    const std::size_t n = r_.scene->frames.size(), used = r_.train.frames.size();
+    if (n < used + 2) return;  // nothing would be left to predict
+    train("spread:" + std::to_string(std::max<std::size_t>(used, 4)), "views farther apart");
+    if (n >= kMoreFrames + 2 && used < kMoreFrames) train("spread:" + std::to_string(kMoreFrames), "more views");
+    if (used < n / 2) train("first:" + std::to_string(std::min(2 * used, n - 2)), "more views");
+  }
+  void train(const std::string& spec, const std::string& why) {
+    if (spec != r_.request.train && parseTrainSpec(spec, *r_.scene).frames != r_.train.frames)
+      all_.push_back({{.train = spec}, why, slow_});
+  }
+
+  void ellipsoidSolvers() {
+    if (!model_.hasOutlines()) return;
+    for (const char* solver : {"refined", "anchored", "linear"}) set("fit.solver", solver, "another solver of the ellipsoid");
+  }
+
+  void lobes() {
+    if (!mayHaveLobe()) return;
+    set("fit.evidence", "contours", "a lobe that the pixels do not follow");
+    set("fit.light_size", "sphere", "a lamp with a size");
+    set("fit.light_size", "point", "a lamp without a size");
+    for (const char* lobe : {"ggx", "torrance-sparrow"}) set("fit.lobe", lobe, "another lobe");
+  }
+
+  /// Its fits have a lobe, or there is none to tell and it reconstructs no ellipsoid.
+  bool mayHaveLobe() const {
+    const auto result = r_.models.find(model_.id());
+    if (result != r_.models.end())
+      for (const ModelResult::Fit& f : result->second.fits)
+        if (f.fit) return f.fit->as<ReflectanceFit>() != nullptr;
+    return model_.needsLight() && !model_.hasOutlines();
+  }
+
+  void surface() {
+    const bool mesh = std::any_of(r_.views.begin(), r_.views.end(), [&](const TrainingView& v) {
+      const auto it = r_.scene->surfaces.find(r_.scene->frames[std::size_t(v.frame)].surface);
+      return it != r_.scene->surfaces.end() && !it->second.analytic;
+    });
+    if (!mesh) return;
+    set("surface.normals", "curved", "a coarse mesh");
+    if (model_.needsLight()) set("light.refine_normals", "true", "a mesh whose normals are off");
+  }
+
+  void detection() {
+    const bool small =
+        std::any_of(evidence_.begin(), evidence_.end(), [](const HighlightEvidence& e) { return e.radiusPx < kSmallRadiusPx; });
+    if (small && r_.request.settings.number("detect.min_area") < kLargerArea)
+      set("detect.min_area", formatted("%g", kLargerArea), "small highlights, whose contours say little");
+    if (r_.request.settings.number("detect.level") < 0.7) set("detect.level", "0.7", "contours nearer to the peak");
+    if (r_.request.settings.number("detect.level") > 0.3) set("detect.level", "0.3", "larger contours");
+    set("detect.background", "smooth", "a background that the lobe's fit gets wrong");
+  }
+
+  void cameras() {
+    if (model_.needsLight()) set("light.refine_poses", "true", "poses that are off by a little");
+  }
+
+  const Inspection& r_;
+  const HighlightModel& model_;
+  const std::vector<HighlightEvidence>& evidence_;
+  std::vector<CandidateChange> all_;
+  bool slow_ = false;
+};
+
+}  // namespace
+
+std::vector<CandidateChange> candidateChanges(const Inspection& inspection, const HighlightModel& model,
+                                              const std::vector<HighlightEvidence>& evidence) {
+  return Candidates(inspection, model, evidence).run();
+}
+
+}  // namespace glint
