@@ -38,6 +38,7 @@
 #include "gui/lamps/lamps_in_window.h"
 #include "gui/lamps/lamps_panel.h"
 #include "gui/panels/comparison_panel.h"
+#include "gui/panels/diagnosis_panel.h"
 #include "gui/panels/error_table.h"
 #include "gui/panels/log_panel.h"
 #include "gui/panels/numbers_panel.h"
@@ -285,6 +286,13 @@ void MainWindow::buildDocks() {
   docks_.add("timeline", tr("Timeline"), timeline_, Qt::BottomDockWidgetArea);
   errors_ = new ErrorTable(document_);
   docks_.add("errors", tr("Errors"), errors_, Qt::BottomDockWidgetArea);
+  diagnosis_ = new DiagnosisPanel(document_);
+  QDockWidget* const problems = docks_.add("problems", tr("Problems"), diagnosis_, Qt::BottomDockWidgetArea, "errors");
+  connect(diagnosis_, &DiagnosisPanel::problem, this, &MainWindow::showProblem);
+  connect(diagnosis_, &DiagnosisPanel::message, this, &MainWindow::tell);
+  connect(diagnosis_, &DiagnosisPanel::problemsChanged, problems, [problems](int count) {
+    problems->setWindowTitle(count == 0 ? tr("Problems") : tr("Problems (%1)").arg(count));
+  });
   plots_ = new PlotsPanel(document_);
   docks_.add("plots", tr("Plots"), plots_, Qt::BottomDockWidgetArea);
   log_ = new LogPanel;
@@ -397,6 +405,10 @@ void MainWindow::buildMenus() {
   actions_.add("plots.measure", plots, tr("Measure speed and &accuracy"), [this, press] {
     docks_.bring(QStringLiteral("tradeoff"));
     press("measureTradeoff")();
+  });
+  actions_.add("plots.diagnose", plots, tr("Find out &why models fail"), [this] {
+    docks_.bring(QStringLiteral("problems"));
+    diagnosis_->diagnose();
   });
   lamps_->addActions(actions_, plots, file);
 

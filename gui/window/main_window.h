@@ -38,6 +38,7 @@ class ScriptedActions;
 class StartPage;
 class SetupPanel;
 class Timeline;
+class DiagnosisPanel;
 class TradeoffPanel;
 class UnreadableFiles;
 class WhatIfPanel;
@@ -119,6 +120,7 @@ class MainWindow : public QMainWindow {
   FramePanel* frame_ = nullptr;
   Timeline* timeline_ = nullptr;
   ComparisonPanel* comparison_ = nullptr;
+  DiagnosisPanel* diagnosis_ = nullptr;
   ErrorTable* errors_ = nullptr;
   ExplainPanel* explain_ = nullptr;
   NumbersPanel* numbers_ = nullptr;

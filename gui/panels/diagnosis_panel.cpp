@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gui/panels/diagnosis_panel.h"
+
+#include <QHBoxLayout>
+#include <QHeaderView>
+#include <QLabel>
+#include <QPushButton>
+#include <QTreeWidget>
+#include <QVBoxLayout>
+#include <algorithm>
+
+#include "core/inspect/summary.h"
+#include "core/report/diagnosis_report.h"
+#include "core/selection/selection.h"
+#include "gui/base/text.h"
+
+namespace glint::gui {
+namespace {
+
+constexpr int kFrame = Qt::UserRole, kLight = Qt::UserRole + 1, kModel = Qt::UserRole + 2, kHighlight = Qt::UserRole + 3;
+constexpr std::size_t kMostFrames = 12;      // of a model: more are in the table of errors
+constexpr std::size_t kMostHighlights = 12;  // that stand against a model
+
+/// A frame where a model misses or invents highlights, or is far off.
+struct WrongFrame {
+  int frame = -1;
+  std::string light;
+  int missed = 0, spurious = 0;
+  double pct = 0;  ///< largest error of a matched highlight
+  std::string reason;
+};
+
+std::vector<WrongFrame> wrongFrames(const Inspection& inspection, const ModelResult& result) {
+  std::vector<WrongFrame> wrong;
+  for (const FrameComparison& c : result.frames) {
+    if (!inspection.isTraining(c.frame) && !inspection.isHeldOut(c.frame)) continue;
+    WrongFrame w{c.frame, c.light, 0, 0, 0, {}};
+    for (const FrameComparison::Row& row : c.rows) {
+      w.missed += row.observed >= 0 && row.predicted < 0;
+      w.spurious += row.observed < 0 && row.predicted >= 0;
+      if (row.metrics) w.pct = std::max(w.pct, row.metrics->contourErrorPct);
+    }
+    if (const Failure* const failure = c.prediction.failure()) w.reason = failure->message();
+    if (w.missed > 0 || w.spurious > 0 || w.pct > kLargestExpectedPct) wrong.push_back(std::move(w));
+  }
+  std::stable_sort(wrong.begin(), wrong.end(), [](const WrongFrame& a, const WrongFrame& b) {
+    return std::tuple(-a.missed, -a.pct, -a.spurious) < std::tuple(-b.missed, -b.pct, -b.spurious);
+  });
+  return wrong;
+}
+
+QTreeWidgetItem* addLine(QTreeWidgetItem* parent, const QString& text) {
+  auto* item = new QTreeWidgetItem(parent, {text});
+  item->setToolTip(0, text);
+  return item;
+}
+
+}  // namespace
+
+DiagnosisPanel::DiagnosisPanel(Document& document, QWidget* parent) : QWidget(parent), document_(document) {
+  auto* column = new QVBoxLayout(this);
+  column->setContentsMargins(6, 4, 6, 2);
+  column->setSpacing(4);
+  auto* row = new QHBoxLayout;
+  ask_ = new QPushButton(tr("Find out why"));
+  ask_->setObjectName(QStringLiteral("diagnose"));
+  ask_->setToolTip(
+      tr("Says why each model fails or is poor, and measures what helps: other models, solvers, training frames, exclusions.\n"
+         "Takes seconds; remedies appear as they are found. A second click stops"));
+  state_ = new QLabel;
+  state_->setObjectName(QStringLiteral("diagnoseState"));
+  state_->setProperty("role", "faded");
+  state_->setWordWrap(true);
+  row->addWidget(ask_);
+  row->addWidget(state_, 1);
+  column->addLayout(row);
+  list_ = new QTreeWidget;
+  list_->setObjectName(QStringLiteral("problems"));
+  list_->setAccessibleName(tr("Problems and remedies"));
+  list_->setHeaderHidden(true);
+  list_->setWordWrap(true);
+  list_->setUniformRowHeights(false);
+  list_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+  list_->header()->setSectionResizeMode(0, QHeaderView::Stretch);
+  // Lines wrap at another place then.
+  connect(list_->header(), &QHeaderView::sectionResized, list_, [this] { list_->doItemsLayout(); });
+  column->addWidget(list_, 1);
+  connect(ask_, &QPushButton::clicked, this, [this] { queue_.busy() ? stop() : diagnose(); });
+  connect(list_, &QTreeWidget::itemClicked, this, [this](QTreeWidgetItem* item) { choose(item); });
+  connect(list_, &QTreeWidget::itemActivated, this, [this](QTreeWidgetItem* item) { choose(item); });
+  connect(&document_, &Document::inspectionChanged, this, &DiagnosisPanel::refresh);
+  connect(&document_, &Document::staleChanged, this, [this] { showState(); });
+  connect(&document_, &Document::sceneOpened, this, [this] {
+    queue_.drop();
+    queue_.stop();
+    of_ = nullptr;
+    diagnosis_ = nullptr;
+    found_.clear();
+    refresh();
+  });
+  connect(&queue_, &JobQueue::busyChanged, this, [this] { showState(); });
+  refresh();
+}
+
+void DiagnosisPanel::stop() { queue_.stop(); }
+
+void DiagnosisPanel::diagnose() {
+  const std::shared_ptr<const Inspection> inspection = document_.inspection();
+  if (!inspection || document_.stale()) return;
+  of_ = inspection;
+  diagnosis_ = nullptr;
+  found_.clear();
+  refresh();
+  queue_.start(
+      [this, inspection](const JobToken& token) {
+        DiagnoseOptions options;
+        options.found = [this, &token](const std::string& model, const Remedy& remedy) {
+          token.deliver([this, model, remedy] {
+            found_.emplace_back(model, remedy);
+            addRemedy(model, remedy);
+          });
+        };
+        const ProgressFn progress = token.progress([this](const StageEvent& e) { showState(toQString(e.stage)); });
+        return std::make_shared<const Diagnosis>(glint::diagnose(*inspection, options, progress));
+      },
+      [this](const JobResult<DiagnosisPtr>& result) {
+        if (result.overtaken) return;
+        if (!result.failure().isEmpty()) emit problem(result.failure());
+        if (result.value) diagnosis_ = *result.value;
+        refresh();
+        if (result.stopped) state_->setText(tr("Stopped: what was found so far is listed"));
+      },
+      Asks::Instead);
+}
+
+void DiagnosisPanel::refresh() {
+  list_->clear();
+  fillProblems();
+  const bool current = diagnosis_ && of_;
+  if (current)
+    for (const ModelDiagnosis& d : diagnosis_->models) fillDiagnosis(d);
+  else
+    for (const auto& [model, remedy] : found_) addRemedy(model, remedy);
+  emit problemsChanged(problems_);
+  showState();
+}
+
+void DiagnosisPanel::fillProblems() {
+  problems_ = 0;
+  const std::shared_ptr<const Inspection> inspection = document_.inspection();
+  if (!inspection) return;
+  for (const std::string& name : inspection->request.models) {
+    const auto result = inspection->models.find(name);
+    if (result == inspection->models.end()) continue;
+    const ModelSummary summary = summarise(*inspection, result->second);
+    const std::vector<WrongFrame> wrong = wrongFrames(*inspection, result->second);
+    if (summary.answered && wrong.empty()) continue;
+    ++problems_;
+    auto* top =
+        new QTreeWidgetItem(list_, {summary.answered ? tr("%1: %n frame(s) wrong", "", int(wrong.size())).arg(toQString(name))
+                                                     : tr("%1: no answer").arg(toQString(name))});
+    top->setData(0, kModel, toQString(name));
+    top->setExpanded(true);
+    const bool explained = diagnosis_ && of_ == inspection;  // its causes say it
+    for (const ModelResult::Fit& fit : result->second.fits)
+      if (fit.failure() && !explained)
+        addLine(top, tr("because light %1: %2").arg(toQString(textOf(fit.key())), toQString(fit.failure()->message())));
+    for (std::size_t i = 0; summary.answered && i < wrong.size() && i < kMostFrames; ++i) {
+      const WrongFrame& w = wrong[i];
+      QStringList words;
+      if (w.missed) words << tr("%n highlight(s) missed", "", w.missed);
+      if (w.spurious) words << tr("%n predicted that nothing shows", "", w.spurious);
+      if (!w.reason.empty()) words << toQString(w.reason);
+      if (w.pct > kLargestExpectedPct) words.prepend(tr("off by %1 %").arg(numberText(w.pct, 3)));
+      auto* line = addLine(top, tr("frame %1, light %2: %3")
+                                    .arg(nameText(inspection->scene->frames[std::size_t(w.frame)].id), toQString(w.light),
+                                         words.join(QStringLiteral("; "))));
+      line->setData(0, kFrame, w.frame);
+      line->setData(0, kLight, toQString(w.light));
+    }
+    if (summary.answered && wrong.size() > kMostFrames)
+      addLine(top, tr("and %1 more: see Errors").arg(wrong.size() - kMostFrames));
+  }
+}
+
+void DiagnosisPanel::fillDiagnosis(const ModelDiagnosis& d) {
+  if (d.status == ModelDiagnosis::Status::Ok) return;
+  QTreeWidgetItem* const top = itemOf(d.model, tr("%1: %2").arg(toQString(d.model), QLatin1String(nameOf(d.status))));
+  for (const std::string& cause : d.causes) addLine(top, tr("because %1").arg(toQString(cause)));
+  std::vector<const HighlightEvidence*> against;
+  for (const HighlightEvidence& e : d.evidence)
+    if (!e.against.empty()) against.push_back(&e);
+  std::stable_sort(against.begin(), against.end(), [](auto* a, auto* b) { return a->weight > b->weight; });
+  for (std::size_t i = 0; i < against.size() && i < kMostHighlights; ++i) {
+    const HighlightEvidence& e = *against[i];
+    QStringList words;
+    for (const std::string& a : e.against) words << toQString(a);
+    auto* line = addLine(top, tr("against it: frame %1, light %2: %3")
+                                  .arg(nameText(of_->scene->frames[std::size_t(e.frame)].id), toQString(e.light),
+                                       words.join(QStringLiteral("; "))));
+    line->setData(0, kFrame, e.frame);
+    line->setData(0, kLight, toQString(e.light));
+    line->setData(0, kHighlight, e.highlight);
+  }
+  for (const Remedy& remedy : d.remedies) addRemedy(d.model, remedy);
+  if (d.remedies.empty()) addLine(top, tr("nothing helps: %1 changes were tried").arg(d.tried));
+}
+
+QTreeWidgetItem* DiagnosisPanel::itemOf(const std::string& model, const QString& otherwise) {
+  for (int i = 0; i < list_->topLevelItemCount(); ++i)
+    if (list_->topLevelItem(i)->data(0, kModel).toString() == toQString(model)) return list_->topLevelItem(i);
+  auto* top = new QTreeWidgetItem(list_, {otherwise});
+  top->setData(0, kModel, toQString(model));
+  top->setExpanded(true);
+  return top;
+}
+
+void DiagnosisPanel::addRemedy(const std::string& model, const Remedy& remedy) {
+  auto* line = new QTreeWidgetItem(itemOf(model, toQString(model)));
+  auto* holder = new QWidget;
+  auto* row = new QHBoxLayout(holder);
+  row->setContentsMargins(0, 1, 4, 1);
+  const QString flags = toQString(flagsOf(remedy.change));
+  auto* button = new QPushButton(tr("Try"));
+  button->setObjectName(QStringLiteral("try"));
+  button->setAccessibleName(tr("Try %1").arg(flags));
+  button->setToolTip(tr("Makes this change; undo takes it back"));
+  row->addWidget(button);
+  auto* label = new QLabel(toQString(effectText(remedy)).replace(QStringLiteral("->"), QStringLiteral("\u2192")) +
+                           QStringLiteral("    ") + flags);
+  label->setTextFormat(Qt::PlainText);
+  label->setToolTip(tr("%1\n%2\nThe error is the mean over views that the fit did not see.").arg(flags, toQString(remedy.why)));
+  row->addWidget(label, 1);
+  list_->setItemWidget(line, 0, holder);
+  connect(button, &QPushButton::clicked, this, [this, model, change = remedy.change] { tryRemedy(model, change); });
+}
+
+void DiagnosisPanel::tryRemedy(const std::string& model, const Change& change) {
+  if (!document_.scene()) return;
+  InspectionRequest request = document_.request();
+  const std::string use = change.model.value_or(model);
+  Change other = change;
+  other.model = std::nullopt;
+  try {
+    request = with(request, other, *document_.scene());
+  } catch (const InputError& e) {
+    emit problem(toQString(e.what()));
+    return;
+  }
+  if (!std::count(request.models.begin(), request.models.end(), use)) request.models.push_back(use);
+  const QString text = tr("Try %1").arg(toQString(flagsOf(change)));
+  if (request != document_.request()) document_.setRequest(request, text);
+  draw::Selection selection = document_.selection();
+  selection.model = use;
+  document_.select(selection);
+  emit message(tr("%1: undo takes it back").arg(text));
+}
+
+void DiagnosisPanel::choose(QTreeWidgetItem* item) {
+  draw::Selection selection = document_.selection();
+  const QTreeWidgetItem* const top = item->parent() ? item->parent() : item;
+  selection.model = top->data(0, kModel).toString().toStdString();
+  if (const QVariant frame = item->data(0, kFrame); frame.isValid()) {
+    selection.frame = frame.toInt();
+    selection.light = item->data(0, kLight).toString().toStdString();
+    const QVariant highlight = item->data(0, kHighlight);
+    selection.highlight = highlight.isValid() ? highlight.toInt() : -1;
+    selection.direction = std::nullopt;
+  }
+  document_.select(selection);
+}
+
+void DiagnosisPanel::showState(const QString& stage) {
+  const bool ready = document_.inspection() && !document_.stale();
+  ask_->setText(queue_.busy() ? tr("Stop") : tr("Find out why"));
+  ask_->setEnabled(queue_.busy() || ready);
+  if (queue_.busy()) return state_->setText(stage.isEmpty() ? tr("Measuring what helps…") : stage);
+  if (!document_.inspection()) return state_->setText(document_.scene() ? tr("Computing…") : tr("No scene"));
+  if (diagnosis_ && of_ != document_.inspection())
+    return state_->setText(tr("These remedies are of an earlier state; ask again for those of the new one"));
+  if (problems_ == 0) return state_->setText(tr("Every model answers, and no frame is wrong"));
+  state_->setText(diagnosis_ ? tr("Best first. Remedies are measured in views that the fit did not see")
+                             : tr("%n model(s) with problems", "", problems_));
+}
+
+}  // namespace glint::gui

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <QWidget>
+#include <memory>
+
+#include "core/diagnose/diagnosis.h"
+#include "gui/base/job_queue.h"
+#include "gui/document/document.h"
+
+class QLabel;
+class QPushButton;
+class QTreeWidget;
+class QTreeWidgetItem;
+
+namespace glint::gui {
+
+using DiagnosisPtr = std::shared_ptr<const Diagnosis>;
+
+/// What is wrong: models without an answer with their reasons, frames whose highlights are missed or far off, and, when asked, why and what
+/// helps, as `glint diagnose` says it. A click on a frame or highlight selects it; "Try" makes the change as one step of undo.
+class DiagnosisPanel : public QWidget {
+  Q_OBJECT
+ public:
+  explicit DiagnosisPanel(Document& document, QWidget* parent = nullptr);
+  int problems() const { return problems_; }
+  bool busy() const { return queue_.busy(); }
+  QTreeWidget* list() const { return list_; }
+
+ public slots:
+  /// Measures what helps, off the interface thread; remedies appear as they are found. Asked again while it runs: stops.
+  void diagnose();
+  void stop();
+
+ signals:
+  void problemsChanged(int count);  ///< models that do not answer, and frames with missed or spurious highlights or large errors
+  void problem(const QString& oneLine);
+  void message(const QString& oneLine);
+
+ private:
+  void refresh();
+  void fillProblems();
+  void fillDiagnosis(const ModelDiagnosis& model);
+  /// The line of a model, made with this text where there is none.
+  QTreeWidgetItem* itemOf(const std::string& model, const QString& otherwise);
+  void addRemedy(const std::string& model, const Remedy& remedy);
+  void tryRemedy(const std::string& model, const Change& change);
+  void showState(const QString& stage = {});
+  void choose(QTreeWidgetItem* item);
+
+  Document& document_;
+  QPushButton* ask_;
+  QLabel* state_;
+  QTreeWidget* list_;
+  std::shared_ptr<const Inspection> of_;  ///< what the diagnosis is of
+  DiagnosisPtr diagnosis_;
+  std::vector<std::pair<std::string, Remedy>> found_;  ///< so far, by the model's name
+  int problems_ = 0;
+  JobQueue queue_{JobQueue::Rank::Background};
+};
+
+}  // namespace glint::gui
