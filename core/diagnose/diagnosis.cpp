@@ -28,6 +28,7 @@ class ErrorsOfModels {
   ErrorsOfModels(const Inspection& inspection, const ProgressFn& progress)
       : r_(inspection), progress_(progress), frames_(spreadFrames(inspection, kMostFrames)) {}
   const std::vector<int>& frames() const { return frames_; }
+  bool has(const std::string& model) const { return known_.count(model) > 0; }
   const LeftOutError& of(const std::string& model) {
     const auto it = known_.find(model);
     if (it != known_.end()) return it->second;
@@ -55,9 +56,12 @@ class ModelCase {
     judge();
     if (d_.status == ModelDiagnosis::Status::Ok) return std::move(d_);
     explain();
+    const std::vector<CandidateChange> candidates = candidateChanges(r_, model_, d_.evidence);
+    d_.known += static_cast<int>(candidates.size());
+    changes(candidates, false);
     otherModels();
     leaveOutOfScore();
-    changes();
+    changes(candidates, true);
     std::stable_sort(d_.remedies.begin(), d_.remedies.end(),
                      [](const Remedy& a, const Remedy& b) { return a.after.meanPct() < b.after.meanPct(); });
     return std::move(d_);
@@ -143,6 +147,7 @@ class ModelCase {
     for (const std::string& other : modelIds()) {
       if (other == d_.model) continue;
       ++d_.known;
+      if (solved() && !options_.slowToo && !errors_.has(other)) continue;  // from simple to rich: a lobe takes seconds
       keep({{.model = other}, modelByName(other).assumption()}, errors_.of(other));
     }
   }
@@ -201,18 +206,16 @@ class ModelCase {
     return std::binary_search(request.excluded.begin(), request.excluded.end(), frame);
   }
 
-  void changes() {
-    const std::vector<CandidateChange> candidates = candidateChanges(r_, model_, d_.evidence);
-    d_.known += static_cast<int>(candidates.size());
-    int measured = 0;
+  void changes(const std::vector<CandidateChange>& candidates, bool slow) {
     for (const CandidateChange& candidate : candidates) {
-      if (measured == options_.mostTried || (candidate.slow && !options_.slowToo && solved())) break;
-      if (!report(progress_, {d_.model + ": try " + flagsOf(candidate.change), measured, static_cast<int>(candidates.size())}))
+      if (candidate.slow != slow) continue;
+      if (measured_ == options_.mostTried || (slow && !options_.slowToo && solved())) break;
+      if (!report(progress_, {d_.model + ": try " + flagsOf(candidate.change), measured_, static_cast<int>(candidates.size())}))
         throw Stopped{};
       const Inspection inspection = changed(candidate.change);
       keep(candidate, candidate.newContours ? leftOutError(inspection, model_, progress_)
                                             : unseenError(inspection, r_, errors_.frames(), model_, progress_));
-      ++measured;
+      ++measured_;
     }
   }
 
@@ -222,6 +225,7 @@ class ModelCase {
   const DiagnoseOptions& options_;
   const ProgressFn& progress_;
   ModelDiagnosis d_;
+  int measured_ = 0;  ///< changes, other models aside
 };
 
 }  // namespace

@@ -290,9 +290,8 @@ void MainWindow::buildDocks() {
   QDockWidget* const problems = docks_.add("problems", tr("Problems"), diagnosis_, Qt::BottomDockWidgetArea, "errors");
   connect(diagnosis_, &DiagnosisPanel::problem, this, &MainWindow::showProblem);
   connect(diagnosis_, &DiagnosisPanel::message, this, &MainWindow::tell);
-  connect(diagnosis_, &DiagnosisPanel::problemsChanged, problems, [problems](int count) {
-    problems->setWindowTitle(count == 0 ? tr("Problems") : tr("Problems (%1)").arg(count));
-  });
+  connect(diagnosis_, &DiagnosisPanel::problemsChanged, problems,
+          [problems](int count) { problems->setWindowTitle(count == 0 ? tr("Problems") : tr("Problems (%1)").arg(count)); });
   plots_ = new PlotsPanel(document_);
   docks_.add("plots", tr("Plots"), plots_, Qt::BottomDockWidgetArea);
   log_ = new LogPanel;

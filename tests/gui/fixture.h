@@ -46,6 +46,7 @@ struct TestClass {
   TestFactory make;
 };
 QObject* makeDecodedFramesTest();
+QObject* makeDiagnosisTest();
 QObject* makeDocumentTest();
 QObject* makeRunnerTest();
 QObject* makeObserverTest();

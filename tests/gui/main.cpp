@@ -34,6 +34,7 @@ int main(int argc, char** argv) {
       {"lessons", makeLessonsTest},
       {"export", makeExportTest},
       {"plots", makePlotsTest},
+      {"diagnosis", makeDiagnosisTest},
       {"tradeoff", makeTradeoffTest},
       {"parameters", makeParametersTest},
       {"picking", makePickingTest},

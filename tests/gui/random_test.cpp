@@ -46,7 +46,8 @@ const std::map<QString, const char*>& leftOut() {
                                                   {"explain.play-walk", "goes on by the clock"},
                                                   {"lesson.", "opens another session"},
                                                   {"edit.stop", "leaves results out of date"},
-                                                  {"plots.influence", "fits once per training frame"}};
+                                                  {"plots.influence", "fits once per training frame"},
+                                                  {"plots.diagnose", "goes on in the background"}};
   return ids;
 }
 bool isLeftOut(const QString& id) {

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What is wrong and what helps, by clicks: a fault is put into exact contours, and the dock must lead out of it.
+#include <QPushButton>
+#include <QSignalSpy>
+#include <QTreeWidget>
+
+#include "gui/panels/diagnosis_panel.h"
+#include "tests/core/inspect/exact_scene.h"
+#include "tests/gui/fixture.h"
+
+namespace glint::gui {
+
+class DiagnosisTest : public QObject {
+  Q_OBJECT
+ private:
+  /// The contour of frame 2 lies 12 px beside its place: its exclusion leaves exact contours.
+  static std::shared_ptr<Scene> faulty() {
+    using namespace testing_support;
+    const std::shared_ptr<Scene> scene = exactScene(sphere(0.5), 9);
+    Highlight& h = scene->frames[2].highlights[0];
+    for (Pixel& p : h.contour.points) p.x() += 12;
+    h.peak.x() += 12;
+    return scene;
+  }
+  static void open(Document& document, std::shared_ptr<const Scene> scene) {
+    Opened opened;
+    opened.path = "exact.json";
+    opened.scene = std::move(scene);
+    opened.request.models = {"limit-angle"};
+    opened.request.train = "0-5";
+    document.open(opened);
+    compute(document);
+  }
+  static void compute(Document& document) {
+    const InspectionRequest request = document.request();
+    document.setInspection(std::make_shared<const Inspection>(inspect(document.sharedScene(), request)), request);
+  }
+  static QStringList lines(const DiagnosisPanel& panel) {
+    QStringList all;
+    for (int i = 0; i < panel.list()->topLevelItemCount(); ++i) {
+      const QTreeWidgetItem* top = panel.list()->topLevelItem(i);
+      all << top->text(0);
+      for (int j = 0; j < top->childCount(); ++j) all << top->child(j)->text(0);
+    }
+    return all;
+  }
+  static QPushButton* tryOf(const DiagnosisPanel& panel, const QString& flags) {
+    for (QPushButton* b : panel.list()->findChildren<QPushButton*>(QStringLiteral("try")))
+      if (b->accessibleName() == QStringLiteral("Try ") + flags) return b;
+    return nullptr;
+  }
+
+ private slots:
+  void aFaultIsNamedAndItsRemedyIsOneStepOfUndo() {
+    Document document(parseTrainSpec);
+    DiagnosisPanel panel(document);
+    panel.resize(600, 400);
+    panel.show();
+    QVERIFY(QTest::qWaitForWindowExposed(&panel));
+    open(document, faulty());
+    auto* ask = panel.findChild<QPushButton*>(QStringLiteral("diagnose"));
+    QVERIFY(ask->isEnabled());
+    QTest::mouseClick(ask, Qt::LeftButton);
+    QTRY_VERIFY(!panel.busy());
+    QVERIFY2(!lines(panel).filter(QStringLiteral("against it: frame v2")).isEmpty(), qPrintable(lines(panel).join("\n")));
+    // A click on the highlight selects it.
+    const QList<QTreeWidgetItem*> against =
+        panel.list()->findItems(QStringLiteral("against it: frame v2"), Qt::MatchStartsWith | Qt::MatchRecursive);
+    panel.list()->scrollToItem(against.at(0));
+    QTest::mouseClick(panel.list()->viewport(), Qt::LeftButton, {}, panel.list()->visualItemRect(against.at(0)).center());
+    QCOMPARE(document.selection().frame, 2);
+    QCOMPARE(document.selection().light, std::string("lamp"));
+    QCOMPARE(document.selection().model, std::string("limit-angle"));
+
+    QPushButton* const remedy = tryOf(panel, QStringLiteral("--exclude 2"));
+    QVERIFY(remedy);
+    const InspectionRequest before = document.request();
+    const int steps = document.undoStack()->index();
+    remedy->click();
+    QCOMPARE(document.request().excluded, std::vector<int>{2});
+    QCOMPARE(document.undoStack()->index(), steps + 1);
+    compute(document);
+    QCOMPARE(panel.problems(), 0);
+    document.undoStack()->undo();
+    QVERIFY(document.request() == before);
+  }
+
+  void anotherModelIsAddedAndSelected() {
+    Document document(parseTrainSpec);
+    DiagnosisPanel panel(document);
+    Opened opened;
+    opened.path = "exact.json";
+    opened.scene = testing_support::exactScene(testing_support::cylinder(0.3), 9);
+    opened.request.models = {"primal"};  // cannot explain a cylinder
+    opened.request.train = "0-5";
+    document.open(opened);
+    compute(document);
+    QVERIFY(panel.problems() > 0);
+    panel.diagnose();
+    QTRY_VERIFY(!panel.busy());
+    QPushButton* const remedy = tryOf(panel, QStringLiteral("--model limit-angle"));
+    QVERIFY2(remedy, qPrintable(lines(panel).join("\n")));
+    remedy->click();
+    QCOMPARE(document.request().models, (std::vector<std::string>{"primal", "limit-angle"}));
+    QCOMPARE(document.selection().model, std::string("limit-angle"));
+  }
+
+  void withoutProblemsItSaysSoAndAsksNothing() {
+    Document document(parseTrainSpec);
+    DiagnosisPanel panel(document);
+    QVERIFY(!panel.findChild<QPushButton*>(QStringLiteral("diagnose"))->isEnabled());
+    QSignalSpy problems(&panel, &DiagnosisPanel::problemsChanged);
+    open(document, testing_support::exactScene(testing_support::sphere(0.5), 9));
+    QCOMPARE(panel.problems(), 0);
+    QCOMPARE(problems.last().at(0).toInt(), 0);
+    QCOMPARE(panel.list()->topLevelItemCount(), 0);
+  }
+
+  void aStopEndsItAndKeepsWhatWasFound() {
+    Document document(parseTrainSpec);
+    DiagnosisPanel panel(document);
+    open(document, faulty());
+    panel.diagnose();
+    QVERIFY(panel.busy());
+    panel.stop();
+    QTRY_VERIFY(!panel.busy());
+    QVERIFY(panel.findChild<QPushButton*>(QStringLiteral("diagnose"))->isEnabled());
+  }
+};
+
+QObject* makeDiagnosisTest() { return new DiagnosisTest; }
+
+}  // namespace glint::gui
+
+#include "diagnosis_test.moc"
