@@ -49,8 +49,7 @@ void InspectionArguments::declare(Options& o, const std::string& modelsHelp) {
   o.option(train, "--train", "SPEC",
            "Training frames: numbers, ids or ranges (0-5,14), first:K, spread:K, or per-surface (default: the session's, else "
            "first:6)");
-  o.option(exclude, "--exclude", "SPEC",
-           "Frames to exclude from training and scoring: numbers, ids or ranges (default: the session's, else none)");
+  o.option(exclude, "--exclude", "SPEC", kExcludeHelp);
   o.option(level, "--level", "Q",
            "Contour level: fraction of the peak above the background, or auto: chosen by the training frames, with the reason "
            "(default: the session's, else 0.5)");
@@ -62,6 +61,12 @@ void InspectionArguments::declare(Options& o, const std::string& modelsHelp) {
   o.option(seed, "--seed", "N", "Seed of the noise");
   o.option(truth, "--truth", "DIR", "Score against contours stored as FRAME.json instead of detected ones");
   places.declare(o);
+}
+
+void exclude(const std::string& spec, const Scene& scene, InspectionRequest& request) {
+  if (spec.empty()) return;
+  request.excluded = parseFrames(spec, scene, "--exclude");
+  if (request.excluded.size() == scene.frames.size()) throw InputError("", "--exclude " + spec, "excludes every frame");
 }
 
 void applyEach(Settings& settings, const std::vector<std::string>& keysAndValues) {
@@ -111,10 +116,7 @@ bool InspectionArguments::sets(const std::string& key) const {
 
 std::shared_ptr<const Scene> InspectionArguments::scene(InspectionRequest& request, std::string* levelReason) const {
   auto scene = std::make_shared<const Scene>(places.read(input));
-  if (!exclude.empty()) {
-    request.excluded = parseFrames(exclude, *scene, "--exclude");
-    if (request.excluded.size() == scene->frames.size()) throw InputError("", "--exclude " + exclude, "excludes every frame");
-  }
+  cli::exclude(exclude, *scene, request);
   if (level == kAutoLevel) {
     std::vector<int> frames = parseTrainSpec(request.train, *scene).frames;
     std::erase_if(

@@ -41,6 +41,12 @@ struct InspectionArguments {
   std::shared_ptr<const Scene> scene(InspectionRequest& request, std::string* levelReason = nullptr) const;
 };
 
+/// `--exclude` of a command that trains.
+inline constexpr const char* kExcludeHelp =
+    "Frames to exclude from training and scoring: numbers, ids or ranges (default: the session's, else none)";
+/// Puts the frames of --exclude into the request; the request's own stay where the text is empty. InputError for one that names no frame, or all.
+void exclude(const std::string& spec, const Scene& scene, InspectionRequest& request);
+
 /// Every KEY=VALUE of --set, in its order. InputError for a text of another form, an unknown key or a value out of range.
 void applyEach(Settings& settings, const std::vector<std::string>& keysAndValues);
 

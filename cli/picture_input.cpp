@@ -59,6 +59,7 @@ void PictureInput::declare(Options& o) {
   o.option(models, "--models", "A,B", "Models to compute and draw (default: the session's, else all)");
   o.option(train, "--train", "SPEC",
            "Training frames: 0-5, first:6, spread:6, per-surface (default: the session's, else first:6)");
+  o.option(exclude, "--exclude", "SPEC", kExcludeHelp);
   o.choice(source, "--source", {"", "radiance", "image"},
            "Pixels to use where a frame has both: float radiance or captured image (default: the session's, else radiance)");
   o.repeated(set, "--set", "KEY=VALUE", "Any setting by its dotted name (`glint settings` lists them); may be repeated");
@@ -83,6 +84,7 @@ PictureInput::Opened PictureInput::open(const Context& context) const {
   }
   if (opened.scene->frames.empty()) throw CannotAnswer{{Reason::TooFewViews, input + ": the scene has no frames"}};
   if (!train.empty()) opened.request.train = train;
+  cli::exclude(exclude, *opened.scene, opened.request);
   if (!source.empty()) opened.request.source = source == "image" ? FrameSource::Image : FrameSource::Radiance;
   applyEach(opened.request.settings, set);
   if (!models.empty()) {

@@ -16,7 +16,7 @@ namespace glint::cli {
 
 /// What `render` and `movie` draw: the input and how it is shown.
 struct PictureInput {
-  std::string input, layers, models, train, theme = "dark", source;
+  std::string input, layers, models, train, exclude, theme = "dark", source;
   std::vector<std::string> set;
   double glyphs = 1;
   SceneArguments places;

@@ -45,7 +45,7 @@ std::string predictionTable(const Inspection& inspection, const std::vector<int>
 
 Command predictCommand() {
   struct Arguments {
-    std::string session, frames, out, json, preset, masks, labels, poses;
+    std::string session, frames, exclude, out, json, preset, masks, labels, poses;
     std::vector<std::string> set;
     bool stream = false;
     SceneArguments places;
@@ -81,6 +81,7 @@ Command predictCommand() {
   c.declare = [a](Options& o) {
     o.positional(a->session, "FILE.glint", "A session written by `glint reconstruct` or the inspector");
     o.option(a->frames, "--frames", "SPEC", "Frames to predict: numbers, ids, ranges, first:K or spread:K (default: all)");
+    o.option(a->exclude, "--exclude", "SPEC", kExcludeHelp);
     o.option(a->preset, "--preset", "NAME",
              "Take model and settings from the session's trade-off: fast, balanced, exact or chosen");
     o.option(a->out, "--out", "DIR", "Write contours, overlays and labels to this folder");
@@ -102,6 +103,7 @@ Command predictCommand() {
     InspectionRequest request = opened.session.request;
     if (!a->preset.empty()) applyPreset(opened.session, a->preset, request);
     applyEach(request.settings, a->set);
+    exclude(a->exclude, *opened.scene, request);
     if (a->stream) return answerPoses(opened, request, a->poses, context);
     const Scene& scene = *opened.scene;
     std::vector<int> frames;

@@ -20,7 +20,7 @@ namespace glint::cli {
 namespace {
 
 struct RetextureArguments {
-  std::string session, frame, texture, background, out, marks, model, light, mapping = "natural", shading = "auto";
+  std::string session, frame, exclude, texture, background, out, marks, model, light, mapping = "natural", shading = "auto";
   bool remove = false;
   double repeat = 1, albedo = 0, margin = 4;
   std::vector<std::string> set;
@@ -109,6 +109,7 @@ int run(const RetextureArguments& a, const Context& context) {
   checkOutputs(a, scene);
   InspectionRequest request = opened.session.request;
   applyEach(request.settings, a.set);
+  exclude(a.exclude, *opened.scene, request);
   const std::string model = modelFor(a, opened.session);
   request.models = {model};
   const RetextureRequest wanted = requestOf(a, model, scene.frames[std::size_t(frames[0])].camera);
@@ -153,6 +154,7 @@ Command retextureCommand() {
     o.positional(a->session, "FILE.glint", "A session written by `glint reconstruct` or the inspector");
     o.required(a->frame, "--frame", "ID", "The frame: id or number");
     o.required(a->out, "-o,--out", "PNG", "The picture to write");
+    o.option(a->exclude, "--exclude", "SPEC", kExcludeHelp);
     o.option(a->texture, "--texture", "FILE", "A picture that becomes the surface's albedo");
     o.option(a->background, "--background", "FILE", "A picture of this frame without the highlight, of the frame's size");
     o.flag(a->remove, "--remove", "Remove the observed highlight");

@@ -91,6 +91,27 @@ TEST_F(Diagnose, WithoutAModelItWritesAllTheSameAndEndsWith3) {
   }
 }
 
+TEST_F(Diagnose, EveryCommandThatTrainsExcludes) {
+  for (const char* command :
+       {"reconstruct", "evaluate", "diagnose", "tradeoff", "predict", "retexture", "render", "movie", "lights"}) {
+    const ProgramRun help = runGlint(std::string(command) + " --help");
+    EXPECT_THAT(help.out, HasSubstr("--exclude")) << command;
+  }
+  moveContour(2);
+  const auto predicted = [&](const std::string& saved, const std::string& asked) {
+    saveSession("--models limit-angle --train 0-5 " + saved);
+    const ProgramRun run = onSession("predict", "--frames 7 --json - " + asked);
+    EXPECT_EQ(run.code, 0) << run.err;
+    std::filesystem::remove(folder_ / "run.glint");
+    Json frames = Json::parse(run.out)["models"]["limit-angle"];
+    for (Json& f : frames) f.erase("time_us");
+    return frames.dump();
+  };
+  const std::string with = predicted("", ""), stored = predicted("--exclude 2", ""), asked = predicted("", "--exclude 2");
+  EXPECT_EQ(asked, stored);
+  EXPECT_NE(asked, with);
+}
+
 TEST_F(Diagnose, WrongRequestsAreOneLine) {
   for (const char* wrong :
        {"--models auto", "--models nothing", "--most -1", "--exclude 99", "--set fit.solver=best", "--level 2"}) {
