@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/base/json_dom.h"
+#include "core/diagnose/mismatch.h"
 #include "core/model/star.h"
 #include "core/report/band_text.h"
 #include "core/report/detection_error.h"
@@ -196,9 +197,7 @@ void addRows(const Inspection& inspection, const FrameComparison& c, Json& out) 
   for (const FrameComparison::Row& row : c.rows) {
     Json j = base(row.observed >= 0 ? row.observed : row.predicted);
     j["status"] = row.metrics ? "ok" : row.observed >= 0 ? "missed" : row.predicted >= 0 ? "spurious" : "failed";
-    j["reason"] = row.failure                              ? row.failure->message()
-                  : row.observed < 0 && e.scoringFailure() ? e.scoringFailure()->message()
-                                                           : "";
+    j["reason"] = row.metrics ? "" : whyUnmatched(inspection, c, row);
     metricsJson(&row, c, j);
     out.push_back(j);
   }

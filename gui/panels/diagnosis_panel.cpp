@@ -9,6 +9,7 @@
 #include <QVBoxLayout>
 #include <algorithm>
 
+#include "core/diagnose/mismatch.h"
 #include "core/inspect/summary.h"
 #include "core/report/diagnosis_report.h"
 #include "core/selection/selection.h"
@@ -28,19 +29,27 @@ struct WrongFrame {
   int missed = 0, spurious = 0;
   double pct = 0;  ///< largest error of a matched highlight
   std::string reason;
+  QStringList causes;  ///< of what is missed or spurious
 };
 
 std::vector<WrongFrame> wrongFrames(const Inspection& inspection, const ModelResult& result) {
   std::vector<WrongFrame> wrong;
   for (const FrameComparison& c : result.frames) {
     if (!inspection.isTraining(c.frame) && !inspection.isHeldOut(c.frame)) continue;
-    WrongFrame w{c.frame, c.light, 0, 0, 0, {}};
+    WrongFrame w;
+    w.frame = c.frame;
+    w.light = c.light;
     for (const FrameComparison::Row& row : c.rows) {
       w.missed += row.observed >= 0 && row.predicted < 0;
       w.spurious += row.observed < 0 && row.predicted >= 0;
       if (row.metrics) w.pct = std::max(w.pct, row.metrics->contourErrorPct);
     }
     if (const Failure* const failure = c.prediction.failure()) w.reason = failure->message();
+    // A depth map would have to be read here, on the interface's thread.
+    if (inspection.scene->frames[std::size_t(c.frame)].depth.empty() && !c.prediction.failure())
+      for (const FrameComparison::Row& row : c.rows)
+        if (const QString cause = toQString(whyUnmatched(inspection, c, row)); !cause.isEmpty() && !w.causes.contains(cause))
+          w.causes << cause;
     if (w.missed > 0 || w.spurious > 0 || w.pct > kLargestExpectedPct) wrong.push_back(std::move(w));
   }
   std::stable_sort(wrong.begin(), wrong.end(), [](const WrongFrame& a, const WrongFrame& b) {
@@ -171,6 +180,7 @@ void DiagnosisPanel::fillProblems() {
       if (w.missed) words << tr("%n highlight(s) missed", "", w.missed);
       if (w.spurious) words << tr("%n predicted that nothing shows", "", w.spurious);
       if (!w.reason.empty()) words << toQString(w.reason);
+      words << w.causes;
       if (w.pct > kLargestExpectedPct) words.prepend(tr("off by %1 %").arg(numberText(w.pct, 3)));
       auto* line = addLine(top, tr("frame %1, light %2: %3")
                                     .arg(nameText(inspection->scene->frames[std::size_t(w.frame)].id), toQString(w.light),
