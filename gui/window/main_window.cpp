@@ -510,8 +510,9 @@ Opened MainWindow::snapshot() const {
 bool MainWindow::idle() const { return script_->done() && quiet(); }
 
 bool MainWindow::quiet() const {
-  return !runner_.busy() && !frame_->busy() && !timeline_->busy() && !scene_->busy() && plots_->idle() && !explain_->busy() &&
-         !exports_->busy() && !unreadable_->busy() && !lamps_->busy() && !observer_.busy() && !drawingsWait();
+  return !runner_.busy() && !frame_->busy() && !timeline_->busy() && !scene_->busy() && plots_->idle() && !diagnosis_->busy() &&
+         !explain_->busy() && !exports_->busy() && !unreadable_->busy() && !lamps_->busy() && !observer_.busy() &&
+         !drawingsWait();
 }
 
 QPixmap MainWindow::picture() {
