@@ -20,6 +20,7 @@ Command reconstructCommand();
 Command replayCommand();
 Command retextureCommand();
 Command settingsCommand();
+Command shareCommand();
 Command stabilityCommand();
 Command synthCommand();
 Command tradeoffCommand();
