@@ -21,6 +21,13 @@ SessionView savedView(const std::string& input) {
   return std::filesystem::path(input).extension() == ".glint" ? readSession(input).view : SessionView{};
 }
 
+bool anyFit(const Inspection& inspection) {
+  for (const auto& [name, model] : inspection.models)
+    for (const ModelResult::Fit& fit : model.fits)
+      if (fit.fit) return true;
+  return false;
+}
+
 int runShare(const ShareArguments& a, const Context& context) {
   if (a.out == "-") throw InputError("", "--out -", "a page is written to a file");
   InspectionRequest request = a.request();
@@ -36,7 +43,9 @@ int runShare(const ShareArguments& a, const Context& context) {
   report.program = "glint " GLINT_VERSION;
   const Evaluation e = evaluate(scene, request, report, {a.models == "auto", {}, a.sets("predict.query")}, context.progress());
   for (const std::string& w : warningsOf(e.inspection)) context.warn(w);
-  if (e.failure) throw CannotAnswer{*e.failure};
+  // Where every frame trains, nothing is scored, and there is much to see all the same.
+  if (e.failure && !anyFit(e.inspection)) throw CannotAnswer{*e.failure};
+  if (e.failure) context.warn(e.failure->message());
   context.write(a.out, sharePage(e.inspection, e.report, choice, context.progress()));
   warnOfUnusedTrainingFrames(e.inspection, context);
   const int frames = static_cast<int>(scene->frames.size());

@@ -56,7 +56,7 @@
     at('summary').textContent = plural(data.frames_in_all, 'frame') +
         (data.frames.length < data.frames_in_all ? ', of which this page shows ' + data.frames.length : '') + '. ' + (top ?
         'Smallest mean contour error: ' + top.id + ', ' + percent(top.summary.contour_error_pct.mean) + ' % of the highlight\u2019s diameter (' +
-        top.summary.predicted + ' of ' + top.summary.frames + ' predicted).' : 'No model predicted a highlight.');
+        top.summary.predicted + ' of ' + top.summary.frames + ' predicted).' : 'No model was scored.');
     at('made').textContent = 'Made by ' + (data.program || 'Glint') + ' from ' + data.input + '. This page loads nothing from a network.';
     if (evaluation.warnings.length) {
       at('warnings').hidden = false;
@@ -180,7 +180,7 @@
     }
     const unit = Math.max(view[2], view[3]) / 160;
     for (const mark of frame.marks) {
-      if (!state.layers.peaks || (mark.model !== '' && state.hiddenModels.has(mark.model))) continue;
+      if (!state.layers.peaks || (mark.model !== '' && !shown(mark.model))) continue;
       const [x, y] = mark.at;
       const attributes = { stroke: mark.model === '' ? '#ffffff' : colourOf(mark.model), fill: 'none', 'stroke-width': 1.6, 'vector-effect': 'non-scaling-stroke' };
       const drawn = mark.model === '' ?
@@ -220,6 +220,8 @@
     else if (surface.problem) element(list, 'li', 'Surface: ' + surface.problem);
     else if (surface.triangles < surface.of) element(list, 'li', `Surface: ${surface.triangles} triangles that stand for ${surface.of}.`);
     for (const note of scene ? scene.notes() : []) element(list, 'li', note);
+    const missing = data.lesson ? data.lesson.steps[state.step].layers.filter((id) => kInspectorAlone[id]) : [];
+    if (missing.length) element(list, 'li', 'This step has more in the inspector: ' + missing.map((id) => kInspectorAlone[id]).join(', ') + '.');
   }
 
   // Layers.
@@ -227,6 +229,7 @@
     ['peaks', 'Brightest points, normals'], ['tangent-planes', 'Tangent planes'], ['canonical-ellipses', 'Canonical ellipses'],
     ['ellipsoids', 'Ellipsoids'], ['observed-contours', 'Observed contours'], ['predicted-contours', 'Predicted contours'],
     ['light', 'Light (estimate)'], ['true-light', 'Light (truth)'], ['rays', 'Reflected rays'], ['all-planes', 'Planes of all training frames'], ['labels', 'Names']];
+  const kInspectorAlone = { directions: 'walks in every direction', walk: 'one walk, step by step', cones: 'cones to the ellipsoid' };
   const boxes = {};
   function layerSwitches() {
     for (const [id, title] of layerNames) {
@@ -266,7 +269,7 @@
     words(at('step-remark'), step.remark);
     at('step-back').disabled = place === 0;
     at('step-next').disabled = place === steps.length - 1;
-    showLayers((id) => step.layers.includes(id) || id === 'labels' || id === 'observed-contours' || id === 'photographs');
+    showLayers((id) => step.layers.includes(id) || id === 'labels' || id === 'observed-contours' || (id === 'photographs' && step.layers.includes('cameras')));
     refresh();
   }
   function lesson() {

@@ -498,7 +498,7 @@ function glintScene(data, canvas, labelBox, select) {
       const w = tag.offsetWidth, h = tag.offsetHeight;
       const inside = ([x, y]) => [Math.max(2, Math.min(width - w - 2, x)), Math.max(2, Math.min(height - h - 2, y))];
       const offers = [];
-      for (const away of [9, 26, 46, 70]) offers.push([at[0] + away, at[1] - h / 2], [at[0] - away - w, at[1] - h / 2], [at[0] - w / 2, at[1] - away - h / 2], [at[0] - w / 2, at[1] + away - h / 2],
+      for (const away of [14, 30, 50, 74]) offers.push([at[0] + away, at[1] - h / 2], [at[0] - away - w, at[1] - h / 2], [at[0] - w / 2, at[1] - away - h / 2], [at[0] - w / 2, at[1] + away - h / 2],
         [at[0] + away, at[1] - away], [at[0] + away, at[1] + away - h / 2]);
       const free = offers.map(inside).find(([x, y]) => taken.every((t) => x + w + 3 < t[0] || x > t[0] + t[2] + 3 || y + h + 1 < t[1] || y > t[1] + t[3] + 1));
       if (!free) { labelBox.removeChild(tag); continue; }
