@@ -22,8 +22,8 @@
 namespace glint::viz {
 namespace {
 
-constexpr int kTessellation = 128;       ///< cells a side of an analytic surface
-constexpr int kCoarseDivisions = 120;    ///< cells along the longest side: some 50,000 triangles
+constexpr int kTessellation = 128;     ///< cells a side of an analytic surface
+constexpr int kCoarseDivisions = 120;  ///< cells along the longest side: some 50,000 triangles
 
 bool isFinite(const Eigen::AlignedBox3d& box) { return !box.isEmpty() && box.min().allFinite() && box.max().allFinite(); }
 

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <unordered_map>
@@ -56,7 +57,7 @@ Eigen::AlignedBox3d boxOf(const TriangleMesh& mesh) {
 /// One vertex for each cell of a grid with so many cells along the longest side. @param mesh  drawable, not empty
 TriangleMesh clustered(const TriangleMesh& mesh, int cells) {
   const Eigen::AlignedBox3d box = boxOf(mesh);
-  const double cell = std::max(box.sizes().maxCoeff(), 1e-300) / cells;
+  const double cell = std::max(box.sizes().maxCoeff(), std::numeric_limits<double>::min()) / cells;
   TriangleMesh out;
   const bool normals = !mesh.normals.empty();
   std::unordered_map<long long, int> known;

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# cmake -DOUT=FILE.cpp -DHEADER=PATH -DNAMESPACE=NAME "-DTEXTS=kName=FILE,kName=FILE" -P embed.cmake: files as string literals of a C++ source.
+# cmake -DOUT=FILE.cpp -DHEADER=PATH -DNAMESPACE=NAME (inside glint) "-DTEXTS=kName=FILE,kName=FILE" -P embed.cmake: files as string literals of a C++ source.
 cmake_minimum_required(VERSION 3.25)
 string(REPLACE "," ";" texts "${TEXTS}")
-set(source "// SPDX-License-Identifier: BSD-3-Clause\n// Made by resources/share/embed.cmake.\n#include \"${HEADER}\"\n\nnamespace ${NAMESPACE} {\n")
+set(source "// SPDX-License-Identifier: BSD-3-Clause\n// Made by resources/share/embed.cmake.\n#include \"${HEADER}\"\n\nnamespace glint::${NAMESPACE} {\n")
 file(WRITE "${OUT}.new" "${source}")
 foreach(entry IN LISTS texts)
   string(REGEX MATCH "^([A-Za-z]+)=(.+)$" found "${entry}")
@@ -16,5 +16,5 @@ foreach(entry IN LISTS texts)
   file(APPEND "${OUT}.new" "${text}")
   file(APPEND "${OUT}.new" ")glintText\";\n")
 endforeach()
-file(APPEND "${OUT}.new" "}  // namespace ${NAMESPACE}\n")
+file(APPEND "${OUT}.new" "}  // namespace glint::${NAMESPACE}\n")
 file(RENAME "${OUT}.new" "${OUT}")

@@ -217,7 +217,7 @@ def main():
             for session in files:
                 run(glint, "share", session, "-o", folder / "page.html")
                 size = (folder / "page.html").stat().st_size
-                print(f"{session.stem:20} {size / 1e6:6.2f} MB")
+                print(f"{str(session.parent.relative_to(sessions)):26} {size / 1e6:6.2f} MB")
                 assert size < MOST, session
                 lesson = Page((folder / "page.html").read_text(encoding="utf-8")).data()["lesson"]
                 assert (lesson is not None) == ("lessons" in session.parts)
