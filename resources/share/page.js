@@ -271,6 +271,7 @@
     at('step-next').disabled = place === steps.length - 1;
     showLayers((id) => step.layers.includes(id) || id === 'labels' || id === 'observed-contours' || (id === 'photographs' && step.layers.includes('cameras')));
     refresh();
+    if (scene && !state.through) scene.reset();
   }
   function lesson() {
     if (!data.lesson) return;

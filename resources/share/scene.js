@@ -246,15 +246,19 @@ function glintScene(data, canvas, labelBox, select) {
       const to = eyeAt.clone().sub(at).normalize(), out = normal.clone().multiplyScalar(2 * to.dot(normal)).sub(to);
       const lamp = lightsOf(place).find((l) => l.id === mirror.light && l.homogeneous[3] !== 0);
       const far = lamp ? V(lamp.homogeneous).divideScalar(lamp.homogeneous[3]).distanceTo(at) : sceneSize;
-      lines(group, [[eyeAt, at], [at, at.clone().addScaledVector(out, Math.min(far, 2 * sceneSize))]], kLight[theme], chosen ? 2 : 1);
+      const end = at.clone().addScaledVector(out, Math.min(far, 2 * sceneSize));
+      extent.push(end);
+      lines(group, [[eyeAt, at], [at, end]], kLight[theme], chosen ? 2 : 1);
     }
   }
-  function addMirrors(group) {
+  /// Of the selected frame and of those that train on the surface that is shown.
+  function mirrorsToDraw() {
+    const all = [];
     data.frames.forEach((frame, place) => {
-      const chosen = place === state.frame;
-      if (chosen || (frame.role === 'training' && frame.surface === data.frames[state.frame].surface && !state.through))
-        for (const mirror of frame.mirrors) addMirror(group, place, mirror, chosen);
+      if (place === state.frame || (frame.role === 'training' && frame.surface === data.frames[state.frame].surface && !state.through))
+        for (const mirror of frame.mirrors) all.push([place, mirror]);
     });
+    return all;
   }
   function addContours(group) {
     const frame = data.frames[state.frame];
@@ -379,7 +383,8 @@ function glintScene(data, canvas, labelBox, select) {
       });
     if (state.through) photographAt(content, state.frame, 2048, { transparent: true, opacity: 0.5, depthTest: false, depthWrite: false });
     addCameras(content);
-    if (state.layers['virtual-cameras'] || state.layers['tangent-planes'] || state.layers['canonical-ellipses'] || state.layers.peaks || state.layers.rays) addMirrors(content);
+    if (state.layers['virtual-cameras'] || state.layers['tangent-planes'] || state.layers['canonical-ellipses'] || state.layers.peaks || state.layers.rays)
+      for (const [place, mirror] of mirrorsToDraw()) addMirror(content, place, mirror, place === state.frame);
     addContours(content);
     if (state.layers.light) addLights(content);
     if (state.layers['true-light']) addTrueLights(content);
@@ -433,8 +438,9 @@ function glintScene(data, canvas, labelBox, select) {
     const back = backOf(), right = up.clone().cross(back).normalize(), above = back.clone().cross(right);
     const points = [...extent];
     for (const box of [surfaceBox]) for (let i = 0; i < 8; ++i) points.push(new THREE.Vector3(i & 1 ? box.max.x : box.min.x, i & 2 ? box.max.y : box.min.y, i & 4 ? box.max.z : box.min.z));
-    for (const place of camerasToDraw()) points.push(poses[place].centre, ...corners(place));
-    for (const mirror of data.frames[state.frame].mirrors) if (state.layers['virtual-cameras']) points.push(reflected(planeOf(mirror), poses[state.frame].centre));
+    if (state.layers.cameras || state.layers.rays) for (const place of camerasToDraw()) points.push(poses[place].centre, ...corners(place));
+    if (state.layers['virtual-cameras'])
+      for (const [place, mirror] of mirrorsToDraw()) for (const p of [poses[place].centre, ...corners(place)]) points.push(reflected(planeOf(mirror), p));
     const high = Math.tan(eye.fov * Math.PI / 360), wide = high * aspect(), kMargin = 1.1;
     // The middle of what is seen, found by a few steps, because far points count less.
     const middle = new THREE.Box3().setFromPoints(points).getCenter(new THREE.Vector3());
