@@ -13,6 +13,7 @@
 #include "core/base/limits.h"
 #include "core/base/number_text.h"
 #include "core/base/safe_text.h"
+#include "core/base/similar_name.h"
 #include "core/base/task_memory.h"
 #include "core/base/version.h"
 #include "core/plugin/load.h"
@@ -77,7 +78,7 @@ int fail(const std::string& line, int code) {
   if (!finish()) return stopped();  // what fails after Ctrl-C fails because of it: its files are being removed
   dropWarnings();
   clearProgressLine();
-  std::fprintf(stderr, "glint: %s\n", messageLine(line).c_str());
+  std::fprintf(stderr, "%s %s\n", programName(Tone::Error).c_str(), messageLine(line).c_str());
   return code;
 }
 
@@ -189,6 +190,24 @@ struct Everywhere {
   }
 };
 
+std::vector<std::string> namesOf(const std::vector<Command>& commands) {
+  std::vector<std::string> names;
+  for (const Command& c : commands) names.push_back(c.name);
+  return names;
+}
+
+/// Which flag of the command was meant by the first one that it does not have, in words; "" where none is near.
+std::string meantOption(const CLI::App& app) {
+  for (const CLI::App* sub : app.get_subcommands()) {
+    std::vector<std::string> known;
+    for (const CLI::Option* option : sub->get_options())
+      for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+    for (const std::string& word : sub->remaining())
+      if (word.rfind("--", 0) == 0) return didYouMean(word.substr(0, word.find('=')), known);
+  }
+  return "";
+}
+
 /// What a command line that cannot be parsed ends with: a page that was asked for, or one line that says what is wrong.
 int answer(const CLI::App& app, const CLI::ParseError& e, const std::string& first, const std::vector<Command>& commands) {
   if (e.get_exit_code() == 0) {  // --help, --version
@@ -199,10 +218,10 @@ int answer(const CLI::App& app, const CLI::ParseError& e, const std::string& fir
   }
   const bool known = std::any_of(commands.begin(), commands.end(), [&](const Command& c) { return c.name == first; });
   if (!known && !first.empty() && first[0] != '-')
-    return fail("'" + first + "' is not a command (see glint --help)", kWrongInput);
+    return fail("'" + first + "' is not a command" + didYouMean(first, namesOf(commands)) + " (see glint --help)", kWrongInput);
   std::string who;
   for (const CLI::App* sub : app.get_subcommands()) who = sub->get_name() + " ";
-  return fail(std::string(e.what()) + " (see glint " + who + "--help)", kWrongInput);
+  return fail(std::string(e.what()) + meantOption(app) + " (see glint " + who + "--help)", kWrongInput);
 }
 
 int run(int argc, char** argv, const std::vector<Command>& commands) {
@@ -230,6 +249,10 @@ int run(int argc, char** argv, const std::vector<Command>& commands) {
     command.declare(options);
     everywhere.declare(*sub);
     sub->callback([&chosen, &command] { chosen = &command; });
+  }
+  if (argc < 2) {  // `glint` alone asks what there is
+    Context().print(app.help());
+    return kDone;
   }
   try {
     app.parse(argc, argv);

@@ -56,8 +56,10 @@ class Context {
   void info(const std::string& line) const;  ///< on standard error, on a terminal only
   /// To standard output, control characters from files escaped. InputError when that is full or closed.
   void print(const std::string& text) const;
-  /// "-" = standard output, unchanged; else a file written atomically. InputError when it cannot be written.
+  /// "-" = standard output, unchanged; else a file written atomically, and said so. InputError when it cannot be written.
   void write(const std::string& fileOrDash, const std::string& content) const;
+  /// "wrote FILE", on standard error, on a terminal only. For files that a command writes by other means than `write`.
+  void wrote(const std::string& file) const;
 };
 
 /// One subcommand. `run` returns an exit code or throws InputError (2), CannotAnswer (3), Stopped (130), std::invalid_argument

@@ -21,6 +21,7 @@ Command reconstructCommand();
 Command replayCommand();
 Command retextureCommand();
 Command settingsCommand();
+Command shareCommand();
 Command stabilityCommand();
 Command synthCommand();
 Command tradeoffCommand();

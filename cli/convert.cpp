@@ -81,10 +81,12 @@ Command convertCommand() {
       const Exported exported = transforms ? transformsOf(scene, output) : colmapOf(scene, output);
       for (const std::string& w : exported.leftOut) context.warn(w);
       exported.write();
+      context.wrote(output);
       return kDone;
     }
     if (!a->labels.empty()) scene = labelledBy(a->labels, scene, context);
     writeScene(scene, output);
+    context.wrote(output);
     try {
       readScene(output);
     } catch (const InputError& e) {

@@ -24,6 +24,7 @@ int main(int argc, char** argv) {
         convertCommand(),
         renderCommand(),
         movieCommand(),
+        shareCommand(),
         replayCommand(),
         compareCommand(),
         stabilityCommand(),

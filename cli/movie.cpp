@@ -59,6 +59,7 @@ int run(const MovieArguments& a, const Context& context) {
           return viz::framePicture(*inspection, f, photographOf(*inspection, f), format.width, format.height, options);
         },
         context.progress());
+    context.wrote(a.out);
     return kDone;
   }
   viz::SceneView view;
@@ -74,6 +75,7 @@ int run(const MovieArguments& a, const Context& context) {
           return target->render(view);
         },
         context.progress());
+    context.wrote(a.out);
     return kDone;
   }
   view.setEye(viz::Eye::Camera);
@@ -87,6 +89,7 @@ int run(const MovieArguments& a, const Context& context) {
         return target->render(view);
       },
       context.progress());
+  context.wrote(a.out);
   return kDone;
 }
 

@@ -100,6 +100,7 @@ Command reconstructCommand() {
     session.file = a->out;
     session.notes = levelReason;
     writeSession(session, a->out);
+    context.wrote(a->out);
     context.print(text);
     return kDone;
   };

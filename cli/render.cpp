@@ -79,6 +79,7 @@ int run(const RenderArguments& a, const Context& context) {
                                 : viz::ladderPicture(*inspection, *frame, photograph, width, height, options);
   }
   viz::writePng(picture, a.out);
+  context.wrote(a.out);
   warnOfUnusedTrainingFrames(*inspection, context);
   return kDone;
 }

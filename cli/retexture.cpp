@@ -127,6 +127,7 @@ int run(const RetextureArguments& a, const Context& context) {
   warnOfUnusedTrainingFrames(inspection, context);
   if (!a.marks.empty()) writePng(a.marks, markPicture(*result));
   writePng(a.out, result->picture);
+  context.wrote(a.out);
   context.print(summary(*result, scene, frames[0], model));
   return kDone;
 }

@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <mutex>
 #include <string>
@@ -28,6 +29,15 @@ bool onTerminal() {
   return terminal;
 }
 
+bool coloured() {
+  static const bool wanted = [] {
+    const char* const without = std::getenv("NO_COLOR");
+    const char* const kind = std::getenv("TERM");
+    return onTerminal() && !(without && *without) && kind && std::strcmp(kind, "dumb") != 0;
+  }();
+  return wanted;
+}
+
 void clearLocked() {
   if (!lineShown) return;
   std::fputs("\r\x1b[K", stderr);
@@ -47,6 +57,11 @@ std::vector<std::string> waiting;  // guarded by lineMutex
 bool eachWarning = false;
 
 }  // namespace
+
+std::string programName(Tone tone) {
+  if (tone == Tone::Info || !coloured()) return "glint:";
+  return tone == Tone::Error ? "\x1b[1;31mglint:\x1b[0m" : "\x1b[1;33mglint:\x1b[0m";
+}
 
 void clearProgressLine() {
   const std::lock_guard<std::mutex> lock(lineMutex);
@@ -82,7 +97,7 @@ void showWarnings() {
   if (waiting.empty()) return;
   clearLocked();
   if (waiting.size() == 1) {
-    std::fprintf(stderr, "glint: warning: %s\n", messageLine(waiting.front()).c_str());
+    std::fprintf(stderr, "%s warning: %s\n", programName(Tone::Warning).c_str(), messageLine(waiting.front()).c_str());
   } else {
     // Each has its share of the line; what a short one leaves goes to those after it.
     constexpr std::size_t kFewest = 60;  // bytes: enough to say what a warning is about
@@ -102,7 +117,7 @@ void showWarnings() {
       line += (i ? " | " : "") + text;
       left -= std::min(left, text.size() + 3);
     }
-    std::fprintf(stderr, "glint: %s%s%s\n", start.c_str(), line.c_str(), whole ? "" : kMore);
+    std::fprintf(stderr, "%s %s%s%s\n", programName(Tone::Warning).c_str(), start.c_str(), line.c_str(), whole ? "" : kMore);
   }
   waiting.clear();
 }
@@ -111,7 +126,7 @@ void Context::warn(const std::string& line) const {
   const std::lock_guard<std::mutex> lock(lineMutex);
   if (!eachWarning) return waiting.push_back(line);
   clearLocked();
-  std::fprintf(stderr, "glint: warning: %s\n", messageLine(line).c_str());
+  std::fprintf(stderr, "%s warning: %s\n", programName(Tone::Warning).c_str(), messageLine(line).c_str());
 }
 
 void Context::info(const std::string& line) const {
@@ -125,6 +140,13 @@ void Context::print(const std::string& text) const { toOutput(withoutControls(te
 void Context::write(const std::string& fileOrDash, const std::string& content) const {
   if (fileOrDash == "-") return toOutput(content);
   atomicWrite(fileOrDash, content);
+  wrote(fileOrDash);
+}
+
+void Context::wrote(const std::string& file) const {
+  if (!onTerminal()) return;
+  clearProgressLine();
+  std::fprintf(stderr, "%s wrote %s\n", programName(Tone::Info).c_str(), messageLine(file).c_str());
 }
 
 }  // namespace glint::cli

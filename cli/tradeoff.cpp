@@ -124,11 +124,13 @@ Command tradeoffCommand() {
       Session session = sessionOf(inspect(scene, request, context.progress()), context.progress());
       session.tradeoff = t;
       writeSession(session, a->out);
+      context.wrote(a->out);
     }
     if (isSession && !a->keepSession) {
       Session session = readSession(a->input);
       session.tradeoff = t;
       writeSession(session, a->input);
+      context.wrote(a->input);
     }
     std::error_code ignored;
     if (!options.workFile.empty()) std::filesystem::remove(options.workFile, ignored);

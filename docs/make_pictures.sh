@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Draws docs/pictures/*.png from the shipped sessions, for README and docs/inspector.md.
-# Usage: docs/make_pictures.sh   (GLINT_BIN=FOLDER: where the programs are; default build/release/bin). Needs xvfb-run;
+# Draws docs/pictures/*.png from the shipped sessions, for README, docs/inspector.md and docs/share.md.
+# Usage: docs/make_pictures.sh   (GLINT_BIN=FOLDER: where the programs are; default build/release/bin). Needs xvfb-run; for share.png also Chromium;
 # ImageMagick's mogrify cuts the file sizes to a third.
 set -euo pipefail
 root=$(dirname -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")")
@@ -48,4 +48,15 @@ vase() { "$bin/glint" retexture "$root/sessions/vase/vase.glint" --frame 0010 --
 vase retexture --texture "$texture" --repeat 2
 vase retexture-removed --remove
 rm -f "$texture"
+# The shared page of the vase, as a browser shows it.
+if command -v chromium > /dev/null; then
+  page=$(mktemp -d)
+  "$bin/glint" share "$root/sessions/vase/vase.glint" -o "$page/vase.html" 2> /dev/null
+  PYTHONPATH=$root/tests/share python3 -B -c 'import sys
+from browser import Browser
+with Browser(1280, 920) as browser:
+    browser.open(f"file://{sys.argv[1]}#theme=light")
+    browser.picture(sys.argv[2])' "$page/vase.html" "$out/share.png"
+  rm -r "$page"
+fi
 if command -v mogrify > /dev/null; then mogrify -strip -colors 128 -define png:compression-level=9 "$out"/*.png; fi

@@ -15,6 +15,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/draw/on_surface.h"
+
 namespace glint::viz {
 namespace {
 
@@ -170,11 +172,6 @@ std::vector<Segment> dashed(const Eigen::Vector3d& from, const Eigen::Vector3d& 
   return segments;
 }
 
-std::optional<Eigen::Vector3d> intersection(const Ray& ray, const Plane& plane) {
-  const double along = plane.normal.dot(ray.direction);
-  const double t = -plane.signedDistance(ray.origin) / along;
-  if (!(t > 0) || !std::isfinite(t)) return {};
-  return ray.at(t);
-}
+std::optional<Eigen::Vector3d> intersection(const Ray& ray, const Plane& plane) { return draw::intersection(ray, plane); }
 
 }  // namespace glint::viz

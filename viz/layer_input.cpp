@@ -12,6 +12,7 @@
 
 #include "core/base/number_text.h"
 #include "core/base/unit_text.h"
+#include "core/draw/on_surface.h"
 #include "core/fit/training.h"
 #include "core/inspect/photograph.h"
 #include "viz/glyphs.h"
@@ -21,30 +22,10 @@
 namespace glint::viz {
 namespace {
 
-constexpr int kTessellation = 128;       ///< cells a side of an analytic surface
-constexpr int kCoarseDivisions = 120;    ///< cells along the longest side: some 50,000 triangles
-constexpr int kMostContourPoints = 720;  ///< per contour on screen
+constexpr int kTessellation = 128;     ///< cells a side of an analytic surface
+constexpr int kCoarseDivisions = 120;  ///< cells along the longest side: some 50,000 triangles
 
 bool isFinite(const Eigen::AlignedBox3d& box) { return !box.isEmpty() && box.min().allFinite() && box.max().allFinite(); }
-
-/// What the cameras see of a surface without bounds: hits of a coarse grid of rays.
-Eigen::AlignedBox3d seenRegion(const Inspection& inspection, const Surface& surface, const std::vector<int>& frames) {
-  constexpr int kGrid = 7;
-  constexpr std::size_t kMostCameras = 12;
-  Eigen::AlignedBox3d box;
-  const std::size_t step = std::max<std::size_t>(1, frames.size() / kMostCameras);
-  for (std::size_t i = 0; i < frames.size(); i += step) {
-    const Camera& camera = inspection.scene->frames[static_cast<std::size_t>(frames[i])].camera;
-    for (int y = 0; y < kGrid; ++y) {
-      for (int x = 0; x < kGrid; ++x) {
-        const Pixel pixel((camera.width - 1.0) * x / (kGrid - 1), (camera.height - 1.0) * y / (kGrid - 1));
-        const Outcome<SurfacePoint> hit = surface.firstHit(camera.ray(pixel));
-        if (hit && hit->position.allFinite()) box.extend(hit->position);
-      }
-    }
-  }
-  return box;
-}
 
 /// Median distance from a camera to its nearest neighbour; infinity for one camera.
 double typicalSpacing(const Inspection& inspection, const std::vector<int>& frames) {
@@ -170,10 +151,7 @@ std::vector<LayerInput::Mirror> LayerInput::mirrors(int frame) const {
 
 SceneScale sceneScale(const Inspection& inspection, const Surface* surface, const std::vector<int>& frames, double glyphScale) {
   SceneScale scale;
-  if (surface) {
-    scale.surfaceBox = surface->bounds();
-    if (!isFinite(scale.surfaceBox)) scale.surfaceBox = seenRegion(inspection, *surface, frames);
-  }
+  if (surface) scale.surfaceBox = draw::shownRegion(inspection, *surface, frames);
   for (const int frame : frames)
     scale.sceneBox.extend(inspection.scene->frames[static_cast<std::size_t>(frame)].camera.centreInWorld());
   if (!isFinite(scale.surfaceBox)) {  // nothing seen: the cameras alone must do
@@ -219,57 +197,21 @@ std::vector<int> framesToDraw(const Inspection& inspection, const std::string& s
 }
 
 std::optional<Eigen::Vector3d> castPixel(const Camera& camera, const Surface& surface, const Pixel& pixel, double lift) {
-  if (!pixel.allFinite()) return {};
-  const Ray ray = camera.ray(pixel);
-  const Outcome<SurfacePoint> hit = surface.firstHit(ray);
-  if (!hit) return {};
-  // Along the view ray, so that it still covers its own pixel; further at slanted incidence, to come as far off the surface.
-  const double slant = std::max(0.3, std::abs(hit->normal.dot(ray.direction)));
-  return hit->position - (lift / slant) * ray.direction;
+  return draw::castPixel(camera, surface, pixel, lift);
 }
 
 std::vector<Points> castContour(const Camera& camera, const Surface& surface, const Polyline& contour, const SceneScale& scale,
                                 double lift) {
-  std::vector<Points> chains(1);
-  if (contour.points.size() < 2) return chains;
-  std::vector<Pixel> pixels = contour.points;
-  if (static_cast<int>(pixels.size()) > kMostContourPoints) pixels = resample(contour, kMostContourPoints);
-  if (contour.closed) pixels.push_back(pixels.front());
-  const double jump = 0.1 * scale.surfaceSize;
-  for (const Pixel& pixel : pixels) {
-    const std::optional<Eigen::Vector3d> p = castPixel(camera, surface, pixel, lift);
-    const bool breaks = !p || (!chains.back().empty() && (*p - chains.back().back()).norm() > jump);
-    if (breaks && !chains.back().empty()) chains.emplace_back();
-    if (p) chains.back().push_back(*p);
-  }
-  return chains;
+  return draw::castContour(camera, surface, contour, scale.surfaceSize, lift);
 }
 
 std::vector<Points> ellipseOnPlane(const Camera& camera, const Plane& plane, const Ellipse& ellipse, double lift) {
-  std::vector<Points> chains(1);
-  std::vector<Pixel> pixels = ellipse.sample(96);
-  pixels.push_back(pixels.front());
-  for (const Pixel& pixel : pixels) {
-    const Ray ray = camera.ray(pixel);
-    const std::optional<Eigen::Vector3d> p = intersection(ray, plane);
-    if (p) {
-      chains.back().push_back(*p - lift / std::max(0.3, std::abs(plane.normal.dot(ray.direction))) * ray.direction);
-    } else if (!chains.back().empty()) {
-      chains.emplace_back();
-    }
-  }
-  return chains;
+  return draw::ellipseOnPlane(camera, plane, ellipse, lift);
 }
 
 double planeRadius(const Camera& camera, const Plane& plane, const Eigen::Vector3d& at, const std::vector<Pixel>& contour,
                    const SceneScale& scale) {
-  double radius = 0;
-  for (const Pixel& pixel : contour) {
-    if (!pixel.allFinite()) continue;
-    const std::optional<Eigen::Vector3d> p = intersection(camera.ray(pixel), plane);
-    if (p) radius = std::max(radius, (*p - at).norm());
-  }
-  return std::clamp(1.5 * radius, 0.03 * scale.surfaceSize, 0.35 * scale.surfaceSize);
+  return draw::planeRadius(camera, plane, at, contour, scale.surfaceSize);
 }
 
 std::array<Eigen::Vector3d, 4> imagePlane(const Camera& camera, double depth) {

@@ -10,6 +10,7 @@
 #include "core/base/depth_settings.h"
 #include "core/base/level_range.h"
 #include "core/base/outcome.h"
+#include "core/base/similar_name.h"
 
 namespace glint {
 
@@ -492,7 +493,9 @@ void addChoice(const std::string& key, const std::string& choice) {
 const ParamSpec& paramSpec(const std::string& key) {
   for (const ParamSpec& p : allParams())
     if (p.key == key) return p;
-  throw InputError("", "--set " + key, "unknown setting (`glint settings` lists them)");
+  std::vector<std::string> known;
+  for (const ParamSpec& p : allParams()) known.push_back(p.key);
+  throw InputError("", "--set " + key, "unknown setting" + didYouMean(key, known) + " (`glint settings` lists them)");
 }
 
 const SettingValue& Settings::value(const std::string& key) const {

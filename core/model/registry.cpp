@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/similar_name.h"
 #include "core/model/models.h"
 
 namespace glint {
@@ -38,7 +39,8 @@ const HighlightModel& modelByName(const std::string& id) {
   if (const HighlightModel* const found = findModel(id)) return *found;
   std::string known;
   for (const std::string& name : modelIds()) known += (known.empty() ? "" : ", ") + name;
-  throw InputError("", "model '" + id + "'", "unknown model; known: " + known);
+  const std::string meant = didYouMean(id, modelIds());
+  throw InputError("", "model '" + id + "'", "unknown model" + meant + (meant.empty() ? "; known: " : " Known: ") + known);
 }
 
 std::vector<std::string> modelIds() {

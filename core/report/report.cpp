@@ -20,9 +20,22 @@ namespace {
 
 using nlohmann::ordered_json;
 
-std::string cell(double v, const char* format = "%.4g") {
+/// With as many decimals in every row, so that a column can be read from top to bottom.
+std::string cell(double v, const char* format = "%.3f") {
   if (!std::isfinite(v)) return "-";
   return formatted(format, v);
+}
+
+/// What the rows of a table are over, and what the models were made from.
+std::string captionOf(const Inspection& inspection) {
+  const std::string all = std::to_string(inspection.scene->frames.size());
+  if (inspection.train.perSurface)
+    return "contour errors of all frames; each surface has a model of all its frames (per-surface, " + all + " frames)\n";
+  int heldOut = 0;
+  for (int frame = 0; frame < static_cast<int>(inspection.scene->frames.size()); ++frame) heldOut += inspection.isHeldOut(frame);
+  return "contour errors of held-out frames (" + std::to_string(heldOut) + "); trained on " +
+         std::to_string(inspection.train.frames.size()) + " of " + all + " frames (" + inspection.train.text +
+         "); % of a highlight's diameter\n";
 }
 
 }  // namespace
@@ -61,8 +74,9 @@ std::string evaluationCsv(const Inspection& inspection) {
 }
 
 std::string evaluationTable(const Inspection& inspection) {
-  std::string out = formatted("%-12s %11s %9s %9s %9s %9s %9s %8s %8s %13s %10s\n", "model", "predicted", "mean %", "median %",
-                              "p95 %", "max %", "mean px", "IoU", "coverage", "match/mis/spu", "median us");
+  std::string out = captionOf(inspection);
+  out += formatted("%-12s %11s %9s %9s %9s %9s %9s %8s %8s %13s %10s\n", "model", "predicted", "mean %", "median %", "p95 %",
+                   "max %", "mean px", "IoU", "coverage", "match/mis/spu", "median us");
   for (const std::string& name : inspection.request.models) {
     const auto it = inspection.models.find(name);
     if (it == inspection.models.end()) continue;

@@ -58,12 +58,14 @@ if(GLINT_INSTALL_PYTHON)
     list(APPEND page_programs --inspector $<TARGET_FILE:glint-inspector>)
     list(APPEND page_targets glint-inspector)
   endif()
-  add_custom_command(OUTPUT ${glint_pages}/glint.bash
+  add_custom_command(OUTPUT ${glint_pages}/glint.bash ${glint_pages}/_glint ${glint_pages}/glint.fish
     COMMAND ${GLINT_INSTALL_PYTHON} -B ${PROJECT_SOURCE_DIR}/resources/install/make_pages.py ${page_programs} --out ${glint_pages}
     DEPENDS ${page_targets} resources/install/make_pages.py VERBATIM)
   add_custom_target(pages ALL DEPENDS ${glint_pages}/glint.bash)
   install(DIRECTORY ${glint_pages}/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT glint FILES_MATCHING PATTERN "glint*.1" PATTERN "glint-inspector.1" EXCLUDE)
   install(FILES ${glint_pages}/glint.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME glint COMPONENT glint)
+  install(FILES ${glint_pages}/_glint DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions COMPONENT glint)
+  install(FILES ${glint_pages}/glint.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d COMPONENT glint)
 endif()
 if(GLINT_GUI)
   install(FILES ${glint_pages}/glint-inspector.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT inspector OPTIONAL)

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Writes manual pages and the completion for bash from what the programs' own --help says.
+"""Writes manual pages and the completion for bash, zsh and fish from what the programs' own --help says.
 
-make_pages.py --glint PROGRAM [--inspector PROGRAM] --out DIR     DIR/glint.1, DIR/glint-COMMAND.1, DIR/glint-inspector.1, DIR/glint.bash
+make_pages.py --glint PROGRAM [--inspector PROGRAM] --out DIR     DIR/glint.1, DIR/glint-COMMAND.1, DIR/glint-inspector.1, DIR/glint.bash, DIR/_glint,
+                                                                  DIR/glint.fish
 """
 import argparse
 import pathlib
@@ -79,6 +80,39 @@ def completion(commands, pages):
     return "\n".join(lines) + "\n"
 
 
+def in_quotes(text):
+    """One word of any shell."""
+    return "'" + text.replace("'", "\u2019") + "'"
+
+
+def zsh_completion(commands, pages):
+    lines = ["#compdef glint", "# SPDX-License-Identifier: BSD-3-Clause", "# Completion of glint for zsh: commands, options and their words; file names elsewhere.",
+             "_glint() {", "  local -a commands flags", "  if (( CURRENT == 2 )); then", "    commands=("]
+    lines += ["      " + in_quotes(name + ":" + summary) for name, summary in commands]
+    lines += ["    )", "    _describe command commands", "    return", "  fi", "  case $words[2] in"]
+    for name, _ in commands:
+        flags, choices = options_in(pages[name])
+        lines += [f"    {name})", f"      flags=({' '.join(flags)})"]
+        if choices:
+            lines.append("      case $words[CURRENT-1] in")
+            lines += [f"        {flag}) compadd -- {' '.join(values)}; return ;;" for flag, values in sorted(choices.items())]
+            lines.append("      esac")
+        lines.append("      ;;")
+    lines += ["  esac", "  if [[ $words[CURRENT] == -* ]]; then", "    compadd -- $flags", "  else", "    _files", "  fi", "}", '_glint "$@"']
+    return "\n".join(lines) + "\n"
+
+
+def fish_completion(commands, pages):
+    lines = ["# SPDX-License-Identifier: BSD-3-Clause", "# Completion of glint for fish: commands, options and their words; file names elsewhere."]
+    lines += [f"complete -c glint -n __fish_use_subcommand -f -a {name} -d {in_quotes(summary)}" for name, summary in commands]
+    for name, _ in commands:
+        flags, choices = options_in(pages[name])
+        for flag in flags:
+            words = f" -x -a {in_quotes(' '.join(choices[flag]))}" if flag in choices else ""
+            lines.append(f"complete -c glint -n '__fish_seen_subcommand_from {name}' -l {flag[2:]}{words}")
+    return "\n".join(lines) + "\n"
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--glint", required=True)
@@ -94,6 +128,8 @@ def main():
     for name, summary in commands:
         (options.out / f"glint-{name}.1").write_text(manual(f"glint-{name}", summary[0].lower() + summary[1:], pages[name], version, ["glint"]))
     (options.out / "glint.bash").write_text(completion(commands, pages))
+    (options.out / "_glint").write_text(zsh_completion(commands, pages))
+    (options.out / "glint.fish").write_text(fish_completion(commands, pages))
     if options.inspector:
         (options.out / "glint-inspector.1").write_text(
             manual("glint-inspector", "show a reconstruction of specular highlights step by step", help_of(options.inspector), version, ["glint"]))

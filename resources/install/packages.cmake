@@ -55,6 +55,9 @@ set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA ${PROJECT_BINARY_DIR}/package/pyth
 # Their texts, with dates from the source alone, so that two builds give the same bytes.
 file(READ ${PROJECT_SOURCE_DIR}/LICENSE glint_license)
 string(STRIP "${glint_license}" glint_license)
+# libglint-core holds three.js, which it writes into shared pages.
+file(READ ${PROJECT_SOURCE_DIR}/resources/share/three-licence.txt glint_three_licence)
+string(STRIP "${glint_three_licence}" glint_three_licence)
 file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/package/copyright CONTENT
 "Glint
 
@@ -62,6 +65,10 @@ Copyright: 2026, the Glint developers
 License: BSD-3-Clause
 
 @glint_license@
+
+Pages of `glint share` hold three.js. What such a page says of it:
+
+@glint_three_licence@
 ")
 file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/package/changelog CONTENT
 "glint (@PROJECT_VERSION@) unstable; urgency=medium

@@ -13,6 +13,7 @@ namespace glint {
 namespace {
 using namespace testing_support;
 using testing::HasSubstr;
+using testing::Not;
 using testing::StartsWith;
 namespace fs = std::filesystem;
 
@@ -26,7 +27,7 @@ std::string quoted(const fs::path& p) {
 
 TEST(CommandLine, VersionAndHelpAreDone) {
   EXPECT_EQ(runGlint("--version").out, "glint 0.1.0\n");
-  for (const char* arguments : {"--help", "info --help", "convert --help", "settings --help"}) {
+  for (const char* arguments : {"", "--help", "info --help", "convert --help", "settings --help"}) {
     const ProgramRun run = runGlint(arguments);
     EXPECT_EQ(run.code, 0) << arguments;
     EXPECT_EQ(run.err, "") << arguments;
@@ -37,13 +38,27 @@ TEST(CommandLine, VersionAndHelpAreDone) {
 
 TEST(CommandLine, WrongRequestsAreCodeTwoAndOneLine) {
   for (const char* arguments :
-       {"", "bogus", "info", "info --nonsense x", "info /nonexistent", "convert /nonexistent -o x.json", "convert x"}) {
+       {"bogus", "info", "info --nonsense x", "info /nonexistent", "convert /nonexistent -o x.json", "convert x"}) {
     const ProgramRun run = runGlint(arguments);
     EXPECT_EQ(run.code, 2) << arguments;
     EXPECT_EQ(run.errorLines(), 1) << arguments << ": " << run.err;
     EXPECT_THAT(run.err, StartsWith("glint: ")) << arguments;
     EXPECT_EQ(run.out, "") << arguments;
   }
+}
+
+TEST(CommandLine, AMistypedNameIsAnsweredWithTheNearestOne) {
+  for (const auto& [arguments, meant] : std::initializer_list<std::pair<const char*, const char*>>{
+           {"evalaute x", "'evalaute' is not a command; did you mean 'evaluate'? (see glint --help)"},
+           {"evaluate x --modles=dual", "did you mean '--models'?"},
+           {"evaluate x --models canonicl", "unknown model; did you mean 'canonical'? Known: primal, dual, canonical"},
+           {"evaluate x --set predict.direction=9", "unknown setting; did you mean 'predict.directions'?"}}) {
+    const ProgramRun run = runGlint(arguments);
+    EXPECT_EQ(run.code, 2) << arguments;
+    EXPECT_EQ(run.errorLines(), 1) << run.err;
+    EXPECT_THAT(run.err, HasSubstr(meant)) << arguments;
+  }
+  EXPECT_THAT(runGlint("bogus").err, Not(HasSubstr("did you mean")));
 }
 
 TEST(CommandLine, SettingsListsEveryKey) {

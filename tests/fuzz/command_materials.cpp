@@ -230,6 +230,7 @@ std::vector<Victim> makeMaterials(const fs::path& program, const fs::path& folde
   const std::vector<std::string> onSession = {"info run.glint",
                                               "predict run.glint --json out/p.json --out out/p --masks out/m",
                                               "retexture run.glint --frame 1 --remove -o out/q.png",
+                                              "share run.glint --models dual -o out/s.html",
                                               "replay run.glint",
                                               "evaluate run.glint --json out/e.json",
                                               "compare run.glint copy.glint --json out/c.json",

@@ -16,7 +16,8 @@ HOLDS = {  # package -> patterns of files that it must contain
     "libglint0": [r"lib/.*/libglint-core\.so\.0\.\d", r"lib/.*/libglint-io\.so\.0\.\d"],
     "libglint-dev": [r"include/glint-[\d.]+/core/inspect/inspection\.h", r"cmake/Glint/GlintConfig\.cmake", r"libglint-core\.so$", r"libglint-viz\.a$",
                      r"share/glint/examples/cpp/session_errors\.cpp", r"share/glint/examples/plugins/example/example\.cpp"],
-    "glint": [r"bin/glint$", r"man1/glint\.1\.gz", r"man1/glint-evaluate\.1\.gz", r"bash-completion/completions/glint$", r"share/glint/sessions/vase/vase\.glint"],
+    "glint": [r"bin/glint$", r"man1/glint\.1\.gz", r"man1/glint-evaluate\.1\.gz", r"bash-completion/completions/glint$", r"zsh/vendor-completions/_glint$",
+              r"fish/vendor_completions\.d/glint\.fish$", r"share/glint/sessions/vase/vase\.glint"],
     "glint-inspector": [r"bin/glint-inspector$", r"man1/glint-inspector\.1\.gz", r"applications/glint-inspector\.desktop", r"mime/packages/glint\.xml",
                         r"metainfo/glint-inspector\.metainfo\.xml", r"icons/hicolor/scalable/apps/glint\.svg"],
 }

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace glint {
+
+/// Insertions, deletions, replacements and swaps of neighbours that turn one text into the other, byte by byte, no part edited twice (optimal
+/// string alignment). @see Damerau, A technique for computer detection and correction of spelling errors, CACM 1964.
+int editDistance(const std::string& a, const std::string& b);
+
+/// The known name that was most likely meant: the nearest one, where at most a third of the given name is wrong; the first of equally near ones.
+/// "" where none is near, and for names that nobody types (beyond 100 bytes).
+std::string similarName(const std::string& given, const std::vector<std::string>& known);
+
+/// "; did you mean 'NAME'?", "" where no name is near.
+std::string didYouMean(const std::string& given, const std::vector<std::string>& known);
+
+}  // namespace glint

@@ -1,0 +1,235 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A shared page as a file: its numbers are those of `glint evaluate --json`, equal input gives equal bytes, nothing in it loads anything, no name
+becomes mark-up, and what must not be overwritten is not.
+
+structure_test.py GLINT SESSIONS [--all]     --all: every shipped session and lesson, for their size alone
+"""
+import base64
+import hashlib
+import html.parser
+import json
+import math
+import pathlib
+import shutil
+import struct
+import subprocess
+import sys
+import tempfile
+
+MOST = 20e6  # bytes, for every shipped session
+HOSTILE = "</script><script>document.title='owned'</script><!-- \" ' & \u2028 \u2029 <img src=x onerror=alert(1)>"
+TIMES = ("time_us", "predict_us", "exact_predict_us")
+
+
+def run(glint, *words, expect=0):
+    done = subprocess.run([glint, *map(str, words)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    assert done.returncode == expect, f"{words}: {done.returncode}, not {expect}: {done.stderr}"
+    return done
+
+
+class Page(html.parser.HTMLParser):
+    """As a browser reads it: elements with their attributes, and the texts of scripts and styles."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.elements, self.texts, self.inside = [], [], None
+        self.feed(text)
+        self.close()
+
+    def handle_starttag(self, tag, attributes):
+        self.elements.append((tag, dict(attributes)))
+        if tag in ("script", "style"):
+            self.inside = [tag, dict(attributes), ""]
+
+    def handle_data(self, data):
+        if self.inside:
+            self.inside[2] += data
+
+    def handle_endtag(self, tag):
+        if self.inside and tag == self.inside[0]:
+            self.texts.append(tuple(self.inside))
+            self.inside = None
+
+    def data(self):
+        return json.loads(next(text for tag, a, text in self.texts if a.get("id") == "data"), parse_constant=refused)
+
+
+def refused(constant):
+    raise AssertionError(f"{constant} is no number of JSON")
+
+
+def untimed(value):
+    if isinstance(value, dict):
+        return {k: untimed(v) for k, v in value.items() if k not in TIMES}
+    return [untimed(v) for v in value] if isinstance(value, list) else value
+
+
+def check_policy(page):
+    """Two scripts, one style, each named by its hash; nothing else may load or run."""
+    runs = [text for tag, a, text in page.texts if tag == "script" and a.get("type") != "application/json"]
+    styles = [text for tag, a, text in page.texts if tag == "style"]
+    assert len(runs) == 2 and len(styles) == 1, (len(runs), len(styles))
+    policy = next(a["content"] for tag, a in page.elements if tag == "meta" and a.get("http-equiv") == "Content-Security-Policy")
+    rules = {rule.split()[0]: rule.split()[1:] for rule in policy.split(";")}
+    assert rules["default-src"] == ["'none'"] and rules["img-src"] == ["data:"], policy
+    digest = lambda text: "'sha256-" + base64.b64encode(hashlib.sha256(text.encode()).digest()).decode() + "'"
+    assert rules["script-src"] == [digest(text) for text in runs], "scripts are not those that the policy names"
+    assert rules["style-src"] == [digest(text) for text in styles]
+    for tag, attributes in page.elements:
+        assert tag not in ("link", "iframe", "object", "embed", "img", "base"), tag
+        for name, value in attributes.items():
+            assert not name.startswith("on"), (tag, name)
+            assert name not in ("src", "href", "action", "style"), (tag, name, value)
+
+
+def project(camera, point):
+    """Ideal pixel of a world point, from the definition of K [R | t]."""
+    x, y, z = (sum(row[k] * point[k] for k in range(3)) + row[3] for row in camera["camera_from_world"])
+    return camera["fx"] * x / z + camera["skew"] * y / z + camera["cx"], camera["fy"] * y / z + camera["cy"]
+
+
+def to_chain(camera, chain):
+    return [project(camera, chain[i:i + 3]) for i in range(0, len(chain), 3)]
+
+
+def farthest(points, line):
+    """Largest distance of points from a polygon, px."""
+    worst = 0
+    for px, py in points:
+        best = math.inf
+        for (ax, ay), (bx, by) in zip(line, line[1:] + line[:1]):
+            length = (bx - ax) ** 2 + (by - ay) ** 2
+            t = max(0, min(1, ((px - ax) * (bx - ax) + (py - ay) * (by - ay)) / length)) if length else 0
+            best = min(best, math.hypot(px - ax - t * (bx - ax), py - ay - t * (by - ay)))
+        worst = max(worst, best)
+    return worst
+
+
+def check_drawing(data):
+    """What lies on the surface projects onto what lies over the photograph."""
+    checked = 0
+    for frame in data["frames"]:
+        if frame["camera"]["distorted"]:
+            continue
+        for model in [""] + [m["id"] for m in data["models"]]:
+            over = [l["points"] for l in frame["lines"] if l["model"] == model]
+            on = [c for part in frame["on_surface"] if part["model"] == model for c in part["chains"]]
+            if len(over) != 1 or len(on) != 1:
+                continue  # of several, which belongs to which is not said
+            line = list(zip(over[0][0::2], over[0][1::2]))
+            assert farthest(to_chain(frame["camera"], on[0]), line) < 0.5, (frame["id"], model)
+            checked += 1
+    return checked
+
+
+def check_surfaces(data):
+    for surface in data["surfaces"]:
+        assert surface["problem"] == ""
+        positions = base64.b64decode(surface["positions"])
+        indices = base64.b64decode(surface["indices"])
+        vertices = len(positions) // 6
+        assert len(indices) == 12 * surface["triangles"] > 0
+        assert max(struct.unpack(f"<{len(indices) // 4}I", indices)) == vertices - 1
+        assert len(base64.b64decode(surface["normals"])) in (0, 3 * vertices)
+
+
+def check_session(glint, session, folder):
+    first, second = folder / "first.html", folder / "second.html"
+    run(glint, "share", session, "-o", first)
+    run(glint, "share", session, "-o", second)
+    assert first.read_bytes() == second.read_bytes(), "equal input gives other bytes"
+    text = first.read_text(encoding="utf-8")
+    assert text.startswith("<!doctype html>") and len(first.read_bytes()) < MOST
+    page = Page(text)
+    check_policy(page)
+    data = page.data()
+    evaluation = json.loads(run(glint, "evaluate", session, "--json", "-").stdout)
+    assert data["evaluation"] == untimed(evaluation), "numbers differ from evaluate --json"
+    assert any(m["summary"]["predicted"] for m in data["evaluation"]["models"].values())
+    check_surfaces(data)
+    assert check_drawing(data) > 3
+    assert all(p.startswith("data:image/jpeg;base64,") for p in data["photographs"]) and len(data["photographs"]) == len(data["frames"])
+    return data
+
+
+def check_frames(glint, session, folder):
+    page = folder / "two.html"
+    run(glint, "share", session, "--frames", "1,3", "--models", "dual", "-o", page)
+    data = Page(page.read_text(encoding="utf-8")).data()
+    assert [f["index"] for f in data["frames"]] == [1, 3] and [m["id"] for m in data["models"]] == ["dual"]
+    assert list(data["evaluation"]["models"]) == ["dual"]
+
+
+def check_hostile(glint, lesson, folder):
+    """A scene whose every name is an attack."""
+    shutil.copytree(lesson.parent, folder / "scene")
+    file = folder / "scene" / "scene.json"
+    scene = json.loads(file.read_text())
+    scene["name"] = HOSTILE
+    for i, frame in enumerate(scene["frames"]):
+        frame["id"] = f"{i}{HOSTILE}"
+        for highlight in frame.get("highlights", []):
+            highlight["light"] = HOSTILE
+        if "lights_on" in frame:
+            frame["lights_on"] = [HOSTILE]
+    for light in scene["lights"]:
+        light["id"] = HOSTILE
+    file.write_text(json.dumps(scene))
+    page = folder / "hostile.html"
+    run(glint, "share", file, "--train", "0-2", "-o", page)
+    text = page.read_text(encoding="utf-8")
+    read = Page(text)
+    check_policy(read)
+    assert read.data()["name"] == HOSTILE and read.data()["frames"][1]["id"] == "1" + HOSTILE
+    assert "\u2028" not in text and "\u2029" not in text
+    assert "<img" not in text
+    return page
+
+
+def check_refusals(glint, lesson, folder):
+    own = folder / "own"
+    shutil.copytree(lesson.parent, own)
+    scene = own / "scene.json"
+    before = scene.read_bytes()
+    assert "scene.json" in run(glint, "share", own, "-o", scene, expect=2).stderr
+    assert scene.read_bytes() == before
+    foreign = folder / "foreign.html"
+    foreign.write_text("<html>somebody else's</html>")
+    run(glint, "share", own, "-o", foreign, expect=2)
+    assert foreign.read_text() == "<html>somebody else's</html>"
+    run(glint, "share", own, "-o", folder / "unscored.html")  # every frame trains: nothing to score, and all of it to see
+    run(glint, "share", own, "--train", "0-2", "-o", folder / "nowhere" / "page.html", expect=2)
+    assert not (folder / "nowhere").exists()
+    for words in (["--frames", "999"], ["--models", "nothing"], ["--set", "no.such=1"]):
+        run(glint, "share", own, *words, "-o", folder / "never.html", expect=2)
+    run(glint, "share", own, "--train", "0", "--models", "dual", "-o", folder / "never.html", expect=3)  # one view determines no ellipsoid
+    run(glint, "share", own, expect=2)
+    assert not (folder / "never.html").exists()
+
+
+def main():
+    glint, sessions = sys.argv[1], pathlib.Path(sys.argv[2])
+    files = sorted(sessions.glob("*/*.glint")) + sorted(sessions.glob("lessons/*/*.glint"))
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        if "--all" in sys.argv:
+            assert len(files) >= 11
+            for session in files:
+                run(glint, "share", session, "-o", folder / "page.html")
+                size = (folder / "page.html").stat().st_size
+                print(f"{str(session.parent.relative_to(sessions)):26} {size / 1e6:6.2f} MB")
+                assert size < MOST, session
+                lesson = Page((folder / "page.html").read_text(encoding="utf-8")).data()["lesson"]
+                assert (lesson is not None) == ("lessons" in session.parts)
+                assert lesson is None or all(step["title"] and step["text"] for step in lesson["steps"])
+            return
+        check_session(glint, sessions / "two-lamps/two-lamps.glint", folder)
+        lesson = sessions / "lessons/sphere/sphere.glint"
+        assert len(check_session(glint, lesson, folder)["lesson"]["steps"]) == 5
+        check_frames(glint, lesson, folder)
+        check_hostile(glint, lesson, folder)
+        check_refusals(glint, lesson, folder)
+
+
+if __name__ == "__main__":
+    main()
