@@ -125,26 +125,32 @@ void addState(Session& session, const Opened& opened) {
     session.notes = opened.session->notes;
     session.unknownJson = opened.session->unknownJson;
   }
-  session.view.layout = opened.layout;
-  session.view.layers = opened.layers;
+  session.view = viewOf(opened);
+}
+}  // namespace
+
+SessionView viewOf(const Opened& opened) {
+  SessionView view;
+  view.layout = opened.layout;
+  view.layers = opened.layers;
   const std::string kept = kSavedView;
   for (const auto& [name, value] : opened.options) {
     if (name.rfind(kept, 0) != 0)
-      session.view.options[name] = value;
+      view.options[name] = value;
     else if (const std::optional<viz::ViewPoint> v = viewPointFromText(value))
-      session.view.cameras[name.substr(kept.size())] = cameraOf(*v);
+      view.cameras[name.substr(kept.size())] = cameraOf(*v);
   }
-  session.view.frame = scene.frames.at(std::size_t(opened.selection.frame)).id;
-  session.view.model = opened.selection.model;
-  session.view.light = opened.selection.light;
-  session.view.highlight = opened.selection.highlight;
+  view.frame = opened.scene->frames.at(std::size_t(opened.selection.frame)).id;
+  view.model = opened.selection.model;
+  view.light = opened.selection.light;
+  view.highlight = opened.selection.highlight;
   for (const viz::ViewPoint& seen : opened.viewPoints)
     if (&seen == &opened.viewPoints.front())
-      session.view.cameras[kSceneView] = cameraOf(seen);
+      view.cameras[kSceneView] = cameraOf(seen);
     else
-      session.view.moreCameras.push_back(cameraOf(seen));
+      view.moreCameras.push_back(cameraOf(seen));
+  return view;
 }
-}  // namespace
 
 void saveSession(const Opened& opened, const Inspection* results, const std::string& path, const ProgressFn& progress) {
   const Scene& scene = *opened.scene;

@@ -12,6 +12,9 @@ namespace glint::gui {
 /// of its own, with a warning. A figure's session has no file to be saved to.
 /// InputError; MissingScene and MissingMesh, to be asked again with where these are. A mesh that is given must be readable.
 Opened openInput(const std::string& path, const Relinked& instead = {});
+/// What the window shows, as a session keeps it.
+SessionView viewOf(const Opened& opened);
+
 /// Writes a session; InputError, Stopped. @param results  finished results of exactly this request, or null.
 void saveSession(const Opened& opened, const Inspection* results, const std::string& path, const ProgressFn& progress = {});
 

@@ -18,10 +18,12 @@
 #include "core/report/labels.h"
 #include "core/report/masks.h"
 #include "core/report/report.h"
+#include "core/report/share.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
 #include "gui/base/to_qimage.h"
 #include "gui/document/figure.h"
+#include "gui/document/session_file.h"
 #include "gui/export/figure_actions.h"
 #include "gui/export/folder_dialog.h"
 #include "gui/export/movie_actions.h"
@@ -134,6 +136,19 @@ void ExportActions::addActions(Actions& actions, QMenu* menu) {
       };
     });
   });
+  actions.add("export.share", menu, tr("&Page to hand out (HTML)…"),
+              [=, this] {
+                ask(tr("Page to hand out"), QStringLiteral("page.html"), tr("Web pages (*.html)"), [=, this]() -> Write {
+                  return [inspection = document_.inspection(), context = report(),
+                          view = viewOf(document_.toSave())](const QString& file) {
+                    writeText(file, sharePage(*inspection, context, {{}, view}));
+                  };
+                });
+              },
+              {{},
+               {},
+               tr("One file with the scene in 3D, photographs, contours and errors, as `glint share` writes it: it opens in a "
+                  "browser without Glint or a network")});
   actions.add("export.json", menu, tr("Evaluation (&JSON)…"), [=, this] {
     ask(tr("Evaluation"), QStringLiteral("evaluation.json"), tr("JSON (*.json)"), [=, this]() -> Write {
       return [inspection = document_.inspection(), context = report()](const QString& file) {
