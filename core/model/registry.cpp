@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/plugin_hint.h"
 #include "core/model/models.h"
 
 namespace glint {
@@ -38,7 +39,7 @@ const HighlightModel& modelByName(const std::string& id) {
   if (const HighlightModel* const found = findModel(id)) return *found;
   std::string known;
   for (const std::string& name : modelIds()) known += (known.empty() ? "" : ", ") + name;
-  throw InputError("", "model '" + id + "'", "unknown model; known: " + known);
+  throw InputError("", "model '" + id + "'", "unknown model; known: " + known + kPluginHint);
 }
 
 std::vector<std::string> modelIds() {
