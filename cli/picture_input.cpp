@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "cli/inspection_arguments.h"
+#include "core/base/plugin_hint.h"
 
 namespace glint::cli {
 namespace {
@@ -33,7 +34,7 @@ void applyLayers(const std::string& text, viz::SceneView& view) {
     if (std::none_of(layers.begin(), layers.end(), [&](const viz::Layer& layer) { return layer.name == name; })) {
       std::string known;
       for (const viz::Layer& layer : layers) known += (known.empty() ? "" : ", ") + layer.name;
-      throw InputError("", "--layers", "unknown layer \"" + name + "\"; known: " + known);
+      throw InputError("", "--layers", "unknown layer \"" + name + "\"; known: " + known + kPluginHint);
     }
     view.setLayerVisible(name, part[0] != '-');
   }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 
@@ -49,6 +50,10 @@ Command predictCommand() {
     std::vector<std::string> set;
     bool stream = false;
     SceneArguments places;
+    /// Bands take several fits: who says that none is wanted gets none.
+    bool saysBand() const {
+      return std::any_of(set.begin(), set.end(), [](const std::string& entry) { return entry.rfind("predict.band=", 0) == 0; });
+    }
     /// One answer a line leaves no room for others; poses come live or not at all.
     void requireOneKindOfAnswer() const {
       if (!labels.empty() && out.empty()) throw InputError("", "--labels", "needs --out DIR, the new folder for the labels");
@@ -67,7 +72,8 @@ Command predictCommand() {
   c.description =
       "Opens a session, refits its models and predicts the highlights of the selected frames. --out writes predictions.json\n"
       "(contours in ideal pixels with their standard deviations, brightest points, coverage, failed directions with reasons),\n"
-      "one overlay PNG per frame, and labels_MODEL.json in COCO format for each model.\n"
+      "one overlay PNG per frame, and labels_MODEL.json in COCO format for each model. --set predict.band=false leaves the\n"
+      "standard deviations out, which take several fits.\n"
       "With --labels, --out is a new folder with labels alone: labels_MODEL.json (coco), masks/, yolo/MODEL/.\n"
       "--stream answers poses instead: for each line that it reads, JSON {\"id\", \"time\", \"camera_from_world\", \"camera\"} "
       "or TUM\n"
@@ -117,7 +123,8 @@ Command predictCommand() {
     for (const std::string& model : opened.session.request.models) names.push_back("labels_" + model + ".json");
     names.emplace_back("predictions.json");
     if (!formats) outputs.inFolder(a->out, "--out", names, "predictions.json", "glint_predictions");
-    if ((!a->out.empty() && !formats) || !a->json.empty()) request.settings.set("predict.band", true);
+    const bool shows = (!a->out.empty() && !formats) || !a->json.empty();
+    if (shows && !a->saysBand()) request.settings.set("predict.band", true);
     const Inspection result = inspect(opened.scene, request, context.progress());
     if (formats) writeLabels(result, a->out, context.progress(), *formats, frames);
     if (!a->out.empty() && !formats)

@@ -10,6 +10,7 @@
 #include "core/base/depth_settings.h"
 #include "core/base/level_range.h"
 #include "core/base/outcome.h"
+#include "core/base/plugin_hint.h"
 #include "core/base/similar_name.h"
 
 namespace glint {
@@ -506,6 +507,8 @@ const SettingValue& Settings::value(const std::string& key) const {
 }
 
 namespace {
+
+constexpr const char* kLobeSetting = "fit.lobe";  // plugins add to its values
 template <class T>
 const T& typed(const SettingValue& v, const std::string& key) {
   const T* t = std::get_if<T>(&v);
@@ -544,7 +547,8 @@ void Settings::set(const std::string& key, const SettingValue& v) {
     if (std::find(spec.choices.begin(), spec.choices.end(), *s) == spec.choices.end()) {
       std::string all;
       for (const std::string& c : spec.choices) all += (all.empty() ? "" : ", ") + c;
-      throw InputError("", "--set " + key, "'" + *s + "' is not one of: " + all);
+      const std::string hint = key == kLobeSetting ? kPluginHint : "";
+      throw InputError("", "--set " + key, "'" + *s + "' is not one of: " + all + hint);
     }
   }
   if (checked == spec.defaultValue)

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/plugin_hint.h"
 #include "core/base/similar_name.h"
 #include "core/model/models.h"
 
@@ -40,7 +41,8 @@ const HighlightModel& modelByName(const std::string& id) {
   std::string known;
   for (const std::string& name : modelIds()) known += (known.empty() ? "" : ", ") + name;
   const std::string meant = didYouMean(id, modelIds());
-  throw InputError("", "model '" + id + "'", "unknown model" + meant + (meant.empty() ? "; known: " : " Known: ") + known);
+  throw InputError("", "model '" + id + "'",
+                   "unknown model" + meant + (meant.empty() ? "; known: " : " Known: ") + known + kPluginHint);
 }
 
 std::vector<std::string> modelIds() {

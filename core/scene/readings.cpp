@@ -2,6 +2,7 @@
 // Which reader understands an input.
 #include <algorithm>
 
+#include "core/base/plugin_hint.h"
 #include "core/scene/capture_scene.h"
 #include "core/scene/scene.h"
 #include "core/scene/scene_reader.h"
@@ -68,7 +69,7 @@ const SceneReader& readerNamed(const std::string& name) {
   std::string known;
   for (const auto& reader : sceneReaders())
     if (reader->name() != "session") known += (known.empty() ? "" : ", ") + reader->name();
-  throw InputError("", "--as " + name, "is not one of: " + known);
+  throw InputError("", "--as " + name, "is not one of: " + known + kPluginHint);
 }
 
 /// In few words: a message has one line.

@@ -11,6 +11,7 @@
 #include "core/base/json_dom.h"
 #include "core/base/level_range.h"
 #include "core/base/number_text.h"
+#include "core/base/plugin_hint.h"
 #include "core/geometry/distortion.h"
 #include "core/scene/relinked.h"
 #include "core/scene/scene_files.h"
@@ -133,7 +134,7 @@ AnalyticSpec readAnalyticJson(const JsonNode& node) {
       spec.numbers[n.name] = value;
     }
   } else if (spec.type != "plane") {
-    type.fail("'" + spec.type + "' is not one of: " + knownShapes());
+    type.fail("'" + spec.type + "' is not one of: " + knownShapes() + kPluginHint);
   }
   if (const auto pose = node.find("world_from_surface")) spec.worldFromSurface = readPoseJson(*pose);
   return spec;

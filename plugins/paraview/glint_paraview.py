@@ -810,6 +810,10 @@ class _Algorithm(VTKPythonAlgorithmBase):
             raise Refused(f"{name}: must be finite and not negative (0: automatic), not {value:g}")
         return value
 
+    def RequestInformation(self, request, inInfo, outInfo):
+        self.messages = []
+        return self.guarded(lambda: self.publish_times(outInfo, self.opened()))
+
     def publish_times(self, outInfo, given):
         n = len(given.scene.frames)
         times = [float(i) for i in range(n)]
@@ -894,10 +898,6 @@ class GlintReader(_Algorithm):
 
     def opened(self):
         return _opened(self.given["FileName"], self.given["AllowFilesOutside"])
-
-    def RequestInformation(self, request, inInfo, outInfo):
-        self.messages = []
-        return self.guarded(lambda: self.publish_times(outInfo, self.opened()))
 
     def RequestData(self, request, inInfo, outInfo):
         self.messages = []
@@ -1019,10 +1019,6 @@ class GlintPredictHighlights(_Algorithm):
 
     def opened(self):
         return _opened(self.given["Session"], self.given["AllowFilesOutside"])
-
-    def RequestInformation(self, request, inInfo, outInfo):
-        self.messages = []
-        return self.guarded(lambda: self.publish_times(outInfo, self.opened()))
 
     def RequestData(self, request, inInfo, outInfo):
         self.messages = []

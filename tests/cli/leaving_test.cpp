@@ -106,6 +106,27 @@ TEST_F(Leaving, ASessionThatCouldNotNameItsSceneIsNotWritten) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "u.glint"));
 }
 
+TEST_F(Leaving, PredictionsHaveBandsUnlessSaidOtherwise) {
+  saveSession("--model limit-angle");
+  const auto highlights = [&](const std::string& more) {
+    const ProgramRun run = onSession("predict", "--json - " + more);
+    EXPECT_EQ(run.code, 0) << run.err;
+    std::vector<Json> all;
+    const Json document = Json::parse(run.out);
+    for (const Json& frame : document["models"]["limit-angle"])
+      for (const Json& highlight : frame["highlights"]) all.push_back(highlight);
+    return all;
+  };
+  std::vector<Json> with = highlights("");
+  const std::vector<Json> without = highlights("--set predict.band=false");
+  ASSERT_EQ(with.size(), without.size());
+  ASSERT_GE(with.size(), 1u);
+  for (std::size_t i = 0; i < with.size(); ++i) {
+    EXPECT_EQ(with[i].erase("sigma_px"), 1u);
+    EXPECT_EQ(with[i], without[i]) << "the contour is the same";
+  }
+}
+
 TEST_F(Leaving, MasksInANewFolder) {
   saveSession("--model limit-angle");
   ASSERT_EQ(onSession("predict", "--masks " + out("labels")).code, 0);

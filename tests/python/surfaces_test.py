@@ -90,3 +90,13 @@ def test_triangles_for_display_lie_on_the_sphere():
 def test_bounds():
     assert np.allclose(glint.Surface.analytic("sphere", radius=0.2).bounds, [[-0.2] * 3, [0.2] * 3])
     assert np.isinf(glint.Surface.analytic("plane").bounds).any()
+
+
+def test_the_given_normals_of_a_mesh_count():
+    """A flat square whose vertices all say the same other normal: interpolation of equal vectors is that vector."""
+    vertices, triangles = scenes.grid_mesh(4, 2.0)
+    said = np.array([0.3, -0.2, 1.0]) / np.linalg.norm([0.3, -0.2, 1.0])
+    ray = ([[0.1, 0.2, 1.0]], [[0, 0, -1.0]])
+    with_normals = glint.mesh(vertices, triangles, np.tile(said, (len(vertices), 1))).first_hits(*ray)
+    without = glint.mesh(vertices, triangles).first_hits(*ray)
+    assert np.abs(with_normals.normals[0] - said).max() < 1e-6 and np.abs(without.normals[0] - [0, 0, 1]).max() < 1e-6

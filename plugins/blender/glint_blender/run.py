@@ -68,8 +68,10 @@ def commands(program_file, settings, scene_path, folder):
         common += ["--set", f"{key}={value}"]
     session, evaluation = os.path.join(folder, "run.glint"), os.path.join(folder, "evaluation.json")
     predictions = os.path.join(folder, "predictions")
+    # Blender shows no bands, and they take several fits.
+    without_bands = [] if "predict.band" in values else ["--set", "predict.band=false"]
     return [("Fit", [program_file, "reconstruct", scene_path, "--model", models, *common, "-o", session], {0}),
-            ("Predict", [program_file, "predict", session, "--out", predictions], {0, NO_HIGHLIGHT}),
+            ("Predict", [program_file, "predict", session, *without_bands, "--out", predictions], {0, NO_HIGHLIGHT}),
             ("Evaluate", [program_file, "evaluate", session, "--models", models, *common, "--json", evaluation], {0, NO_HIGHLIGHT})]
 
 

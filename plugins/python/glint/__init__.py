@@ -53,17 +53,22 @@ from ._glint import (
     Predictor,
     Replay,
     Request,
+    Retextured,
     Scene,
     Session,
     Setting,
     Stopped,
     Surface,
+    Tradeoff,
+    TradeoffPoint,
     TrainingView,
     __version__,
     compare_contours,
     iou,
+    load_plugin,
     model,
     models,
+    plugins,
     set_limit,
     settings,
 )
@@ -72,9 +77,10 @@ __all__ = [
     "BrightestPoint", "Camera", "CannotAnswer", "CanonicalContour", "ComparisonRow", "ContourMetrics", "Ellipse", "Ellipsoid",
     "Error", "FitResult", "Frame", "FrameComparison", "FrameEvidence", "Highlight", "Hits", "InputError", "Inspection", "Lamp", "Lamps",
     "Light", "LightEstimate", "Mesh", "Model", "ModelFit", "ModelResult", "Plane", "PredictedHighlight", "Prediction", "Predictor",
-    "Replay", "Request", "Scene", "Session", "Setting", "Stopped", "Surface", "TrainingView", "__version__", "compare_contours",
-    "conventions", "depth_map", "detect", "estimate_light", "fit", "inspect", "iou", "lights", "lights_of_balls", "mesh", "model",
-    "models", "open", "predict", "report", "scene", "set_limit", "settings",
+    "Replay", "Request", "Retextured", "Scene", "Session", "Setting", "Stopped", "Surface", "Tradeoff", "TradeoffPoint", "TrainingView",
+    "__version__", "compare_contours", "conventions", "depth_map", "detect", "estimate_light", "fit", "inspect", "iou", "lights",
+    "lights_of_balls", "load_plugin", "mesh", "model", "models", "open", "plugins", "predict", "report", "retexture", "scene", "set_limit", "settings", "synth",
+    "tradeoff", "write_labels",
 ]
 
 Path = Union[str, "_os.PathLike[str]"]
@@ -321,6 +327,122 @@ def inspect(scene: Union[Scene, Session], models: Union[None, str, _abc.Sequence
     if result._failure is not None and (choose or result.request.models):
         _raise(result._failure, inspection=result)
     return result
+
+
+def retexture(source: Union[Session, Scene, Inspection], frame: Union[int, str], *, texture: Union[None, Path, ArrayLike] = None,
+              background: Union[None, Path, ArrayLike] = None, remove: bool = False, model: str = "", light: str = "",
+              mapping: str = "natural", shading: str = "auto", repeat: float = 1.0, albedo: Optional[float] = None, margin_px: float = 4.0,
+              progress: Optional[Progress] = None, **settings: Any) -> Retextured:
+    """Puts a frame's predicted highlight over another texture or background, or removes the observed one, as `glint retexture`.
+
+    Parameters
+    ----------
+    source : Session, Scene or Inspection
+        An inspection's evidence and fits are taken over where they serve.
+    frame : number or id
+    texture : path or (h, w, 3) array
+        Becomes the surface's albedo. Arrays are linear light; files are sRGB, or linear where they say so.
+    background : path or (h, w, 3) array
+        The frame without its highlight, of the frame's size.
+    remove : bool
+        The frame without its highlight, filled from around it. One of texture, background and remove is given.
+    model : str
+        Id; empty: the one that the session shows, else its richest.
+    light : str
+        Id; empty: every light.
+    mapping : "natural", "planar", "spherical" or "box"
+        How the texture lies.
+    shading : "auto", "lambert" or "frame"
+        Under the texture.
+    repeat : float
+        Textures in place of one, in both directions.
+    albedo : float
+        Of the surface as it was, above 0, at most 1; None: the texture's mean takes the place of it.
+    margin_px : float
+        How far beyond its visible part a highlight is removed, px.
+
+    Raises CannotAnswer where no highlight is predicted, or no photograph shows one to learn its colour from.
+    """
+    request, previous, shown = None, None, ""
+    if isinstance(source, Session):
+        where, request, shown = source.scene, source.request, source._shown_model
+    elif isinstance(source, Inspection):
+        where, request, previous = source._given, source.request, source
+    else:
+        where = source
+    if albedo == 0:
+        raise ValueError("albedo: must be above 0; None stands for the texture's mean")
+    asked = {"model": model, "shown": shown, "light": light, "texture": texture, "background": background, "remove": remove,
+             "mapping": mapping, "shading": shading, "repeat": repeat, "albedo": albedo or 0.0, "margin_px": margin_px}
+    made: Retextured = _glint._retexture(where, request, previous, frame, asked, settings, progress)
+    return made
+
+
+def synth(spec: Path, folder: Path, *, progress: Optional[Progress] = None) -> Scene:
+    """Makes a synthetic scene with exact contours, peaks and frames in a folder, as `glint synth`.
+
+    Parameters
+    ----------
+    spec : path
+        Specification (JSON): a scene without images, with path, surface_steps, contour, render.
+    folder : path
+        For scene.json and the images; created if missing.
+
+    Returns the scene as written. Raises CannotAnswer, "no highlight", where no frame shows one; scene.json is there then, too.
+    """
+    made: Scene = _glint._synth(_os.fspath(spec), _os.fspath(folder), progress)
+    if not any(frame.highlights for frame in made.frames):
+        _raise(("no highlight: no frame shows a highlight", "no highlight", "no frame shows a highlight"))
+    return made
+
+
+def tradeoff(scene: Union[Scene, Session], models: Union[None, str, _abc.Sequence[str]] = None, *, train: Optional[Frames] = None,
+             exclude: Optional[Frames] = None, level: Union[None, float, str] = None, source: Optional[str] = None,
+             budget_us: Optional[float] = None, max_error_pct: Optional[float] = None, repeats: int = 5, max_trials: int = 240,
+             progress: Optional[Progress] = None, **settings: Any) -> Tradeoff:
+    """Measures speed against accuracy of models and settings on one input, as `glint tradeoff`. Let nothing else run meanwhile.
+
+    Parameters
+    ----------
+    scene, models, train, exclude, level, source
+        As of `inspect`; without models the session's are compared, of a scene all.
+    budget_us : float
+        Choose the most accurate setting within this many microseconds per frame.
+    max_error_pct : float
+        Choose the fastest setting with at most this contour error in percent.
+    repeats : int
+        Of each timed prediction.
+    max_trials : int
+        Settings tried on a few frames.
+    **settings
+        From which knobs are turned.
+
+    Raises CannotAnswer where nothing is chosen; the exception's `tradeoff` holds what was measured. What Stopped interrupts is not kept.
+    """
+    where, request = (scene.scene, scene.request) if isinstance(scene, Session) else (scene, None)
+    wanted = None if models is None else [models] if isinstance(models, str) else list(models)
+    result: Tradeoff = _glint._tradeoff(where, request, wanted, _spec(train), _spec(exclude), None if level is None else str(level), source,
+                                        budget_us, max_error_pct, repeats, max_trials, settings, progress)
+    if result._failure is not None:
+        _raise(result._failure, tradeoff=result)
+    return result
+
+
+def write_labels(inspection: Inspection, folder: Path, formats: str = "coco,masks", *, frames: Optional[Frames] = None,
+                 progress: Optional[Progress] = None) -> None:
+    """Writes predicted highlights as labels for training, as `glint predict --labels`.
+
+    Parameters
+    ----------
+    inspection : Inspection
+    folder : path
+        New; whole or not at all.
+    formats : str
+        "coco", "masks", "yolo", separated by commas: labels_MODEL.json, masks/, yolo/MODEL/.
+    frames : str or numbers
+        Which are labelled; None: all.
+    """
+    _glint._write_labels(inspection, _os.fspath(folder), formats, _spec(frames), progress)
 
 
 def report(inspection: Inspection) -> str:

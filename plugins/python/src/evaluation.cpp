@@ -14,6 +14,8 @@
 namespace glint::python {
 namespace {
 
+constexpr const char* kAutoLevel = "auto";
+
 void requireModels(const std::vector<std::string>& models) {
   std::string all;
   for (const std::string& m : models) all += (all.empty() ? "" : ",") + m;
@@ -21,17 +23,6 @@ void requireModels(const std::vector<std::string>& models) {
     modelByName(*m);
     if (std::find(models.begin(), m, *m) != m) throw InputError("", "--models " + all, "'" + *m + "' is named twice");
   }
-}
-
-/// The level that the training frames choose. CannotAnswer.
-std::string chooseLevelOf(const Scene& scene, InspectionRequest& request, const ProgressFn& progress) {
-  std::vector<int> frames = parseTrainSpec(request.train, scene).frames;
-  std::erase_if(frames,
-                [&](int f) { return std::find(request.excluded.begin(), request.excluded.end(), f) != request.excluded.end(); });
-  if (frames.empty()) throw InputError("", "--level auto", "no training frame is left to choose a level by");
-  const LevelChoice choice = valueOf(chooseLevel(scene, frames, request.source, request.settings, progress));
-  request.settings.set("detect.level", choice.level);
-  return choice.reason;
 }
 
 void setLevel(const std::string& level, Settings& settings) {
@@ -50,12 +41,10 @@ bool asksForWalks(py::handle settings) {
 
 }  // namespace
 
-InspectionHandle inspectAsAsked(const SceneHandle& scene, const RequestHandle* request,
-                                const std::optional<std::vector<std::string>>& models, bool choose,
-                                std::optional<double> goodEnoughPct, const std::optional<std::string>& train,
-                                const std::optional<std::string>& exclude, const std::optional<std::string>& level,
-                                const std::optional<std::string>& source, double noisePx, unsigned seed, const std::string& truth,
-                                py::handle settings, const InspectionHandle* previous, py::object progress) {
+InspectionRequest requestAsAsked(const SceneHandle& scene, const RequestHandle* request,
+                                 const std::optional<std::vector<std::string>>& models, const std::optional<std::string>& train,
+                                 const std::optional<std::string>& exclude, const std::optional<std::string>& level,
+                                 const std::optional<std::string>& source, py::handle settings) {
   InspectionRequest r = request ? request->request : InspectionRequest{};
   if (models) r.models = *models;
   requireModels(r.models);
@@ -64,6 +53,33 @@ InspectionHandle inspectAsAsked(const SceneHandle& scene, const RequestHandle* r
     throw py::value_error("source: expected \"radiance\" or \"image\", not \"" + *source + "\"");
   if (source) r.source = *source == "image" ? FrameSource::Image : FrameSource::Radiance;
   applySettings(settings, r.settings);
+  if (exclude) {
+    r.excluded = parseFrames(*exclude, *scene.scene, "--exclude");
+    if (r.excluded.size() == scene.scene->frames.size()) throw InputError("", "--exclude " + *exclude, "excludes every frame");
+  }
+  if (level && *level != kAutoLevel) setLevel(*level, r.settings);
+  return r;
+}
+
+std::string chooseLevelIfAsked(const Scene& scene, const std::optional<std::string>& level, InspectionRequest& request,
+                               const ProgressFn& progress) {
+  if (!level || *level != kAutoLevel) return "";
+  std::vector<int> frames = parseTrainSpec(request.train, scene).frames;
+  std::erase_if(frames,
+                [&](int f) { return std::find(request.excluded.begin(), request.excluded.end(), f) != request.excluded.end(); });
+  if (frames.empty()) throw InputError("", "--level auto", "no training frame is left to choose a level by");
+  const LevelChoice choice = valueOf(chooseLevel(scene, frames, request.source, request.settings, progress));
+  request.settings.set("detect.level", choice.level);
+  return choice.reason;
+}
+
+InspectionHandle inspectAsAsked(const SceneHandle& scene, const RequestHandle* request,
+                                const std::optional<std::vector<std::string>>& models, bool choose,
+                                std::optional<double> goodEnoughPct, const std::optional<std::string>& train,
+                                const std::optional<std::string>& exclude, const std::optional<std::string>& level,
+                                const std::optional<std::string>& source, double noisePx, unsigned seed, const std::string& truth,
+                                py::handle settings, const InspectionHandle* previous, py::object progress) {
+  InspectionRequest r = requestAsAsked(scene, request, models, train, exclude, level, source, settings);
   if (!(noisePx >= 0 && std::isfinite(noisePx))) throw InputError("", "--noise-px", "must be finite and not negative");
   if (noisePx > 0) {
     r.noisePx = noisePx;
@@ -72,16 +88,11 @@ InspectionHandle inspectAsAsked(const SceneHandle& scene, const RequestHandle* r
   if (!truth.empty()) r.truthFolder = truth;
   if (goodEnoughPct && !(*goodEnoughPct > 0 && std::isfinite(*goodEnoughPct)))
     throw InputError("", "--good-enough-pct", "expected a positive number, in percent");
-  if (exclude) {
-    r.excluded = parseFrames(*exclude, *scene.scene, "--exclude");
-    if (r.excluded.size() == scene.scene->frames.size()) throw InputError("", "--exclude " + *exclude, "excludes every frame");
-  }
-  if (level && *level != "auto") setLevel(*level, r.settings);
   const EvaluationQuestion question{choose, goodEnoughPct, asksForWalks(settings)};
   Evaluation e = withProgress(std::move(progress), [&](const ProgressFn& report) {
     ReportContext context;
     context.input = scene.input;
-    if (level && *level == "auto") context.levelReason = chooseLevelOf(*scene.scene, r, report);
+    context.levelReason = chooseLevelIfAsked(*scene.scene, level, r, report);
     return evaluate(scene.scene, std::move(r), std::move(context), question, report,
                     previous ? previous->inspection.get() : nullptr);
   });

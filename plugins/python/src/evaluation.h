@@ -9,6 +9,16 @@
 
 namespace glint::python {
 
+/// A request as a caller of Python states it: what is None is the session's, else the default. Parameters as of inspectAsAsked().
+InspectionRequest requestAsAsked(const SceneHandle& scene, const RequestHandle* request,
+                                 const std::optional<std::vector<std::string>>& models, const std::optional<std::string>& train,
+                                 const std::optional<std::string>& exclude, const std::optional<std::string>& level,
+                                 const std::optional<std::string>& source, py::handle settings);
+
+/// With the level "auto": puts the one into the request that its training frames choose, and says why. Else "". CannotAnswer, InputError.
+std::string chooseLevelIfAsked(const Scene& scene, const std::optional<std::string>& level, InspectionRequest& request,
+                               const ProgressFn& progress);
+
 /// inspect() as a caller of Python asks for it: what is None is the session's, else the default.
 /// @param request   of the session; None for a scene
 /// @param models    ids; with `choose` they do not count

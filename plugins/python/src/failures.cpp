@@ -46,6 +46,11 @@ void translate(std::exception_ptr thrown) {
 
 }  // namespace
 
+py::object partsOrNone(const std::optional<Failure>& failure) {
+  if (!failure) return py::none();
+  return py::make_tuple(failure->message(), nameOf(failure->reason), failure->detail);
+}
+
 std::optional<std::string> messageOrNone(const Failure* failure) {
   if (!failure) return std::nullopt;
   return failure->message();

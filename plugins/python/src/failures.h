@@ -31,6 +31,9 @@ T valueOf(Outcome<T> outcome) {
 /// None, or the message of the failure: "too few views: need 3, have 2".
 std::optional<std::string> messageOrNone(const Failure* failure);
 
+/// None, or what the package raises CannotAnswer of: (message, reason, detail).
+py::object partsOrNone(const std::optional<Failure>& failure);
+
 void declareFailures(py::module_& module);
 
 }  // namespace glint::python

@@ -7,6 +7,7 @@
 #include "core/fit/level_choice.h"
 #include "core/inspect/live_prediction.h"
 #include "core/inspect/summary.h"
+#include "core/report/masks.h"
 #include "core/report/report.h"
 #include "core/report/warnings.h"
 #include "core/scene/frame_spec.h"
@@ -125,6 +126,17 @@ void saveSession(const InspectionHandle& handle, const std::string& file, const 
   });
 }
 
+void writeLabelsOf(const InspectionHandle& handle, const std::string& folder, const std::string& formats,
+                   const std::optional<std::string>& frames, py::object progress) {
+  const LabelFormats wanted = labelFormatsFrom(formats);
+  const Inspection& inspection = *handle.inspection;
+  const std::vector<int> which = frames ? parseFrames(*frames, *inspection.scene, "--frames") : std::vector<int>{};
+  withProgress(std::move(progress), [&](const ProgressFn& report) {
+    writeLabels(inspection, folder, report, wanted, which);
+    return 0;
+  });
+}
+
 void declareParts(py::class_<InspectionHandle>& inspection) {
   inspection
       .def_property_readonly(
@@ -185,10 +197,10 @@ void declareInspections(py::module_& module) {
       .def_property_readonly(
           "warnings", [](const InspectionHandle& i) { return warningsOf(*i.inspection); },
           "What makes the answers doubtful, in words.")
-      .def_property_readonly("_failure",
-                             [](const InspectionHandle& i) -> py::object {
-                               if (!i.failure) return py::none();
-                               return py::make_tuple(i.failure->message(), nameOf(i.failure->reason), i.failure->detail);
+      .def_property_readonly("_failure", [](const InspectionHandle& i) { return partsOrNone(i.failure); })
+      .def_property_readonly("_given",
+                             [](const InspectionHandle& i) {
+                               return SceneHandle{i.inspection->given, nullptr, i.context.input};
                              })
       .def("summary", &summaryOf, py::arg("model"),
            "What `glint evaluate` says of a model over held-out frames: counts, and statistics (mean, median, p95, max, count) "
@@ -212,6 +224,7 @@ void declareInspections(py::module_& module) {
         return "<glint.Inspection of " + i.context.input + ", " + std::to_string(i.inspection->models.size()) + " models>";
       });
   module.def("_inspect", &inspectAsAsked);
+  module.def("_write_labels", &writeLabelsOf);
 }
 
 }  // namespace glint::python

@@ -99,12 +99,7 @@ void declareLamps(py::module_& module) {
           "to_csv", [](const LampsReport& r) { return lampsCsv(r); }, "One row per lamp.")
       .def(
           "table", [](const LampsReport& r) { return lampsTable(r); }, "The table that `glint lights` prints.")
-      .def_property_readonly("_failure",
-                             [](const LampsReport& r) -> py::object {
-                               const std::optional<Failure> none = nothingMeasured(r);
-                               if (!none) return py::none();
-                               return py::make_tuple(none->message(), nameOf(none->reason), none->detail);
-                             })
+      .def_property_readonly("_failure", [](const LampsReport& r) { return partsOrNone(nothingMeasured(r)); })
       .def("__len__", [](const LampsReport& r) { return r.lamps.size(); });
   module.def("_lights", &lampsOf);
   module.def("_lights_of_balls", &lampsOfBalls);

@@ -4,6 +4,7 @@
 
 #include "core/base/limits.h"
 #include "core/base/version.h"
+#include "core/plugin/load.h"
 #include "plugins/python/src/failures.h"
 #include "plugins/python/src/options.h"
 #include "plugins/python/src/types.h"
@@ -25,7 +26,26 @@ PYBIND11_MODULE(_glint, module) {
   declareInspections(module);
   declareSessions(module);
   declareLamps(module);
+  declareRetexture(module);
+  declareTradeoff(module);
+  declareSynth(module);
   module.def(
       "set_limit", [](const std::string& nameAndValue) { glint::setLimit(nameAndValue); }, py::arg("name_and_value"),
       "Raises a limit on the size of inputs for this process: \"mesh-megabytes=4096\". InputError, with the known names.");
+  module.def(
+      "load_plugin", [](const std::string& file) { glint::loadPlugin(file); }, py::arg("file"),
+      "Loads a plugin, as `--plugin FILE`: call it before anything else. InputError where it is refused; then nothing of it is "
+      "kept.");
+  module.def(
+      "plugins",
+      [] {
+        std::vector<std::string> lines;
+        for (const glint::LoadedPlugin& p : glint::loadedPlugins()) {
+          std::string added;
+          for (const std::string& what : p.added) added += (added.empty() ? "" : ", ") + what;
+          lines.push_back(p.name + " " + p.version + " (" + added + "; " + p.file.string() + ")");
+        }
+        return lines;
+      },
+      "Loaded plugins, one line each.");
 }

@@ -107,6 +107,7 @@ void declareSessions(py::module_& module) {
           "Request: how the scene is inspected.")
       .def_property_readonly(
           "notes", [](const SessionHandle& s) { return s.session.notes; }, "Text of a person.")
+      .def_property_readonly("_shown_model", [](const SessionHandle& s) { return s.session.view.model; })
       .def_property_readonly(
           "training", [](const SessionHandle& s) { return s.session.training; }, "Ids of the training frames when it was saved.")
       .def_property_readonly(

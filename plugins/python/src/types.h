@@ -64,6 +64,9 @@ void declareMetrics(py::module_& module);
 void declareInspections(py::module_& module);
 void declareSessions(py::module_& module);
 void declareLamps(py::module_& module);
+void declareRetexture(py::module_& module);
+void declareTradeoff(py::module_& module);
+void declareSynth(py::module_& module);
 
 }  // namespace glint::python
 

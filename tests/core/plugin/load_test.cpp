@@ -7,6 +7,9 @@
 #include <fstream>
 
 #include "core/base/settings.h"
+#include "core/scene/scene.h"
+#include "core/session/session.h"
+#include "tests/core/scene/scene_fixture.h"
 
 namespace glint::plugin_tests {
 namespace {
@@ -15,6 +18,8 @@ namespace fs = std::filesystem;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::UnorderedElementsAre;
+using testing_support::inputErrorOf;
+using testing_support::TemporaryFolder;
 
 fs::path built(const std::string& name) { return fs::path(GLINT_TEST_PLUGINS) / (name + ".so"); }
 
@@ -53,6 +58,36 @@ TEST(LoadPlugin, TheExampleAddsOneOfEverything) {
   EXPECT_NE(findModel("flat-mirror"), nullptr);
   EXPECT_NE(addedShapeKind("superellipsoid"), nullptr);
   EXPECT_NE(captureReaderNamed("camera-table"), nullptr);
+}
+
+// A session or scene cannot say which plugin it was made with: the refusal of what it brought says how plugins are given.
+TEST(LoadPlugin, WithoutItWhatItAddsIsRefusedByNameAndWithTheFlag) {
+  const auto needsPlugin = [](const std::string& name) { return AllOf(HasSubstr("'" + name + "'"), HasSubstr("--plugin FILE")); };
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "scene.json";
+  std::ofstream(file)
+      << R"({"glint_scene": 1, "surfaces": {"s": {"analytic": {"type": "superellipsoid", "a": 1, "b": 1, "c": 1}}},
+    "camera": {"width": 64, "height": 48, "fx": 80, "fy": 80, "cx": 31.5, "cy": 23.5},
+    "frames": [{"id": "0", "surface": "s", "camera_from_world": [[1,0,0,0],[0,1,0,0],[0,0,1,5],[0,0,0,1]]}]})";
+  const fs::path sessionFile = fs::path(GLINT_SOURCE_DIR) / "sessions/lessons/plane/plane.glint";
+  std::string session = testing_support::contentOf(sessionFile);
+  const std::string automatic = R"("fit.lobe": "auto")";
+  ASSERT_NE(session.find(automatic), std::string::npos);
+  session.replace(session.find(automatic), automatic.size(), R"("fit.lobe": "student-t")");
+  ReadOptions reader;
+  reader.choices.as = "camera-table";
+  EXPECT_THAT(inputErrorOf([] { modelByName("flat-mirror"); }), needsPlugin("flat-mirror"));
+  EXPECT_THAT(inputErrorOf([] { Settings().setFromText("fit.lobe", "student-t"); }), needsPlugin("student-t"));
+  EXPECT_THAT(inputErrorOf([&] { parseSession(session, sessionFile); }),
+              AllOf(HasSubstr("plane.glint"), needsPlugin("student-t")));
+  EXPECT_THAT(inputErrorOf([&] { readScene(file); }), AllOf(HasSubstr("scene.json"), needsPlugin("superellipsoid")));
+  EXPECT_THAT(inputErrorOf([&] { readScene(file, reader); }), AllOf(HasSubstr("camera-table"), HasSubstr("--plugin FILE")));
+  // No plugin adds a value to other settings.
+  EXPECT_THAT(inputErrorOf([] { Settings().setFromText("fit.solver", "student-t"); }), testing::Not(HasSubstr("--plugin")));
+  loadPlugin(GLINT_EXAMPLE_PLUGIN);
+  EXPECT_EQ(modelByName("flat-mirror").id(), "flat-mirror");
+  EXPECT_EQ(parseSession(session, sessionFile).request.settings.text("fit.lobe"), "student-t");
+  EXPECT_EQ(readScene(file).frames.size(), 1u);
 }
 
 TEST(LoadPlugin, RefusesAnOtherInterfaceByItsVersion) {

@@ -5,7 +5,8 @@
   run_blender.py TEST.py FOLDER [--glint PROGRAM] [--window] [ARGUMENT ...]
 
 FOLDER is emptied and holds what the test writes, and the user's files of this Blender, so that nobody's own settings count or change.
---window: with a window, on a virtual display. Exit code: 0 passed, 1 failed, 77 without Blender (or xvfb-run)."""
+--window: with a window, on a virtual display. Exit code: 0 passed, 1 failed, 77 without Blender, xvfb-run, or what the
+test itself needs."""
 import os
 import pathlib
 import shutil
@@ -43,6 +44,8 @@ def main(words):
     done = subprocess.run(command, cwd=folder, env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
                           errors="replace", check=False)
     print(done.stdout)
+    if done.returncode == 77:
+        return 77
     # A test that was never reached must not count as passed.
     return 0 if done.returncode == 0 and "glint test: all passed" in done.stdout else 1
 
