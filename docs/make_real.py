@@ -193,8 +193,8 @@ def psbox(glint, data):
         rms = math.sqrt(sum(x * x + y * y for x, y in off) / max(1, len(off)))
         left = math.sqrt(sum((x - mean[0]) ** 2 + (y - mean[1]) ** 2 for x, y in off) / max(1, len(off)))
         text += f"| {ball} | {shots} | {len(off)} | {largest} | {others} | {flagged} | {mean[0]:.1f}, {mean[1]:.1f} | {rms:.1f} | {left:.1f} |\n"
-    return text + (f"\nOf {len(clipped)} clipped highlights the estimated peak of {sum(c['trusted'] for c in clipped)} is relied on: "
-                   "a chrome ball shows the lamp itself and the camera's star burst, no lobe.\n")
+    return text + (f"\nEstimated peaks that are relied on: {sum(c['trusted'] for c in clipped)} of {len(clipped)} clipped highlights. "
+                   "A chrome ball shows the lamp itself and the camera's star burst, no lobe.\n")
 
 
 def motion(tests):
