@@ -352,7 +352,8 @@ std::string MotionVerdict::text() const {
            "point (the object bends or moves, poses and depth do not agree, or no other view sees it)";
   if (stays + alike < kLeastViews)
     return formatted(
-        "it stays on the surface in the only other view that sees it: its motion cannot tell highlight and texture, %d views "
+        "it stays on the surface in the only other view that would show it: its motion cannot tell highlight and texture, %d "
+        "views "
         "must be asked",
         kLeastViews);
   const std::string found =
