@@ -13,8 +13,8 @@
 #include "core/base/number_text.h"
 #include "core/base/parallel.h"
 #include "core/base/srgb.h"
+#include "core/fit/depth_motion.h"
 #include "core/fit/evidence.h"
-#include "core/fit/highlight_motion.h"
 #include "core/fit/highlight_quality.h"
 #include "core/fit/level_choice.h"
 #include "core/highlight/report.h"
@@ -46,16 +46,19 @@ std::optional<FrameBlur> blurOf(const LinearPixels& pixels) {
   return blur ? std::optional(*blur) : std::nullopt;
 }
 
-/// The surface of a frame, where there is one that can be read: detection needs none. Depth maps are left out: a surface for each frame takes longer
-/// than its detection.
-std::shared_ptr<const Surface> surfaceIn(const Scene& scene, const SurfaceCache& surfaces, int frame, const Settings& settings) {
+/// The surface of a frame, where there is one that can be read: detection needs none.
+std::shared_ptr<const Surface> anySurface(const SurfaceCache& surfaces, int frame, const Settings& settings) {
   try {
-    if (scene.frames[static_cast<std::size_t>(frame)].surface.empty()) return nullptr;
     Outcome<std::shared_ptr<const Surface>> surface = surfaces.surfaceOf(frame, meshPolicy(settings));
     return surface ? *std::move(surface) : nullptr;
   } catch (const InputError&) {
     return nullptr;
   }
+}
+
+/// Depth maps are left out: a surface for each frame takes longer than its detection.
+std::shared_ptr<const Surface> surfaceIn(const Scene& scene, const SurfaceCache& surfaces, int frame, const Settings& settings) {
+  return scene.frames[static_cast<std::size_t>(frame)].surface.empty() ? nullptr : anySurface(surfaces, frame, settings);
 }
 
 /// One frame by itself.
@@ -139,11 +142,14 @@ std::vector<DetectedFrame> detectAll(const Scene& scene, FrameSource source, con
     const std::vector<std::vector<int>> panels = motionPanels(scene, surfaces);
     std::vector<FrameEvidence> evidence;
     for (const Seen& s : seen) evidence.push_back(s.evidence);
+    const PanelDepths depths(scene, settings);
     parallelFor(
         n,
         [&](int i) {
           const auto k = static_cast<std::size_t>(i);
-          verdicts[k] = motionVerdicts(scene, i, panels[k], evidence, seen[k].surface.get(), settings);
+          // A depth map becomes a surface only where a spot stays on its point.
+          const auto surface = [&] { return seen[k].surface ? seen[k].surface : anySurface(surfaces, i, settings); };
+          verdicts[k] = judgedByMotion(scene, i, panels[k], evidence, surface, depths, settings);
         },
         progress, "motion");
   }

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "core/base/number_text.h"
+#include "core/fit/depth_motion.h"
 #include "core/light/estimate.h"
 #include "core/surface/brightest_point.h"
 
@@ -36,6 +37,7 @@ constexpr double kHighlightShare = 0.5;  // of the radius: a highlight's middle 
 constexpr double kLeastNoisePx = 0.05;   // of a middle: exact images have that from their pixels
 constexpr double kWorthTheArea = 1.5;    // over the least area that is detected
 
+constexpr const char* kOwnDepth = "depth:";  // as SurfaceCache::keyOf without a frame: all of them are asked
 constexpr const char* kOnlyTexture = "every bright spot stays on the surface: texture";
 
 double radiusOf(double areaPx2) { return std::sqrt(std::max(0.0, areaPx2) / M_PI); }
@@ -304,6 +306,17 @@ bool mayBeTexture(const std::vector<Answer>& answers, int waiting) {
   return there >= kLeastViews && there >= kMajority * away;
 }
 
+/// What is said where too few views see a spot: nothing, unless it stays in all that do.
+MotionVerdict tooFew(const std::vector<Answer>& answers) {
+  MotionVerdict v;
+  for (const Answer& a : answers) {
+    v.alike += a.says == Answer::Says::Alike;
+    v.away += a.says == Answer::Says::Away;
+  }
+  if (v.alike > 0 && v.away == 0) v.kind = MotionVerdict::Kind::CannotTell;
+  return v;
+}
+
 /// Of each camera the side from which it sees a point: those within a degree of the first one of a side are of that side.
 std::vector<int> sidesOf(const std::vector<const Camera*>& cameras, const Eigen::Vector3d& point) {
   std::vector<Eigen::Vector3d> first;
@@ -333,6 +346,16 @@ std::string MotionVerdict::text() const {
         "%.2g m of the surface, or relief that the surface does not have)",
         stays, stays + away, lampWithin);
   if (kind != Kind::CannotTell) return "";
+  if (apart)
+    return "its motion cannot tell highlight and texture: the surface is this frame's own depth map, and that of no other view "
+           "has its "
+           "point (the object bends or moves, poses and depth do not agree, or no other view sees it)";
+  if (stays + alike < kLeastViews)
+    return formatted(
+        "it stays on the surface in the only other view that would show it: its motion cannot tell highlight and texture, %d "
+        "views "
+        "must be asked",
+        kLeastViews);
   const std::string found =
       formatted("it stays on the surface in %d other views: its motion cannot tell highlight and texture, ", stays + alike);
   if (stays < kLeastViews) return found + "a highlight would stay near it too (the views are too close for a spot of its size)";
@@ -345,7 +368,8 @@ std::vector<std::vector<int>> motionPanels(const Scene& scene, const SurfaceCach
   std::map<std::string, std::vector<int>> seeing;
   for (int f = 0; f < static_cast<int>(scene.frames.size()); ++f) {
     const Frame& frame = scene.frames[static_cast<std::size_t>(f)];
-    if (!frame.surface.empty() && !isGiven(frame)) seeing[surfaces.keyOf(f)].push_back(f);
+    if (isGiven(frame) || (frame.surface.empty() && frame.depth.empty())) continue;
+    seeing[frame.surface.empty() ? kOwnDepth : surfaces.keyOf(f)].push_back(f);
   }
   std::vector<std::vector<int>> panels(scene.frames.size());
   for (const auto& [key, frames] : seeing) {
@@ -362,7 +386,7 @@ std::vector<std::vector<int>> motionPanels(const Scene& scene, const SurfaceCach
 
 std::vector<MotionVerdict> motionVerdicts(const Scene& scene, int frame, const std::vector<int>& panel,
                                           const std::vector<FrameEvidence>& evidence, const Surface* surface,
-                                          const Settings& settings) {
+                                          const Settings& settings, const PanelDepths* depths) {
   const Camera& camera = scene.frames[static_cast<std::size_t>(frame)].camera;
   const std::vector<Highlight>& highlights = evidence[static_cast<std::size_t>(frame)].highlights;
   std::vector<MotionVerdict> verdicts(highlights.size());
@@ -378,11 +402,15 @@ std::vector<MotionVerdict> motionVerdicts(const Scene& scene, int frame, const s
     int waiting = 0;
     for (std::size_t k = 0; k < panel.size(); ++k) {
       const FrameEvidence& e = evidence[static_cast<std::size_t>(panel[k])];
-      answers.push_back(e.frame < 0 ? Answer{} : judge.first(*cameras[k], e));
+      const bool silent = depths && !depths->has(panel[k], spot->middle.position);
+      answers.push_back(e.frame < 0 || silent ? Answer{} : judge.first(*cameras[k], e));
       answers.back().side = sides[k];
-      waiting += e.frame < 0;
+      waiting += e.frame < 0 && !silent;
     }
-    if (!mayBeTexture(answers, waiting)) continue;
+    if (!mayBeTexture(answers, waiting)) {
+      if (waiting == 0) verdicts[i] = tooFew(answers);
+      continue;
+    }
     if (waiting > 0) {
       verdicts[i].kind = MotionVerdict::Kind::Waiting;
       continue;

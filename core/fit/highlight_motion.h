@@ -10,6 +10,8 @@
 
 namespace glint {
 
+class PanelDepths;
+
 /// What `detect.motion` asks for.
 enum class MotionUse { Off, Flag, Reject };
 MotionUse motionUse(const Settings& settings);
@@ -26,13 +28,15 @@ struct MotionVerdict {
   int stays = 0;          ///< views from different sides that find it on its point, where a highlight would lie elsewhere
   int alike = 0;          ///< views that find it on its point, where a highlight would lie too, or another one does
   int away = 0;           ///< views from different sides that see the point, should find the spot there, and do not
+  bool apart = false;     ///< the frame's surface is its own depth map, and that of no other view has the spot's point
   double lampWithin = 0;  ///< where stays > 0: a lamp that leaves a highlight there is nearer to the surface than this, m
   /// In words, as a reason or a flag; "" where there is nothing to say.
   std::string text() const;
 };
 
 /// The frames that are asked about the highlights of each frame: up to twelve that see the same surface, spread evenly over the sequence. Frames with
-/// given highlights ask none and are not asked: a hand that labels highlights leaves the paint out. So are frames whose surface is their own depth map.
+/// given highlights ask none and are not asked: a hand that labels highlights leaves the paint out. Frames whose surface is their own depth map
+/// ask each other; `judgedByMotion` (depth_motion.h) takes care of that.
 /// @return  by frame, sorted, without the frame itself
 std::vector<std::vector<int>> motionPanels(const Scene& scene, const SurfaceCache& surfaces);
 
@@ -50,10 +54,11 @@ std::vector<std::vector<int>> motionPanels(const Scene& scene, const SurfaceCach
 /// @param panel     see motionPanels()
 /// @param evidence  of all frames, as detected; `frame` < 0 = not searched yet
 /// @param surface   that these frames see; null = nothing is said
+/// @param depths    where that is the frame's own depth map: views whose depth maps do not have the spot's point answer nothing
 /// @return  one for each highlight of the frame, in their order
 std::vector<MotionVerdict> motionVerdicts(const Scene& scene, int frame, const std::vector<int>& panel,
                                           const std::vector<FrameEvidence>& evidence, const Surface* surface,
-                                          const Settings& settings);
+                                          const Settings& settings, const PanelDepths* depths = nullptr);
 
 /// Takes the highlights that are paint out of the evidence: into `rejected` with the reason, and into `textures`. NoHighlight where none is left.
 /// @param camera    of the frame: `rejected` holds measured pixels

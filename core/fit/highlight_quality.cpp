@@ -79,7 +79,7 @@ void measureContour(const Highlight& h, const Frame& frame, const LinearPixels& 
   }
   if (byNoise.empty()) return;
   q.noisePx = upperMedian(byNoise);
-  if (h.clipped) q.levelPx = h.skirt && h.skirt->outsideCore ? h.skirt->sigmaPx : upperMedian(byLevel);
+  if (h.clipped) q.levelPx = h.skirt ? h.skirt->sigmaPx : upperMedian(byLevel);
   if (footprint && !h.clipped)
     q.backgroundPx = backgroundUncertaintyPct(pixels.value, pixels.usable, *footprint, h.peakValue) / 100 *
                      std::sqrt(4 / M_PI * std::max(0.0, h.areaPx2));

@@ -33,6 +33,14 @@ double Background::at(double x, double y) const {
 
 Background fitBackground(const Image& image, const std::vector<char>& usable, const Footprint& footprint, double fallback,
                          Tail tail) {
+  const double logLevel = std::log(footprint.level), ggx = 1 / std::sqrt(footprint.level) - 1;
+  return tail == Tail::Ggx
+             ? fitBackground(image, usable, footprint, fallback, [&](double r) { return std::pow(1 + ggx * r, -2); })
+             : fitBackground(image, usable, footprint, fallback, [&](double r) { return std::exp(logLevel * r); });
+}
+
+Background fitBackground(const Image& image, const std::vector<char>& usable, const Footprint& footprint, double fallback,
+                         const std::function<double(double)>& fall) {
   Background result;
   result.coefficients[0] = fallback;
   result.centre = footprint.centre;
@@ -45,7 +53,6 @@ Background fitBackground(const Image& image, const std::vector<char>& usable, co
   const int y1 = std::min(image.height - 1, static_cast<int>(footprint.centre.y() + reach.y()) + 1);
   const double cells = std::max(0, x1 - x0 + 1) * static_cast<double>(std::max(0, y1 - y0 + 1));
   const int stride = std::max(1, static_cast<int>(std::sqrt(cells / static_cast<double>(kMostPixels))));
-  const double logLevel = std::log(footprint.level);
 
   std::vector<BackgroundSample> samples;
   for (int y = y0; y <= y1; y += stride)
@@ -55,10 +62,9 @@ Background fitBackground(const Image& image, const std::vector<char>& usable, co
       const double rho2 = shape.matrixL().solve(d).squaredNorm();
       if (rho2 < kInner * kInner || rho2 > kOuter * kOuter) continue;
       const double u = d.x() / result.scale, v = d.y() / result.scale;
-      const double fall =
-          tail == Tail::Ggx ? std::pow(1 + (1 / std::sqrt(footprint.level) - 1) * rho2, -2) : std::exp(logLevel * rho2);
+      const double tail = fall(rho2);
       BackgroundSample s;
-      s.row << 1, u, v, u * u, u * v, v * v, fall, u * fall, v * fall;
+      s.row << 1, u, v, u * u, u * v, v * v, tail, u * tail, v * tail;
       s.value = image.at(x, y);
       samples.push_back(s);
     }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <vector>
 
 #include "core/base/image.h"
@@ -41,6 +42,10 @@ enum class Tail { Gaussian, Ggx };
 /// @param fallback  constant returned when fewer than a few dozen pixels are usable.
 Background fitBackground(const Image& image, const std::vector<char>& usable, const Footprint& footprint, double fallback,
                          Tail tail = Tail::Gaussian);
+
+/// The same with a tail that is known: `fall` is the lobe over rho^2, as a share of any constant, finite.
+Background fitBackground(const Image& image, const std::vector<char>& usable, const Footprint& footprint, double fallback,
+                         const std::function<double(double rho2)>& fall);
 
 /// By how much a contour may be off because the lobe's tail is unknown: the background is fitted with both tails. Where GGX's explains
 /// the surroundings at least nearly as well, the difference at the highlight counts; a Gaussian tail that fits clearly better leaves none.

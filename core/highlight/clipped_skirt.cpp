@@ -28,8 +28,9 @@ constexpr double kAreaSigmaPx2 = 0.3;     // of a contour made of chords, measur
 constexpr double kUnusablePx = 1.5;       // a contour that near to an unusable pixel follows its border
 
 // The profile and its uncertainty. The tests have lobes that are none of these profiles.
-constexpr std::array kTails{1.0, 1 / 1.5, 0.5, 1 / 3.0, 0.2, 0.1, 0.0};  // 1/beta: from tails longer than GGX's to a Gaussian
-constexpr std::array kStarts{-2.5, -1.0, 0.3, 1.5};                      // log(A0 / median area)
+constexpr std::array kTails{1.0, 1 / 1.5, 0.5,  1 / 3.0, 0.2,
+                            0.1, 0.0,     -0.1, -0.2};  // 1/beta: from tails longer than GGX's to lobes that end
+constexpr std::array kStarts{-2.5, -1.0, 0.3, 1.5};     // log(A0 / median area)
 constexpr double kShapeSigma = 0.5;     // of log p, before the levels are looked at: lamps of any size, lobes of two parts
 constexpr double kProfileSigma = 0.01;  // of log I at a level: real lobes follow no profile to better than that
 constexpr double kPeakSigma = 0.02;     // of log K: the same at the top
@@ -40,10 +41,13 @@ constexpr double kDamped = 5;                                                   
 constexpr double kConverged = 1e-7;  // of the cost: log K then changes by far less than its sigma
 
 // When a peak is relied on.
-constexpr double kMostLogSigma = 0.2;     // a level known to a fifth; worse is no better than the clip value
-constexpr double kMostShape = 2;          // p: flatter tops are a lamp's image in a mirror, whose height no wall shows
-constexpr double kLeastGrown = 1.6;       // of the areas from the highest to the lowest level: a Gaussian clipped at a thirtieth
-constexpr double kMostMisfit = 0.05;      // rms of log I: beyond it the skirt is no lobe's
+constexpr double kMostLogSigma = 0.2;  // a level known to a fifth; worse is no better than the clip value
+constexpr double kMostShape = 2;       // p: flatter tops are a lamp's image in a mirror, whose height no wall shows
+constexpr double kLeastGrown = 1.6;    // of the areas from the highest to the lowest level: a Gaussian clipped at a thirtieth
+constexpr double kMostMisfit = 0.05;   // rms of log I: beyond it the skirt is no lobe's
+constexpr double kMostOutOfRound =
+    0.08;  // median over levels: star bursts and mirrored lamps have 0.1 to 0.2 (psbox), lobes on bent surfaces below 0.05
+constexpr int kRoundSamples = 72;         // along a contour: the rays of a star burst are wider than that
 constexpr double kHighestContour = 0.95;  // of the clip height: the cells of a contour just below it touch clipped pixels
 
 constexpr const char* kSteep = "the slope is steep, as around a lamp's image in a mirror, and does not show how high it rises";
@@ -71,7 +75,7 @@ double evaluate(const Skirt& s, double tail, const Unknowns& x, Eigen::Matrix4d*
   if (squares) *squares = 0;
   for (std::size_t i = 0; i < s.logValue.size(); ++i) {
     const double place = std::min((s.logArea[i] - x[1]) * p, 300.0), u = std::exp(place);  // exp stays finite
-    const double fall = tail > 0 ? -std::log1p(u * tail) / tail : -u, slope = -u / (1 + u * tail);
+    const double fall = tail != 0 ? -std::log1p(u * tail) / tail : -u, slope = -u / (1 + u * tail);
     const double off = s.logValue[i] - x[3] * s.inverse[i] - x[0] - fall, r = off / s.sigma[i];
     cost += r * r;
     if (squares) *squares += off * off;
@@ -131,8 +135,13 @@ bool usableSample(const SkirtSample& s) {
 
 double SkirtPeak::areaAt(double v) const {
   if (!(v > 0) || !(v < value)) return 0;
-  const double fall = std::log(value / v), u = tail > 0 ? std::expm1(fall * tail) / tail : fall;
+  const double fall = std::log(value / v), u = tail != 0 ? std::expm1(fall * tail) / tail : fall;
   return areaPx2 * std::pow(u, 1 / shape);
+}
+
+double SkirtPeak::fallAt(double area) const {
+  const double u = std::pow(std::max(0.0, area) / areaPx2, shape);
+  return tail != 0 ? std::pow(std::max(0.0, 1 + u * tail), -1 / tail) : std::exp(-u);
 }
 
 Outcome<SkirtPeak> peakFromSkirt(std::span<const SkirtSample> given, double backgroundSigma) {
@@ -231,6 +240,22 @@ const char* notOfTheSame(const SkirtLevel& now, const std::vector<SkirtLevel>& a
   return nullptr;
 }
 
+/// Rms distance of a contour from its ellipse, as a share of the ellipse's radius in the same direction.
+double outOfRound(const Polyline& line, const Ellipse& e) {
+  double sum = 0;
+  for (const Pixel& q : resample(line, kRoundSamples)) {
+    const Pixel p = Eigen::Rotation2Dd(-e.angle) * (q - e.centre);
+    sum += std::pow(p.cwiseQuotient(e.semiAxes).norm() - 1, 2);
+  }
+  return std::sqrt(sum / kRoundSamples);
+}
+
+double medianOutOfRound(const std::vector<SkirtLevel>& levels) {
+  std::vector<double> all;
+  for (const SkirtLevel& level : levels) all.push_back(level.outOfRound);
+  return upperMedian(all);
+}
+
 /// The contour at a value around a pixel; empty where there is none, with the reason why levels end here.
 std::optional<SkirtLevel> levelAround(const SkirtView& view, const Pixel& inside, double value, const char*& reason) {
   for (const IsoContour& c : isoContours(view.corrected, value)) {
@@ -248,6 +273,7 @@ std::optional<SkirtLevel> levelAround(const SkirtView& view, const Pixel& inside
     level.contour = withoutTongues(c.line).line;
     level.areaPx2 = signedArea(level.contour);
     if (const Outcome<Ellipse> e = fitEllipse(level.contour.points)) level.ellipse = *e;
+    if (level.ellipse) level.outOfRound = outOfRound(level.contour, *level.ellipse);
     return level;
   }
   reason = "there is no contour around the core";
@@ -309,6 +335,9 @@ ClippedSkirt traceSkirt(const SkirtView& view) {
     skirt.reason = kSteep;
   else if (peak->misfit > kMostMisfit)
     skirt.reason = formatted("the slope is not that of a lobe: it leaves the profile by %.0f %%", 100 * peak->misfit);
+  else if (const double ragged = medianOutOfRound(skirt.levels); ragged > kMostOutOfRound)
+    skirt.reason = formatted(
+        "the slope is not that of a lobe: its contours leave their ellipses by %.0f %%, as those of a star burst", 100 * ragged);
   else if (peak->logSigma > kMostLogSigma)
     skirt.reason = formatted("the peak is known to %.0f %% only", 100 * peak->logSigma);
   else
@@ -327,18 +356,27 @@ void noteContour(ClippedSkirt& skirt, double level, double reference, const Poly
   skirt.outsideCore = reachesLevel(skirt, level) && skirt.contourValue < kHighestContour * skirt.clipHeight &&
                       reference >= kSamePeak * skirt.peak->value;
   skirt.sigmaPx = 0;
-  const double round = length(contour);
-  if (!skirt.outsideCore || !(round > 0)) return;
+  const double round = length(contour), area = std::abs(signedArea(contour));
+  if (!(round > 0) || !(area > 0)) return;
+  if (!skirt.peak || !skirt.trusted) {
+    skirt.sigmaPx = std::sqrt(area / M_PI / 3);  // of anything between none and the whole radius, equally likely
+    return;
+  }
   // A background that is too high lowers the peak, too: the two add up.
+  const double wanted = level * std::max(reference, skirt.peak->value);
   const double off = skirt.peak->logSigma + (1 - level) * skirt.backgroundSigma / skirt.contourValue;
-  const double lower = skirt.peak->areaAt(skirt.contourValue * std::exp(-off)),
-               higher = skirt.peak->areaAt(skirt.contourValue * std::exp(off));
+  const double lower = skirt.peak->areaAt(wanted * std::exp(-off)), higher = skirt.peak->areaAt(wanted * std::exp(off));
   skirt.sigmaPx = (lower - higher) / (2 * round);
+  if (!skirt.outsideCore) {
+    const double shrunk = std::clamp(skirt.peak->areaAt(wanted) / skirt.peak->areaAt(skirt.contourValue), 0.0, 1.0);
+    skirt.sigmaPx += area * (1 - shrunk) / (round * (1 + std::sqrt(shrunk)) / 2);  // between similar lines: area over mean length
+  }
 }
 
 std::string inWords(const ClippedSkirt& skirt) {
   if (!skirt.peak)
-    return formatted("the peak cannot be told (%s): contour at %g of the clip value", skirt.reason.c_str(), skirt.levelAsked);
+    return formatted("the peak cannot be told (%s): contour at %g of the clip value, too large by an unknown part of its radius",
+                     skirt.reason.c_str(), skirt.levelAsked);
   const double times = skirt.peak->value / skirt.clipHeight, pct = 100 * skirt.peak->logSigma;
   const std::string peak = formatted("peak about %.2g times the clip value (+-%.0f %%), from %zu levels of the slope", times, pct,
                                      skirt.levels.size());
@@ -346,8 +384,10 @@ std::string inWords(const ClippedSkirt& skirt) {
     return peak + formatted(": contour at %g of it, outside of the core (+-%.2g px)", skirt.levelAsked, skirt.sigmaPx);
   const double own = skirt.contourValue / skirt.peak->value;
   if (!skirt.trusted)
-    return peak + formatted("; not relied on (%s): contour at %g of the clip value", skirt.reason.c_str(), skirt.levelAsked);
-  return peak + formatted(": level %g lies inside the clipped core, the contour at about %.2g", skirt.levelAsked, own);
+    return peak + formatted("; not relied on (%s): contour at %g of the clip value, too large by an unknown part of its radius",
+                            skirt.reason.c_str(), skirt.levelAsked);
+  return peak + formatted(": level %g lies inside the clipped core, the contour at about %.2g, too large by %.2g px or less",
+                          skirt.levelAsked, own, skirt.sigmaPx);
 }
 
 }  // namespace glint

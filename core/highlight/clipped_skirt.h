@@ -19,6 +19,7 @@ struct SkirtLevel {
   Polyline contour;  ///< closed
   double areaPx2 = 0;
   std::optional<Ellipse> ellipse;  ///< least-squares ellipse of the contour
+  double outOfRound = 0;           ///< rms distance of the contour from the ellipse, as a share of its radii; 0 without one
 };
 
 /// What a fit needs of it.
@@ -29,15 +30,17 @@ struct SkirtSample {
 };
 
 /// The unclipped peak that continues a skirt: I(A) = K (1 + (A/A0)^p / beta)^-beta, A the area of the contour at I.
+/// With beta < 0 the lobe ends where the bracket is 0.
 struct SkirtPeak {
   double value = 0;     ///< K, above the background
   double logSigma = 0;  ///< standard deviation of log K: noise, background, the profile's shape
   double areaPx2 = 0;   ///< A0
   double shape = 1;     ///< p: 1 of a lobe under a small lamp, above 1 flat-topped (a large lamp), below 1 pointed
-  double tail = 0;      ///< 1/beta: 0 Gaussian, 1/2 GGX
+  double tail = 0;      ///< 1/beta: 0 Gaussian, 1/2 GGX, below 0 a lobe that ends
   double misfit = 0;    ///< rms of log(value) about the profile
 
-  double areaAt(double value) const;  ///< of the contour at a value below K, px^2; 0 at K and above
+  double areaAt(double value) const;    ///< of the contour at a value below K, px^2; 0 at K and above
+  double fallAt(double areaPx2) const;  ///< value of the contour of that area, as a share of K; 1 at areas of 0 and less
 };
 
 /// The slope around the clipped core of one highlight.
@@ -51,10 +54,13 @@ struct ClippedSkirt {
   double contourValue = 0;     ///< at which the highlight's contour was taken, above the background
   bool outsideCore = false;    ///< the contour lies at the level asked for, of the estimated peak, outside of the clipped core
   double backgroundSigma = 0;  ///< of the background that was taken off
-  double sigmaPx = 0;          ///< then: how far the uncertainties of peak and background move the contour (standard deviation)
+  /// How far the contour may be from that at the level asked for (standard deviation, px). Outside of the core: what the
+  /// uncertainties of peak and background move it. Else the contour is too large: by the distance to where the profile has the
+  /// level, and its uncertainty; where no peak is relied on, anything up to the whole radius is as likely.
+  double sigmaPx = 0;
 };
 
-/// Fits the profile to the areas of several levels. log K, A0, p and an offset of the background are fitted for each of seven beta; the answers are averaged by
+/// Fits the profile to the areas of several levels. log K, A0, p and an offset of the background are fitted for each of nine beta; the answers are averaged by
 /// how well they explain the levels, and their scatter is part of the uncertainty. A narrow peak of its own on top of the core, of which the skirt shows nothing, is in no skirt.
 /// @param samples          at least five, any order. @param backgroundSigma  standard deviation of the background that was taken off
 /// @return TooFewPoints; NotFinite (a value or an area is not positive and finite); NotConverged (areas do not grow as values fall, or so little that the slope

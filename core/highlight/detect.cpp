@@ -29,10 +29,13 @@ constexpr double kSamePeakPx = 1.5;        // of the same peak, found again
 constexpr std::size_t kMostRejected = 32;  // that are listed: noise has many
 constexpr double kNarrowPiece =
     0.1;  // of the disc inside a clipped highlight: radius of a piece of its streaks, as withoutTongues cuts them
-constexpr double kBesidePx = 1.0;          // in discs inside a clipped highlight: its streaks end within that
-constexpr int kSkirtShare = 1;             // of a clipped candidate's box, on each side: its slope down to a tenth lies within
-constexpr double kBackgroundShare = 0.01;  // of the clip height: by that much a quadratic in the pixel misses real shading
-constexpr double kBadReachPx = 1.5;        // an unusable pixel this near to a contour decides on its course
+constexpr double kBesidePx = 1.0;           // in discs inside a clipped highlight: its streaks end within that
+constexpr int kSkirtShare = 1;              // of a clipped candidate's box, on each side: its slope down to a tenth lies within
+constexpr double kBackgroundShare = 0.01;   // of the clip height: by that much a quadratic in the pixel misses real shading
+constexpr int kBackgroundRounds = 3;        // with the tail that the slope shows: it settles in two
+constexpr double kSettledBackground = 0.1;  // of its standard deviation
+constexpr double kWorseBackground = 1.1;    // of the spread around it: that much more is another background, no better one
+constexpr double kBadReachPx = 1.5;         // an unusable pixel this near to a contour decides on its course
 
 /// One channel, with what may and may not be used of it.
 struct Prepared {
@@ -269,20 +272,46 @@ class Detector {
     const Outcome<PeakFit> peak = fitPeak(c.corrected, at.x, at.y, options_.peakWindowLevel);
     const bool clipped = saturatedNear(c.box, region);
     c.top = peak && !clipped ? peak->value : c.corrected.at(at.x, at.y);
-    if (clipped) addSkirt(c, tight, Pixel(at.x, at.y));
+    if (clipped) addSkirt(c, tight, at);
     const Pixel where = (peak ? peak->at : Pixel(at.x, at.y)) + Pixel(c.box.x, c.box.y);
     const double top = c.top;
     return {std::move(c), Top{where, top}};
   }
 
-  /// The slope of a clipped candidate at several levels, in a view wide enough for its lowest ones.
-  void addSkirt(Candidate& c, const cv::Rect& tight, const Pixel& top) const {
+  /// The slope of a clipped candidate, and the background again with the tail that it shows: the first fit has a Gaussian's
+  /// below half of the clip value, and takes a longer one for shading.
+  void addSkirt(Candidate& c, const cv::Rect& tight, const cv::Point& top) const {
+    const Footprint footprint = footprintOf(labels_, c.label, tight, kCandidateShare * options_.level);
+    const Background longTail =
+        options_.removeBackground ? fitBackground(p_.value, p_.usable, footprint, base_, Tail::Ggx) : c.background;
+    const Pixel at(top.x + c.box.x, top.y + c.box.y);
+    traceSlope(c, tight, at, longTail);
+    const double unit = M_PI * std::sqrt(footprint.shape.determinant());  // area of the footprint, px^2
+    for (int round = 0; round < kBackgroundRounds && options_.removeBackground && c.skirt->trusted; ++round) {
+      Candidate next = c;
+      const SkirtPeak& peak = *c.skirt->peak;
+      next.background =
+          fitBackground(p_.value, p_.usable, footprint, base_, [&](double rho2) { return peak.fallAt(unit * rho2); });
+      if (next.background.spread > kWorseBackground * c.background.spread) return;
+      next.corrected = correctedRoi(p_, next.background, next.box);
+      next.top = next.corrected.at(top.x, top.y);
+      traceSlope(next, tight, at, longTail);
+      const double moved = std::abs(next.background.at(at.x(), at.y()) - c.background.at(at.x(), at.y()));
+      const bool settled = moved < kSettledBackground * c.skirt->backgroundSigma;
+      c = std::move(next);
+      if (settled) return;
+    }
+  }
+
+  /// The slope at several levels, in a view wide enough for its lowest ones.
+  void traceSlope(Candidate& c, const cv::Rect& tight, const Pixel& top, const Background& longTail) const {
     const cv::Rect box =
         grown(tight, kSkirtShare * std::max(tight.width, tight.height) + kRoiMargin, p_.value.width, p_.value.height);
     SkirtView view;
     view.corrected = correctedRoi(p_, c.background, box);
     view.noise = noise_;
     view.minAreaPx2 = options_.minAreaPx2;
+    c.clippedPixels = 0;
     for (int y = box.y; y < box.y + box.height; ++y)
       for (int x = box.x; x < box.x + box.width; ++x) {
         const std::size_t i = static_cast<std::size_t>(y) * p_.value.width + x;
@@ -291,14 +320,9 @@ class Detector {
         view.saturated.push_back(saturated);
         c.clippedPixels += saturated;
       }
-    // How far the background may be off: what the other tail would leave of it, and a little of what no model of it follows.
-    const Pixel at = top + Pixel(c.box.x, c.box.y);
-    view.backgroundSigma = kBackgroundShare * c.top;
-    if (options_.removeBackground) {
-      const Footprint footprint = footprintOf(labels_, c.label, tight, kCandidateShare * options_.level);
-      const Background other = fitBackground(p_.value, p_.usable, footprint, base_, Tail::Ggx);
-      view.backgroundSigma = std::max(view.backgroundSigma, std::abs(other.at(at.x(), at.y()) - c.background.at(at.x(), at.y())));
-    }
+    // How far the background may be off: what GGX's tail would leave of it, and a little of what no model of it follows.
+    view.backgroundSigma =
+        std::max(kBackgroundShare * c.top, std::abs(longTail.at(top.x(), top.y()) - c.background.at(top.x(), top.y())));
     c.skirt = traceSkirt(view);
     const Pixel origin(box.x, box.y);
     for (SkirtLevel& level : c.skirt->levels) {

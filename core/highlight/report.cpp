@@ -58,6 +58,7 @@ Json toJson(const ClippedSkirt& skirt) {
     levels.push_back({{"value", level.value},
                       {"of_clip", level.value / skirt.clipHeight},
                       {"area_px2", level.areaPx2},
+                      {"out_of_round", level.outOfRound},
                       {"ellipse", level.ellipse ? toJson(*level.ellipse) : Json(nullptr)}});
   Json j = {{"clip_height", skirt.clipHeight},
             {"peak", nullptr},

@@ -7,7 +7,7 @@
 
 #include "core/base/number_text.h"
 #include "core/base/parallel.h"
-#include "core/fit/highlight_motion.h"
+#include "core/fit/depth_motion.h"
 
 namespace glint {
 namespace {
@@ -35,6 +35,7 @@ void rejectTextures(Inspection& r, std::vector<int> frames, const SurfaceOfFrame
   if (motionUse(r.request.settings) != MotionUse::Reject || r.request.whatIf.synthesise) return;
   const std::vector<std::vector<int>> panels = motionPanels(*r.scene, *r.surfaces);
   std::erase_if(frames, [&](int f) { return panels[static_cast<std::size_t>(f)].empty(); });
+  const PanelDepths depths(*r.scene, r.request.settings);
   Verdicts verdicts;
   while (!frames.empty()) {
     std::vector<std::vector<MotionVerdict>> judged(frames.size());
@@ -42,9 +43,9 @@ void rejectTextures(Inspection& r, std::vector<int> frames, const SurfaceOfFrame
         static_cast<int>(frames.size()),
         [&](int n) {
           const int f = frames[static_cast<std::size_t>(n)];
-          if (r.evidence[static_cast<std::size_t>(f)].highlights.empty()) return;
-          judged[static_cast<std::size_t>(n)] = motionVerdicts(*r.scene, f, panels[static_cast<std::size_t>(f)], r.evidence,
-                                                               surfaceIfAny(surfaceOf, f).get(), r.request.settings);
+          judged[static_cast<std::size_t>(n)] = judgedByMotion(
+              *r.scene, f, panels[static_cast<std::size_t>(f)], r.evidence, [&] { return surfaceIfAny(surfaceOf, f); }, depths,
+              r.request.settings);
         },
         progress, "motion");
     std::set<int> missing, again;

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "core/session/session.h"
 #include "gui/document/engine.h"
 
 namespace glint::gui {
