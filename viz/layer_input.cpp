@@ -262,14 +262,14 @@ std::vector<Points> ellipseOnPlane(const Camera& camera, const Plane& plane, con
 }
 
 double planeRadius(const Camera& camera, const Plane& plane, const Eigen::Vector3d& at, const std::vector<Pixel>& contour,
-                   const SceneScale& scale) {
+                   const SceneScale& scale, double times) {
   double radius = 0;
   for (const Pixel& pixel : contour) {
     if (!pixel.allFinite()) continue;
     const std::optional<Eigen::Vector3d> p = intersection(camera.ray(pixel), plane);
     if (p) radius = std::max(radius, (*p - at).norm());
   }
-  return std::clamp(1.5 * radius, 0.03 * scale.surfaceSize, 0.35 * scale.surfaceSize);
+  return std::clamp(times * radius, 0.03 * scale.surfaceSize, 0.35 * scale.surfaceSize);
 }
 
 std::array<Eigen::Vector3d, 4> imagePlane(const Camera& camera, double depth) {

@@ -92,6 +92,7 @@ void addVirtualCameras(const LayerInput& in, std::vector<Eigen::Vector3d>& point
     }
 }
 
+constexpr double kEllipsoidShare = 1.6;                // of its diagonal: then it fills about a quarter of the picture
 constexpr double kWalkDisc = 1.15, kWalkArrow = 0.85;  // of the walk's reach, see walkLayer()
 }  // namespace
 
@@ -188,6 +189,9 @@ std::optional<Framing> highlightFraming(const LayerInput& in, int highlight, Hig
     if (across.dot(toCamera) < 0) across = -across;
     place.back = (0.42 * p.normal + 0.75 * across + 0.5 * side).normalized();
   }
+  // A vase stands: the world's upwards, where the view is not along it.
+  if (look != HighlightLook::Camera && !in.frames.empty())
+    if (const Eigen::Vector3d world = upwards(in, in.frames); std::abs(world.dot(place.back)) < 0.9) up = world;
   place.up = (up - up.dot(place.back) * place.back).normalized();
   place.reference = p.position;
   place.leastDepth = 2 * radius;
@@ -199,11 +203,18 @@ namespace {
 std::vector<Eigen::Vector3d> ellipsoidExtent(const LayerInput& in, const std::string& model) {
   std::vector<Eigen::Vector3d> points = ellipsoidEnds(in, model);
   if (points.empty()) return points;
+  // And what comes to it, as far as it can be seen along with it: from the brightest points, a small one would be a dot.
+  Eigen::AlignedBox3d ends;
+  for (const Eigen::Vector3d& p : points) ends.extend(p);
+  const double most = kEllipsoidShare * ends.diagonal().norm();
   for (const std::string& name : in.models) {
     if (!model.empty() && name != model) continue;
     for (const ModelFit* fit : in.fits(name))
-      for (const TrainingView* view : in.viewsOf(*fit))
-        if (view->seen) points.push_back(view->seen->brightest.point.position);
+      for (const TrainingView* view : in.viewsOf(*fit)) {
+        if (!view->seen || !fit->ellipsoid()) continue;
+        const Eigen::Vector3d way = view->seen->brightest.point.position - fit->ellipsoid()->centre();
+        points.push_back(fit->ellipsoid()->centre() + std::min(1.0, most / std::max(way.norm(), 1e-300)) * way);
+      }
   }
   return points;
 }
@@ -278,17 +289,10 @@ Eigen::Vector3d overviewDirection(const LayerInput& in, const std::vector<int>& 
   return std::cos(elevation) * flat + std::sin(elevation) * up;
 }
 
-std::optional<Framing> ellipsoidFraming(const LayerInput& in, const std::vector<int>& frames, const std::string& model,
-                                        const DrawnParts& drawn) {
+std::optional<Framing> ellipsoidFraming(const LayerInput& in, const std::vector<int>& frames, const std::string& model) {
   Framing framing;
   framing.points = ellipsoidExtent(in, model);
   if (framing.points.empty()) return {};
-  // Cones without a mirror come from the cameras themselves, and are drawn from halfway.
-  if (!modelByName(model).traits().mirrored)
-    for (const ModelFit* fit : in.fits(model))
-      for (const TrainingView* view : in.viewsOf(*fit))
-        if (fit->ellipsoid()) framing.points.push_back(0.5 * (view->camera.centreInWorld() + fit->ellipsoid()->centre()));
-  if (drawn.virtualCameras) addVirtualCameras(in, framing.points, true);
   // The surface, too, where it is no larger than all that: half of it would puzzle.
   Eigen::AlignedBox3d held;
   for (const Eigen::Vector3d& p : framing.points) held.extend(p);
@@ -303,7 +307,7 @@ std::optional<Framing> ellipsoidFraming(const LayerInput& in, const std::vector<
     normals += facing(view->seen->brightest.point, view->camera.centreInWorld()).normal;
     ++views;
   }
-  if (views > 0 && normals.norm() > 0.8 * views) up = normals.normalized();
+  if (views > 0 && normals.norm() > 0.8 * views && normals.dot(up) > 0.5 * views) up = normals.normalized();  // a vase stands
   framing.back = sideDirection(framing.points, up, overviewDirection(in, frames, up));
   framing.up = framing.back.cross(up.cross(framing.back).normalized());
   framing.reference = in.scale.surfaceBox.center();
