@@ -36,6 +36,7 @@ class ScenePanel;
 class SceneTree;
 class ScriptedActions;
 class StartPage;
+class Teaching;
 class SetupPanel;
 class Timeline;
 class TradeoffPanel;
@@ -99,7 +100,6 @@ class MainWindow : public QMainWindow {
   void showTitle();
   bool quiet() const;
   void addView(Opened& opened) const;
-  void makeRoomToExplain();
   Opened snapshot() const;
 
   Engine engine_;
@@ -121,6 +121,7 @@ class MainWindow : public QMainWindow {
   ComparisonPanel* comparison_ = nullptr;
   ErrorTable* errors_ = nullptr;
   ExplainPanel* explain_ = nullptr;
+  Teaching* teaching_ = nullptr;
   NumbersPanel* numbers_ = nullptr;
   ParameterPanel* parameters_ = nullptr;
   WhatIfPanel* whatIf_ = nullptr;
