@@ -30,6 +30,7 @@ namespace glint::viz {
 
 struct WalkStory;
 
+constexpr double kAboutCanonical = 1.3;      ///< radius of a tangent plane that holds a canonical contour, of that contour's
 constexpr long long kLargeSurface = 200000;  ///< triangles: beyond, drawing takes more than 50 ms without a graphics card
 
 /// Sizes that everything drawn is derived from, so that millimetres and kilometres look alike.

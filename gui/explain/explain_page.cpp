@@ -131,7 +131,8 @@ QString ExplainPage::subject() const {
   QString words = said("Frame %1%2").arg(escaped(scene.frames[frame].id), ofSeveral);
   if (!plain() && !explanation->light.empty()) words += said(", light %1").arg(escaped(explanation->light));
   if (!plain() && !explanation->model.empty()) words += said(", model %1").arg(escaped(explanation->model));
-  return QStringLiteral("<p style='color:%1'>%2</p>").arg(palette.color(QPalette::PlaceholderText).name(), words);
+  return QStringLiteral("<div class='subject' style='color:%1; margin-top:8px; margin-bottom:8px'>%2</div>")
+      .arg(palette.color(QPalette::PlaceholderText).name(), words);
 }
 
 /// What of a frame is observed in it, and what comes from the others.

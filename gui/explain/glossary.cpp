@@ -63,7 +63,7 @@ const QList<GlossaryWord>& glossary() {
 QString withGlossary(const QString& html, const QColor& ink) {
   static const QSet<QString> kept{QStringLiteral("a"), QStringLiteral("h3"), QStringLiteral("h4"), QStringLiteral("tt"),
                                   QStringLiteral("i")};  // an italic word is a model's or a button's name
-  static const QString numbers = QStringLiteral("<table class='numbers'");
+  static const QString numbers = QStringLiteral("<table class='numbers'"), subject = QStringLiteral("<div class='subject'");
   QSet<QString> done;
   QString result, within;  // the tag that everything stays as it is in; "" = none
   int from = 0;
@@ -74,7 +74,7 @@ QString withGlossary(const QString& html, const QColor& ink) {
     from = match.capturedEnd();
     if (part.startsWith('<')) {
       const QString name = part.mid(1).section(QRegularExpression(QStringLiteral("[ >]")), 0, 0);
-      if (within.isEmpty() && (kept.contains(name) || part.startsWith(numbers)))
+      if (within.isEmpty() && (kept.contains(name) || part.startsWith(numbers) || part.startsWith(subject)))
         within = name;
       else if (name == '/' + within)
         within.clear();

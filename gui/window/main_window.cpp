@@ -186,7 +186,6 @@ MainWindow::MainWindow(Engine engine, QWidget* parent)
   start_->setRecent(files_->recent());
   showTitle();
   applyLayout(QStringLiteral("debug"));
-  layout_->hideUntilOpen();
 }
 
 MainWindow::~MainWindow() = default;
@@ -446,7 +445,10 @@ void MainWindow::open(const QString& input, const QString& frame, const InputCho
   files_->openRelinked(input, how);
 }
 
-void MainWindow::applyLayout(const QString& name) { layout_->apply(name); }
+void MainWindow::applyLayout(const QString& name) {
+  layout_->apply(name);
+  if (!document_.scene()) layout_->hideUntilOpen();
+}
 
 void MainWindow::resizeEvent(QResizeEvent* e) {
   QMainWindow::resizeEvent(e);

@@ -54,6 +54,7 @@ QObject* makeFrameViewTest();
 QObject* makeThemeTest();
 QObject* makeTimelineTest();
 QObject* makePaletteTest();
+QObject* makeStartPageTest();
 QObject* makePanelTest();
 QObject* makeParametersTest();
 QObject* makePickingTest();

@@ -44,8 +44,12 @@ TEST(LessonAnswers, MovingHighlightLiesWhereTheWayIsShortestAndMovesByHalf) {
     const Eigen::Vector3d eye = e.view->camera.centreInWorld();
     EXPECT_LT((at.back() - shortestWay(eye, lamp, frame < 5 ? 0 : 1)).norm(), 1e-4) << "m, frame " << frame;
     EXPECT_NEAR(eye.z(), lamp.z(), 1e-12) << "equally high";
-    Eigen::AlignedBox2d box;
-    for (const Pixel& p : e.view->highlight.contour.points) box.extend(p);
+    Eigen::AlignedBox3d box;  // on the sheet: it is bent about an axis along y
+    for (const Pixel& p : e.view->highlight.contour.points) {
+      const Outcome<SurfacePoint> hit = e.view->surface->firstHit(e.view->camera.ray(p));
+      ASSERT_TRUE(hit);
+      box.extend(hit->position);
+    }
     across.push_back(box.sizes().x());
     along.push_back(box.sizes().y());
     EXPECT_EQ(in.isHeldOut(frame), frame != 0 && frame != 2 && frame != 4) << "three frames trained";

@@ -9,8 +9,6 @@ namespace {
 
 constexpr double kPlanePx = 2;  // see Drawn::nearerPx: below what lies on the plane
 
-constexpr double kAboutCanonical = 1.3;  // of the canonical contour's radius
-
 /// What the plane has to reach: three highlights, and where it is looked at alone the canonical contour, which lies on it and is several
 /// times as large where the surface bulges. Of all frames together such planes would hide the surface.
 double radiusOf(const LayerInput& in, const Camera& camera, const Plane& plane, const Eigen::Vector3d& at,
