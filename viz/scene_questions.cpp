@@ -220,7 +220,8 @@ std::vector<Eigen::Vector3d> ellipsoidExtent(const LayerInput& in, const std::st
   };
   // Those of the other models, too, where this one is still to be seen then.
   const std::vector<Eigen::Vector3d> own = ellipsoidEnds(in, model, true);
-  if (!own.empty() && sizeOf(own) < kDot * sizeOf(points)) points = own;
+  const bool alone = !own.empty() && sizeOf(own) < kDot * sizeOf(points);
+  if (alone) points = own;
   // And what comes to it, as far as it can be seen along with it: from the brightest points, a small one would be a dot.
   const double most = kEllipsoidShare * sizeOf(points);
   for (const std::string& name : in.models) {
@@ -230,6 +231,9 @@ std::vector<Eigen::Vector3d> ellipsoidExtent(const LayerInput& in, const std::st
         if (!view->seen || !fit->ellipsoid()) continue;
         const Eigen::Vector3d way = view->seen->brightest.point.position - fit->ellipsoid()->centre();
         points.push_back(fit->ellipsoid()->centre() + std::min(1.0, most / std::max(way.norm(), 1e-300)) * way);
+        // Cones without a mirror come from the cameras themselves, and are drawn from halfway.
+        if (!alone && !modelByName(name).traits().mirrored)
+          points.push_back(0.5 * (view->camera.centreInWorld() + fit->ellipsoid()->centre()));
       }
   }
   return points;
