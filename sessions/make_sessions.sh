@@ -23,7 +23,7 @@ root=$(dirname -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")")
 glint=${GLINT:-$root/build/release/bin/glint}
 cycles=${CYCLES:-$root/../shared/data/cycles}
 
-lessons=(lessons/{mirror,plane,sphere,bent-mirror,plane-to-cylinder,waist})
+lessons=(lessons/{moving-highlight,mirror,plane,sphere,bent-mirror,plane-to-cylinder,waist})
 data=yes names=()
 while [ $# -gt 0 ]; do
   case "$1" in
@@ -147,6 +147,7 @@ for name in "${names[@]}"; do
     vase) train=first:6 ;;
     lessons/mirror|lessons/plane) train=0-3 ;;
     lessons/sphere) train=0,2,4 ;;
+    lessons/moving-highlight) train=0,2,4 ;;  # of the flat sheet; the others are predicted
     lessons/bent-mirror) train=per-surface ;;
     lessons/plane-to-cylinder) train=0-3 ;;  # the plane only
     lessons/waist) train=1,3,5,7,9 ;;

@@ -210,8 +210,8 @@ std::vector<Points> ellipseOnPlane(const Camera& camera, const Plane& plane, con
 }
 
 double planeRadius(const Camera& camera, const Plane& plane, const Eigen::Vector3d& at, const std::vector<Pixel>& contour,
-                   const SceneScale& scale) {
-  return draw::planeRadius(camera, plane, at, contour, scale.surfaceSize);
+                   const SceneScale& scale, double times) {
+  return draw::planeRadius(camera, plane, at, contour, scale.surfaceSize, times);
 }
 
 std::array<Eigen::Vector3d, 4> imagePlane(const Camera& camera, double depth) {

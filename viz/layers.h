@@ -30,6 +30,7 @@ namespace glint::viz {
 
 struct WalkStory;
 
+constexpr double kAboutCanonical = 1.3;      ///< radius of a tangent plane that holds a canonical contour, of that contour's
 constexpr long long kLargeSurface = 200000;  ///< triangles: beyond, drawing takes more than 50 ms without a graphics card
 
 /// Sizes that everything drawn is derived from, so that millimetres and kilometres look alike.
@@ -250,9 +251,10 @@ std::vector<Points> castContour(const Camera& camera, const Surface& surface, co
                                 double lift);
 /// An image ellipse carried back to a plane, lifted towards the camera.
 std::vector<Points> ellipseOnPlane(const Camera& camera, const Plane& plane, const Ellipse& ellipse, double lift);
-/// Radius of a disc that holds the canonical (else the observed) contour of a view on its tangent plane, with a margin.
+/// Radius of a disc on a tangent plane, so many times as wide as a contour there.
+/// @param times  3: the highlight stands in the middle of a plane that is seen as one.
 double planeRadius(const Camera& camera, const Plane& plane, const Eigen::Vector3d& at, const std::vector<Pixel>& contour,
-                   const SceneScale& scale);
+                   const SceneScale& scale, double times = 3);
 /// Direction of an ideal pixel from an observed contour, as Selection::direction has it. @param ideal  finite.
 double directionOf(const Camera& camera, const Highlight& observed, const Pixel& ideal);
 /// The vertex of a contour that lies in that direction from the observed one; nothing on an empty contour.

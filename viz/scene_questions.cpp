@@ -57,9 +57,11 @@ std::vector<Eigen::Vector3d> selectedExtent(const LayerInput& in) {
 namespace {
 
 /// The ends of the ellipsoids' axes, with a margin; those of other models than `model` ("" = none is meant) where they are small.
-std::vector<Eigen::Vector3d> ellipsoidEnds(const LayerInput& in, const std::string& model) {
+/// @param alone  of this model, else of all.
+std::vector<Eigen::Vector3d> ellipsoidEnds(const LayerInput& in, const std::string& model, bool alone) {
   std::vector<Eigen::Vector3d> points;
   for (const std::string& name : in.models) {
+    if (alone && name != model) continue;
     for (const ModelFit* fit : in.fits(name)) {
       const double most = (name == model ? 5 : 0.5) * in.scale.sceneSize;  // a needle of another model must not shrink the rest
       if (!fit->ellipsoid() || fit->ellipsoid()->semiAxes().maxCoeff() > most ||
@@ -92,6 +94,10 @@ void addVirtualCameras(const LayerInput& in, std::vector<Eigen::Vector3d>& point
     }
 }
 
+constexpr double kLeansUp = 0.5;                       // cosine: a normal that leans less upwards is of a side
+constexpr double kAlongUp = 0.9;                       // cosine: a view that is closer to upwards cannot have it up
+constexpr double kDot = 0.125;                         // of the picture: a smaller ellipsoid is no shape any more
+constexpr double kEllipsoidShare = 1.6;                // of its diagonal: then it fills about a quarter of the picture
 constexpr double kWalkDisc = 1.15, kWalkArrow = 0.85;  // of the walk's reach, see walkLayer()
 }  // namespace
 
@@ -150,9 +156,12 @@ std::optional<Framing> highlightFraming(const LayerInput& in, int highlight, Hig
   }
   if (drawn.tangentPlanes && look == HighlightLook::Section) {
     const Eigen::Matrix<double, 3, 2> basis = tangentBasis(p.normal);
-    const double disc = planeRadius(camera, Plane::through(p.position, p.normal), p.position, h.contour.points, in.scale);
-    for (const int k : {0, 1})
-      for (const double side : {-disc, disc}) place.points.push_back(p.position + side * basis.col(k));
+    const double own = planeRadius(camera, Plane::through(p.position, p.normal), p.position, h.contour.points, in.scale);
+    const double disc = in.solo ? std::max(own, kAboutCanonical * reach) : own;  // as tangentPlanesLayer() draws it
+    for (int i = 0; i < 16; ++i) {
+      const double t = i * std::numbers::pi / 8;
+      place.points.push_back(p.position + disc * (std::cos(t) * basis.col(0) + std::sin(t) * basis.col(1)));
+    }
   }
   for (const Eigen::Vector3d& q : place.points) radius = std::max(radius, (q - p.position).norm());
   if (!(radius > 0)) return {};
@@ -178,7 +187,7 @@ std::optional<Framing> highlightFraming(const LayerInput& in, int highlight, Hig
     if (light && !light->light.atInfinity() && (light->light.position() - p.position).norm() < 3 * in.scale.sceneSize)
       place.points.push_back(light->light.position());
     if (drawn.ellipsoids)
-      for (const Eigen::Vector3d& q : ellipsoidEnds(in, in.selection.model)) place.points.push_back(q);
+      for (const Eigen::Vector3d& q : ellipsoidEnds(in, in.selection.model, false)) place.points.push_back(q);
     place.back = (square + 0.22 * p.normal).normalized();
   } else {
     // Half from the side, and not in line with the camera's own view.
@@ -188,6 +197,11 @@ std::optional<Framing> highlightFraming(const LayerInput& in, int highlight, Hig
     if (across.dot(toCamera) < 0) across = -across;
     place.back = (0.42 * p.normal + 0.75 * across + 0.5 * side).normalized();
   }
+  // A vase stands: where the highlight is on its side, upwards is the world's.
+  if (look != HighlightLook::Camera && !in.frames.empty())
+    if (const Eigen::Vector3d world = upwards(in, in.frames);
+        world.dot(p.normal) < kLeansUp && std::abs(world.dot(place.back)) < kAlongUp)
+      up = world;
   place.up = (up - up.dot(place.back) * place.back).normalized();
   place.reference = p.position;
   place.leastDepth = 2 * radius;
@@ -197,13 +211,30 @@ std::optional<Framing> highlightFraming(const LayerInput& in, int highlight, Hig
 namespace {
 
 std::vector<Eigen::Vector3d> ellipsoidExtent(const LayerInput& in, const std::string& model) {
-  std::vector<Eigen::Vector3d> points = ellipsoidEnds(in, model);
+  std::vector<Eigen::Vector3d> points = ellipsoidEnds(in, model, false);
   if (points.empty()) return points;
+  const auto sizeOf = [](const std::vector<Eigen::Vector3d>& of) {
+    Eigen::AlignedBox3d box;
+    for (const Eigen::Vector3d& p : of) box.extend(p);
+    return box.diagonal().norm();
+  };
+  // Those of the other models, too, where this one is still to be seen then.
+  const std::vector<Eigen::Vector3d> own = ellipsoidEnds(in, model, true);
+  const bool alone = !own.empty() && sizeOf(own) < kDot * sizeOf(points);
+  if (alone) points = own;
+  // And what comes to it, as far as it can be seen along with it: from the brightest points, a small one would be a dot.
+  const double most = kEllipsoidShare * sizeOf(points);
   for (const std::string& name : in.models) {
     if (!model.empty() && name != model) continue;
     for (const ModelFit* fit : in.fits(name))
-      for (const TrainingView* view : in.viewsOf(*fit))
-        if (view->seen) points.push_back(view->seen->brightest.point.position);
+      for (const TrainingView* view : in.viewsOf(*fit)) {
+        if (!view->seen || !fit->ellipsoid()) continue;
+        const Eigen::Vector3d way = view->seen->brightest.point.position - fit->ellipsoid()->centre();
+        points.push_back(fit->ellipsoid()->centre() + std::min(1.0, most / std::max(way.norm(), 1e-300)) * way);
+        // Cones without a mirror come from the cameras themselves, and are drawn from halfway.
+        if (!alone && !modelByName(name).traits().mirrored)
+          points.push_back(0.5 * (view->camera.centreInWorld() + fit->ellipsoid()->centre()));
+      }
   }
   return points;
 }
@@ -278,17 +309,10 @@ Eigen::Vector3d overviewDirection(const LayerInput& in, const std::vector<int>& 
   return std::cos(elevation) * flat + std::sin(elevation) * up;
 }
 
-std::optional<Framing> ellipsoidFraming(const LayerInput& in, const std::vector<int>& frames, const std::string& model,
-                                        const DrawnParts& drawn) {
+std::optional<Framing> ellipsoidFraming(const LayerInput& in, const std::vector<int>& frames, const std::string& model) {
   Framing framing;
   framing.points = ellipsoidExtent(in, model);
   if (framing.points.empty()) return {};
-  // Cones without a mirror come from the cameras themselves, and are drawn from halfway.
-  if (!modelByName(model).traits().mirrored)
-    for (const ModelFit* fit : in.fits(model))
-      for (const TrainingView* view : in.viewsOf(*fit))
-        if (fit->ellipsoid()) framing.points.push_back(0.5 * (view->camera.centreInWorld() + fit->ellipsoid()->centre()));
-  if (drawn.virtualCameras) addVirtualCameras(in, framing.points, true);
   // The surface, too, where it is no larger than all that: half of it would puzzle.
   Eigen::AlignedBox3d held;
   for (const Eigen::Vector3d& p : framing.points) held.extend(p);
@@ -303,7 +327,7 @@ std::optional<Framing> ellipsoidFraming(const LayerInput& in, const std::vector<
     normals += facing(view->seen->brightest.point, view->camera.centreInWorld()).normal;
     ++views;
   }
-  if (views > 0 && normals.norm() > 0.8 * views) up = normals.normalized();
+  if (views > 0 && normals.norm() > 0.8 * views && normals.dot(up) > 0.5 * views) up = normals.normalized();  // a vase stands
   framing.back = sideDirection(framing.points, up, overviewDirection(in, frames, up));
   framing.up = framing.back.cross(up.cross(framing.back).normalized());
   framing.reference = in.scale.surfaceBox.center();

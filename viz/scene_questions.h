@@ -31,10 +31,9 @@ DrawnParts drawnParts(const SceneView& view);
 /// @param highlight  index in the frame's evidence; out of range = the first. Nothing where it is not on the surface.
 std::optional<Framing> highlightFraming(const LayerInput& in, int highlight, HighlightLook look, const DrawnParts& drawn);
 /// What the cones of a model hold: the brightest points of the views that it was made from and the ellipsoids, across their
-/// longest extent.
+/// longest extent, as far as an ellipsoid that is small among them can be seen along with them.
 /// @param model  "" = all. @param frames  not empty.
-std::optional<Framing> ellipsoidFraming(const LayerInput& in, const std::vector<int>& frames, const std::string& model,
-                                        const DrawnParts& drawn);
+std::optional<Framing> ellipsoidFraming(const LayerInput& in, const std::vector<int>& frames, const std::string& model);
 /// The world's upward direction as the cameras have it; a signed axis where it is near one. @param frames  not empty.
 Eigen::Vector3d upwards(const LayerInput& in, const std::vector<int>& frames);
 /// From the scene towards an eye that sees the highlights with neither the surface nor the frustums before them; unit.

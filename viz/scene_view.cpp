@@ -484,8 +484,7 @@ bool SceneView::frameHighlight(int highlight, HighlightLook look) {
   return impl_->valid() && impl_->frame(highlightFraming(impl_->input, highlight, look, drawnParts(*this)));
 }
 void SceneView::frameEllipsoids(const std::string& model) {
-  if (!impl_->valid() || !impl_->frame(ellipsoidFraming(impl_->input, impl_->allFrames, model, drawnParts(*this))))
-    impl_->frameAll();
+  if (!impl_->valid() || !impl_->frame(ellipsoidFraming(impl_->input, impl_->allFrames, model))) impl_->frameAll();
 }
 void SceneView::lookAlong(AxisView view) { impl_->lookAlong(view); }
 

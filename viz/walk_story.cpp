@@ -9,6 +9,7 @@
 #include "core/base/angle.h"
 #include "core/base/number_text.h"
 #include "core/draw/frame_details.h"
+#include "viz/annotations.h"
 #include "viz/layers.h"
 #include "viz/style.h"
 
@@ -157,6 +158,17 @@ void addWalk(const WalkStory& story, int step, FrameOverlay& overlay) {
 std::string walkText(const WalkStory& story, int step) {
   const WalkStory::Moment m = story.at(step);
   return formatted("on %s: α %.2f° of %.2f°", m.onSurface ? "S" : "T", degrees(story.place(m).alpha),
+                   degrees(story.trace.limitAngle));
+}
+
+std::string walkEnds(const WalkStory& story) {
+  const auto end = [&](const std::vector<WalkPlace>& places) {
+    if (places.empty()) return std::string("not reached");
+    const WalkPlace& last = places.back();
+    const Eigen::Vector3d from = last.onTangentPlane - last.distance * story.along;  // P_B
+    return lengthText((last.position - from).norm()) + " from P_B";
+  };
+  return formatted("S: %s, T: %s, both at α = %.2f°", end(story.trace.onSurface).c_str(), end(story.trace.onPlane).c_str(),
                    degrees(story.trace.limitAngle));
 }
 

@@ -59,4 +59,7 @@ void addWalk(const WalkStory& story, int step, FrameOverlay& overlay);
 /// "on S: 3.21° of 4.77°"
 std::string walkText(const WalkStory& story, int step);
 
+/// Where both walks end: "S: 12.3 mm from P_B, T: 30.1 mm, both at 3.34°".
+std::string walkEnds(const WalkStory& story);
+
 }  // namespace glint::viz

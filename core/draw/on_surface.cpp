@@ -83,14 +83,14 @@ std::vector<WorldChain> ellipseOnPlane(const Camera& camera, const Plane& plane,
 }
 
 double planeRadius(const Camera& camera, const Plane& plane, const Eigen::Vector3d& at, const std::vector<Pixel>& contour,
-                   double surfaceSize) {
+                   double surfaceSize, double times) {
   double radius = 0;
   for (const Pixel& pixel : contour) {
     if (!pixel.allFinite()) continue;
     const std::optional<Eigen::Vector3d> p = intersection(camera.ray(pixel), plane);
     if (p) radius = std::max(radius, (*p - at).norm());
   }
-  return std::clamp(1.5 * radius, 0.03 * surfaceSize, 0.35 * surfaceSize);
+  return std::clamp(times * radius, 0.03 * surfaceSize, 0.35 * surfaceSize);
 }
 
 Eigen::AlignedBox3d shownRegion(const Inspection& inspection, const Surface& surface, const std::vector<int>& frames) {

@@ -30,9 +30,9 @@ std::vector<WorldChain> castContour(const Camera& camera, const Surface& surface
                                     double lift);
 /// An image ellipse carried back to a plane, lifted towards the camera; broken where its rays do not meet the plane.
 std::vector<WorldChain> ellipseOnPlane(const Camera& camera, const Plane& plane, const Ellipse& ellipse, double lift);
-/// Radius of a disc that holds a contour (ideal pixels) on its tangent plane, with a margin, within sizes that can be seen.
+/// Radius of a disc on a tangent plane, so many times as wide as a contour (ideal pixels) there, within sizes that can be seen.
 double planeRadius(const Camera& camera, const Plane& plane, const Eigen::Vector3d& at, const std::vector<Pixel>& contour,
-                   double surfaceSize);
+                   double surfaceSize, double times);
 /// What is shown of a surface: all of a bounded one; of another what the cameras see, from hits of a coarse grid of rays. Empty where that is
 /// nothing.
 Eigen::AlignedBox3d shownRegion(const Inspection& inspection, const Surface& surface, const std::vector<int>& frames);

@@ -10,6 +10,8 @@
 namespace glint::share {
 namespace {
 
+constexpr double kDiscTimes = 1.5;  // of the contour: a page shows the discs of all frames at once
+
 constexpr int kMostPoints = 180;  ///< of a contour in 3D: chords of 2 degrees are round on a screen
 
 template <class List, class Text>
@@ -99,8 +101,8 @@ std::string mirrorJson(const TrainingView& view, double surfaceSize, const Round
   const bool ellipse = view.canonical && view.canonical->ellipse;
   return "{\"light\":" + quoted(view.highlight.light) + ",\"at\":" + rounding.world(at) + ",\"normal\":[" +
          exactly(plane.normal.x()) + "," + exactly(plane.normal.y()) + "," + exactly(plane.normal.z()) +
-         "],\"offset\":" + exactly(plane.offset) +
-         ",\"radius\":" + rounding.world(draw::planeRadius(view.camera, plane, at, view.highlight.contour.points, surfaceSize)) +
+         "],\"offset\":" + exactly(plane.offset) + ",\"radius\":" +
+         rounding.world(draw::planeRadius(view.camera, plane, at, view.highlight.contour.points, surfaceSize, kDiscTimes)) +
          ",\"ellipse\":" +
          (ellipse ? chains(draw::ellipseOnPlane(view.camera, plane, *view.canonical->ellipse, 0), rounding) : "[]") + "}";
 }

@@ -50,6 +50,10 @@ bool isOwnRecovery(const QString& file) {
 
 bool isShipped(const QString& file) { return !file.isEmpty() && liesIn(shippedFolders(), file.toStdString()); }
 
+bool isOpenLesson(const Document& document) {
+  return !document.option("explain/lesson", std::string()).empty() && isShipped(document.sessionFile());
+}
+
 std::vector<fs::path> filesOfInput(const Document& document) {
   if (!document.scene()) return {};
   std::vector<fs::path> inputs = filesOf(*document.scene());

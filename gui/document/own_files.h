@@ -17,6 +17,8 @@ QString locksFolder();
 bool isOwnRecovery(const QString& file);
 /// Lessons and sessions that came with the program, installed or in its source tree. They are read only, whatever the file system says.
 bool isShipped(const QString& file);
+/// The open session is a lesson as it came with the program: what is tried out in it is given up without a question.
+bool isOpenLesson(const Document& document);
 /// The files that the open scene is made of, its session, and the input as it was opened; none while nothing is open.
 std::vector<std::filesystem::path> filesOfInput(const Document& document);
 /// Whether a path is one of them.

@@ -6,6 +6,7 @@
 #include <QLabel>
 #include <QListWidget>
 #include <QMenu>
+#include <QScrollBar>
 #include <QSignalBlocker>
 #include <QSplitter>
 #include <QTextBrowser>
@@ -22,6 +23,7 @@
 #include "gui/base/flow_layout.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
+#include "gui/explain/explain_page.h"
 #include "gui/explain/explain_texts.h"
 #include "gui/explain/lessons.h"
 #include "gui/explain/walk_player.h"
@@ -41,30 +43,12 @@ const Lesson* lessonOf(const Document& document) { return lessonById(toQString(d
 
 bool showsWalk(const ExplainText& text) { return text.layers.contains(QStringLiteral("walk")); }
 
-QString escaped(const std::string& s) { return toQString(s).toHtmlEscaped(); }
-
-QString numbersTable(const std::vector<ExplainNumber>& numbers) {
-  if (numbers.empty()) return {};
-  QString html = QStringLiteral("<table cellspacing=0 cellpadding=2>");
-  for (const ExplainNumber& n : numbers)
-    html += QStringLiteral("<tr><td><i>%1</i>&nbsp;&nbsp;</td><td>%2&nbsp;&nbsp;</td><td><b>%3</b></td></tr>")
-                .arg(escaped(n.symbol), escaped(n.name), valuesHtml(n));
-  return html + QStringLiteral("</table>");
-}
-
 /// @param value  "" = as nobody has set it.
 void set(std::map<std::string, std::string>& options, const char* option, const std::string& value) {
   if (value.empty())
     options.erase(option);
   else
     options[option] = value;
-}
-
-QString box(const QColor& colour, const QString& content) {
-  return QStringLiteral(
-             "<table width='100%' cellspacing=0 cellpadding=0 style='margin-top:8px'><tr><td width=4 bgcolor='%1'></td>"
-             "<td style='padding-left:8px'>%2</td></tr></table>")
-      .arg(colour.name(), content);
 }
 }  // namespace
 
@@ -94,7 +78,11 @@ ExplainPanel::ExplainPanel(Document& document, QWidget* parent)
   next_->setIcon(icon(QStringLiteral("next")));
   leave_->setObjectName(QStringLiteral("explain.leave"));
   leave_->setText(tr("Leave"));
-  leave_->setToolTip(tr("Restores the previous layers"));
+  leave_->setToolTip(tr("Restores layers, layout and view as they were"));
+  back_->setToolTip(tr("Previous step"));
+  text_->setAccessibleName(tr("What this step shows"));
+  steps_->setAccessibleName(tr("Steps"));
+  place_->setObjectName(QStringLiteral("explain.place"));
   place_->setAlignment(Qt::AlignCenter);
   bar->addWidget(back_);
   bar->addWidget(next_);
@@ -103,8 +91,6 @@ ExplainPanel::ExplainPanel(Document& document, QWidget* parent)
   column->addLayout(bar);
   split_ = new QSplitter(Qt::Vertical);
   steps_->setObjectName(QStringLiteral("explain.steps"));
-  for (const ExplainText& t : explainTexts().steps)
-    steps_->addItem(QStringLiteral("%1  %2").arg(steps_->count() + 1).arg(t.title));
   steps_->setItemDelegate(new ElidingDelegate(steps_));
   text_->setObjectName(QStringLiteral("explain.text"));
   text_->setOpenLinks(false);
@@ -126,13 +112,17 @@ ExplainPanel::ExplainPanel(Document& document, QWidget* parent)
   // Not currentRowChanged: a list that gets the focus makes its first row the current one, without selecting it.
   connect(steps_, &QListWidget::itemSelectionChanged, this, [this] {
     const QList<QListWidgetItem*> chosen = steps_->selectedItems();
-    if (!chosen.isEmpty() && steps_->row(chosen.front()) != step()) goTo(steps_->row(chosen.front()));
+    if (const int row = chosen.isEmpty() ? -1 : steps_->row(chosen.front());
+        row >= 0 && row < track_.size() && track_[row] != step())
+      goTo(track_[row]);
   });
   connect(&document_, &Document::sceneOpened, this, [this] {
     lookedAt_.clear();
+    layersBefore_ = document_.state().layers;  // a session that was left in a step has nothing to go back to but its own
     soloBefore_.clear();
     lessonRequest_ = document_.request();
     linesBefore_.clear();
+    unfolded_.clear();
   });
   connect(walk_, &WalkPlayer::changed, this, [this] {
     if (walk_->playing()) return;  // it has not changed whether there is one
@@ -162,17 +152,27 @@ bool ExplainPanel::busy() const { return job_.busy() || walk_->busy(); }
 
 void ExplainPanel::start() {
   emit started();  // first: a view is fitted to what a step is about in the room that it will have
-  if (step() < 0) {
-    const Lesson* lesson = lessonOf(document_);
-    int first = 0;
-    for (int i = explainTexts().steps.size() - 1; lesson && i >= 0; --i)
-      if (lesson->steps.contains(explainTexts().steps[i].id)) first = i;
-    goTo(first);
-  }
+  if (step() < 0) goTo(track_.front());
 }
 
-void ExplainPanel::next() { step() < 0 ? start() : goTo(step() + 1); }
-void ExplainPanel::back() { goTo(step() - 1); }
+/// Beside the lesson's own steps: the nearest of them in the order of all steps.
+int ExplainPanel::neighbour(int by) const {
+  const int now = step(), at = track_.indexOf(now);
+  if (at >= 0) return track_.value(at + by, -1);
+  int found = -1;
+  for (const int i : track_)
+    if (by > 0 ? i > now && found < 0 : i < now) found = i;
+  return found;
+}
+
+void ExplainPanel::next() {
+  if (step() < 0) return start();
+  if (const int wanted = neighbour(1); wanted >= 0) return goTo(wanted);
+  const Lesson* const lesson = lessonOf(document_);
+  if (const Lesson* const after = lesson ? lessonAfter(*lesson) : nullptr) openLesson(after->id);
+}
+
+void ExplainPanel::back() { goTo(neighbour(-1)); }
 
 void ExplainPanel::openLesson(const QString& id) {
   const QString file = lessonFile(id);
@@ -181,8 +181,14 @@ void ExplainPanel::openLesson(const QString& id) {
 }
 
 void ExplainPanel::follow(const QUrl& link) {
-  if (!actions_ || link.scheme() != QLatin1String("action")) return;
-  if (QAction* action = actions_->find(link.path())) action->trigger();
+  const QString scheme = link.scheme(), path = link.path();
+  if (scheme == QLatin1String("unfold")) {
+    if (const int question = path.toInt(); !unfolded_.remove(question)) unfolded_.insert(question);
+    return showText();
+  }
+  if (scheme == QLatin1String("glossary") || scheme == QLatin1String("method")) return emit readRequested(scheme, path);
+  if (!actions_ || scheme != QLatin1String("action")) return;
+  if (QAction* action = actions_->find(path)) action->trigger();
 }
 
 void ExplainPanel::goTo(int wanted) {
@@ -238,7 +244,6 @@ void ExplainPanel::leave() {
   lookPending_ = false;
   lookedAt_.clear();
   document_.setView(layersBefore_, options, tr("Leave explanation"));
-  emit look(QStringLiteral("scene"), -1, QString());
 }
 
 void ExplainPanel::compute() {
@@ -260,30 +265,58 @@ void ExplainPanel::compute() {
   });
 }
 
+/// Which steps there are to go through: the lesson's, else all.
+void ExplainPanel::layTrack() {
+  const Lesson* const lesson = lessonOf(document_);
+  const QList<ExplainText>& steps = explainTexts().steps;
+  QList<int> track;
+  QStringList rows;
+  for (int i = 0; i < steps.size(); ++i) {
+    if (lesson && !lesson->steps.contains(steps[i].id)) continue;
+    track << i;
+    rows
+        << QStringLiteral("%1  %2").arg(track.size()).arg(lesson ? lesson->titleOf(steps[i].id, steps[i].title) : steps[i].title);
+  }
+  if (rows == std::exchange(rows_, rows)) return;
+  track_ = track;
+  steps_->clear();
+  steps_->addItems(rows);
+  fitted_ = {};
+}
+
 void ExplainPanel::refresh() {
-  const int now = step(), count = explainTexts().steps.size();
+  const int now = step();
   if (std::exchange(explaining_, now >= 0) && now < 0) emit left();
   const QSignalBlocker quiet(steps_);
-  steps_->setCurrentRow(now);
-  if (now >= 0) steps_->scrollToItem(steps_->item(now));
-  back_->setEnabled(now > 0);
-  next_->setEnabled(document_.scene() && now < count - 1);
-  next_->setText(now < 0 ? tr("Start") : tr("Next"));
+  layTrack();
+  const int at = track_.indexOf(now), count = track_.size();
+  steps_->setCurrentRow(at);
+  if (at >= 0) steps_->scrollToItem(steps_->item(at));
+  const Lesson* const lesson = lessonOf(document_);
+  const Lesson* const nextLesson = lesson ? lessonAfter(*lesson) : nullptr;
+  const bool ends = now >= 0 && neighbour(1) < 0;
+  back_->setEnabled(now >= 0 && neighbour(-1) >= 0);
+  next_->setEnabled(document_.scene() && (!ends || nextLesson));
+  next_->setText(now < 0 ? tr("Start") : ends && nextLesson ? tr("Next lesson") : tr("Next"));
+  next_->setToolTip(ends && nextLesson ? numberedTitle(*nextLesson) : tr("Next step"));
   leave_->setEnabled(now >= 0);
-  const Lesson* lesson = lessonOf(document_);
-  place_->setText(now < 0 ? QString() : tr("%1 of %2").arg(now + 1).arg(count));
-  for (int i = 0; i < count; ++i) {
-    QFont font = steps_->font();  // those that the lesson is about
-    font.setBold(lesson && lesson->steps.contains(explainTexts().steps[i].id));
-    steps_->item(i)->setFont(font);
-  }
+  place_->setText(now < 0 ? QString() : at >= 0 ? tr("%1 of %2").arg(at + 1).arg(count) : tr("beside the lesson"));
   showWalk();
   if (now >= 0 && !explanation_ && document_.inspection() && !job_.awaited()) return compute();
   showText();
 }
 
 void ExplainPanel::showText() {
-  if (const QString now = html(); now != std::exchange(shown_, now)) text_->setHtml(now);  // else it would scroll back
+  const Lesson* const lesson = lessonOf(document_);
+  const QString ends = walk_->story() ? toQString(viz::walkEnds(*walk_->story())) : QString();
+  const ExplainPage page{document_,        lesson, step(),    explanation_.get(), document_.request() == lessonRequest_,
+                         walk_->problem(), ends,   unfolded_, palette()};
+  const QString now = page.html();
+  if (now == std::exchange(shown_, now)) return;  // else it would scroll back
+  const QString place = QStringLiteral("%1/%2").arg(lesson ? lesson->id : QString()).arg(step());
+  const int at = place == std::exchange(shownPlace_, place) ? text_->verticalScrollBar()->value() : 0;
+  text_->setHtml(now);
+  text_->verticalScrollBar()->setValue(at);
 }
 
 /// Where there is none the text says why, and has the room.
@@ -303,91 +336,12 @@ void ExplainPanel::fitSteps() {
   if (now == std::exchange(fitted_, now)) return;  // else it would undo what the user has drawn larger
   const int wanted = walk > 0 ? std::max(walk, std::min(kWalkHeight, room - list)) : kWalkHeight;
   split_->setSizes({list, wanted, std::max(1, height() - list - (walk > 0 ? wanted : 0))});
-  if (step() >= 0) steps_->scrollToItem(steps_->item(step()), QAbstractItemView::PositionAtCenter);
+  if (const int at = track_.indexOf(step()); at >= 0) steps_->scrollToItem(steps_->item(at), QAbstractItemView::PositionAtCenter);
 }
 
 void ExplainPanel::resizeEvent(QResizeEvent* e) {
   QWidget::resizeEvent(e);
   fitSteps();
-}
-
-QString ExplainPanel::overview() const {
-  const Lesson* lesson = lessonOf(document_);
-  if (!lesson) {
-    QString html = tr(
-        "<p>Eleven steps from the photograph to the predicted highlight of the open scene, each with its picture, equation and "
-        "numbers, and the assumptions that break here.</p><h4>Lessons</h4>");
-    for (const Lesson& l : lessons())
-      html += QStringLiteral("<p><a href='action:lesson.%1'>%2</a></p>").arg(l.id, l.title.toHtmlEscaped());
-    return html;
-  }
-  QString html = QStringLiteral("<h3>%1</h3><p>%2</p><h4>%3</h4>")
-                     .arg(tr("Lesson %1: %2").arg(lessons().indexOf(*lesson) + 1).arg(lesson->title.toHtmlEscaped()), lesson->see,
-                          tr("Steps"));
-  for (int i = 0; i < explainTexts().steps.size(); ++i) {  // numbered as in the list of all steps
-    const ExplainText& t = explainTexts().steps[i];
-    if (lesson->steps.contains(t.id))
-      html += QStringLiteral("<p style='margin:3px 0 3px 12px'>%1. <a href='action:explain.step-%2'>%3</a></p>")
-                  .arg(i + 1)
-                  .arg(t.id, t.title.toHtmlEscaped());
-  }
-  html += QStringLiteral("<h4>%1</h4><ul>").arg(tr("Try"));
-  for (const QString& question : lesson->questions) html += QStringLiteral("<li>%1</li>").arg(question);
-  return html + QStringLiteral("</ul>");
-}
-
-QString ExplainPanel::html() const {
-  const int now = step();
-  if (now < 0) return overview();
-  const ExplainText& text = explainTexts().steps[now];
-  const ExplainText::Words words = text.words(explanation_ ? toQString(explanation_->model) : QString());
-  QString html =
-      QStringLiteral("<h3>%1</h3><p>%2</p><p style='margin-left:8px'><tt>%3</tt><br><span style='color:%4'>%5</span></p>")
-          .arg(text.title.toHtmlEscaped(), words.text.toHtmlEscaped(), words.equation.toHtmlEscaped(),
-               palette().color(QPalette::PlaceholderText).name(), text.section.toHtmlEscaped());
-  if (const Lesson* lesson = lessonOf(document_); lesson && lesson->remarks.contains(text.id))
-    html += box(accentColour(),
-                (document_.request() == lessonRequest_ ? tr("<b>In this lesson.</b> %1")
-                                                       : tr("<b>In this lesson as opened</b> (changed since then). %1"))
-                    .arg(lesson->remarks.value(text.id)));
-  if (!explanation_ || now >= int(explanation_->steps.size())) return html;
-  const ExplainStep& s = explanation_->steps[std::size_t(now)];
-  const Scene& scene = *document_.scene();
-  const auto inspection = document_.inspection();
-  const std::size_t frame = std::size_t(explanation_->frame);
-  const std::size_t highlights =
-      inspection && frame < inspection->evidence.size() ? inspection->evidence[frame].highlights.size() : 0;
-  const QString ofSeveral = highlights > 1 && explanation_->highlight >= 0
-                                ? tr(", highlight %1 of %2").arg(explanation_->highlight + 1).arg(highlights)
-                                : QString();
-  html += QStringLiteral("<p style='color:%1'>%2</p>")
-              .arg(palette().color(QPalette::PlaceholderText).name(),
-                   tr("Frame %1%2%3%4")
-                       .arg(escaped(scene.frames[std::size_t(explanation_->frame)].id), ofSeveral,
-                            explanation_->light.empty() ? QString() : tr(", light %1").arg(escaped(explanation_->light)),
-                            explanation_->model.empty() ? QString() : tr(", model %1").arg(escaped(explanation_->model))));
-  // Whether "any camera" is a new one here.
-  if (text.id == QLatin1String("projection") && !s.failure && inspection)
-    html += QStringLiteral("<p>%1</p>")
-                .arg(inspection->isTraining(explanation_->frame)
-                         ? tr("This camera is not new to the model: it was trained on this frame.")
-                         : tr("This camera is new to the model: it was not trained on this frame."));
-  // A frame that has not trained still has its own contour: what comes from that, and what from the others?
-  const bool ofObserved = text.id == QLatin1String("limit-angles") || text.id == QLatin1String("canonical-ellipse");
-  if (const auto inspection = document_.inspection();
-      ofObserved && !s.failure && inspection && !inspection->isTraining(explanation_->frame))
-    html += box(palette().color(QPalette::Highlight),
-                tr("<b>Observed here:</b> the contour on which this walk is based. <b>From other frames:</b> the light; "
-                   "no model was trained on this frame. <b>Predicted:</b> %1.")
-                    .arg(inspection->models.count(canonicalModel().id()) ? tr("only the dotted ellipse in the frame view")
-                                                                         : tr("nothing")));
-  // What is wrong comes first: a low window shows no more than that.
-  if (s.failure) html += box(errorColour(), tr("This scene does not reach this step: %1").arg(escaped(s.failure->message())));
-  for (const BrokenAssumption& b : s.broken)
-    html += box(warningColour(), explainTexts().broken.value(toQString(b.id)).toHtmlEscaped() + numbersTable(b.numbers));
-  if (!s.failure && s.broken.empty() && !walk_->problem().isEmpty() && showsWalk(text))
-    html += box(warningColour(), tr("No walk to show: %1").arg(walk_->problem().toHtmlEscaped()));
-  return html + (s.broken.empty() && !s.failure ? QString() : QStringLiteral("<br>")) + numbersTable(s.numbers);
 }
 
 void ExplainPanel::addActions(Actions& actions, QMenu* menu) {
@@ -406,8 +360,7 @@ void ExplainPanel::addActions(Actions& actions, QMenu* menu) {
   menu->addSeparator();
   QMenu* taught = menu->addMenu(tr("Less&ons"));
   for (const Lesson& lesson : lessons())
-    actions.add("lesson." + lesson.id, taught, tr("Lesson %1: %2").arg(taught->actions().size() + 1).arg(lesson.title),
-                [this, id = lesson.id] { openLesson(id); });
+    actions.add("lesson." + lesson.id, taught, numberedTitle(lesson), [this, id = lesson.id] { openLesson(id); });
   QMenu* all = menu->addMenu(tr("&Steps"));
   for (int i = 0; i < explainTexts().steps.size(); ++i)
     actions.add("explain.step-" + explainTexts().steps[i].id, all, explainTexts().steps[i].title, [this, i] {

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <QList>
+#include <QSet>
+#include <QStringList>
 #include <QWidget>
 #include <array>
 #include <map>
@@ -26,7 +29,8 @@ class WalkView;
 
 /// The guided way from the photograph to the prediction, on whatever is open: one step at a time, with its equation, its numbers
 /// of the selected highlight, and what breaks here. A step shows its layers alone; leaving gives back those that were shown
-/// before. In a lesson (option "explain/lesson") it begins with what there is to see, and steps have the lesson's remarks.
+/// before. In a lesson (option "explain/lesson") it begins with what there is to see, goes through the lesson's own steps with its
+/// remarks, and ends with questions, their answers and the next lesson.
 class ExplainPanel : public QWidget {
   Q_OBJECT
  public:
@@ -50,6 +54,8 @@ class ExplainPanel : public QWidget {
   /// A step asks for its part of the scene: see ScenePanel::look.
   void look(const QString& at, int highlight, const QString& model);
   void lessonRequested(const QString& session);
+  /// A link leads to a page of the documentation. @param page  "glossary" or "method". @param place  a word or section there.
+  void readRequested(const QString& page, const QString& place);
   void problem(const QString& oneLine);
 
  protected:
@@ -63,11 +69,11 @@ class ExplainPanel : public QWidget {
   void showText();
   void showWalk();
   void fitSteps();
+  void layTrack();
+  int neighbour(int by) const;
   QString subject() const;
   void openLesson(const QString& id);
   void follow(const QUrl& link);
-  QString html() const;
-  QString overview() const;
 
   Document& document_;
   LatestJob job_;
@@ -86,7 +92,10 @@ class ExplainPanel : public QWidget {
   QListWidget* steps_;
   std::array<int, 3> fitted_{};  ///< panel, list, walk: heights that the parts were last given for
   QTextBrowser* text_;
-  QString shown_;  ///< by it
+  QString shown_, shownPlace_;  ///< by it, and of which lesson and step
+  QList<int> track_;            ///< steps to go through, as indices of explainTexts().steps; never empty
+  QStringList rows_;            ///< of the list
+  QSet<int> unfolded_;          ///< questions of the lesson whose answers are shown
   QLabel* place_;
   QToolButton *back_, *next_, *leave_;
 };

@@ -20,6 +20,19 @@ QStringList strings(const QJsonValue& list) {
   return all;
 }
 
+/// FOLDER/ID/ID.glint; "" when there is none.
+QString sessionIn(const QString& folder, const QString& id) {
+  const QFileInfo session(QDir(folder).filePath(id + '/' + id + QStringLiteral(".glint")));
+  return session.isFile() ? session.canonicalFilePath() : QString();
+}
+
+QMap<QString, QString> texts(const QJsonValue& object) {
+  QMap<QString, QString> all;
+  const QJsonObject o = object.toObject();
+  for (auto it = o.begin(); it != o.end(); ++it) all.insert(it.key(), it.value().toString());
+  return all;
+}
+
 QList<Lesson> read() {
   initLessonResource();
   QFile file(QStringLiteral(":/explain/lessons.json"));
@@ -27,10 +40,16 @@ QList<Lesson> read() {
   if (!file.open(QIODevice::ReadOnly)) return all;
   for (const QJsonValue& v : QJsonDocument::fromJson(file.readAll()).object()["lessons"].toArray()) {
     const QJsonObject o = v.toObject();
-    Lesson lesson{o["id"].toString(),     o["title"].toString(), o["see"].toString(), strings(o["steps"]), {},
-                  strings(o["questions"])};
-    const QJsonObject remarks = o["remarks"].toObject();
-    for (auto it = remarks.begin(); it != remarks.end(); ++it) lesson.remarks.insert(it.key(), it.value().toString());
+    Lesson lesson;
+    lesson.id = o["id"].toString();
+    lesson.title = o["title"].toString();
+    lesson.see = o["see"].toString();
+    lesson.steps = strings(o["steps"]);
+    lesson.remarks = texts(o["remarks"]);
+    lesson.titles = texts(o["titles"]);
+    lesson.plain = o["plain"].toBool();
+    for (const QJsonValue& q : o["questions"].toArray())
+      lesson.questions.append({q.toObject()["ask"].toString(), q.toObject()["answer"].toString()});
     all.append(lesson);
   }
   return all;
@@ -48,17 +67,28 @@ const Lesson* lessonById(const QString& id) {
   return nullptr;
 }
 
+QString numberedTitle(const Lesson& lesson) {
+  return QCoreApplication::translate("Lessons", "Lesson %1: %2").arg(lessons().indexOf(lesson)).arg(lesson.title);
+}
+
+const Lesson* lessonAfter(const Lesson& lesson) {
+  const int next = lessons().indexOf(lesson) + 1;
+  return next > 0 && next < lessons().size() ? &lessons()[next] : nullptr;
+}
+
 QString lessonFile(const QString& id) {
   QStringList folders{qEnvironmentVariable("GLINT_LESSONS")};
   QDir folder(QCoreApplication::applicationDirPath());
   folders << folder.filePath(QStringLiteral("../share/glint/sessions/lessons"));
   for (int up = 0; up < 4; ++up, folder.cdUp()) folders << folder.filePath(QStringLiteral("sessions/lessons"));
-  for (const QString& path : folders) {
-    if (path.isEmpty()) continue;
-    const QFileInfo session(QDir(path).filePath(id + '/' + id + QStringLiteral(".glint")));
-    if (session.isFile()) return session.canonicalFilePath();
-  }
+  for (const QString& path : folders)
+    if (const QString file = path.isEmpty() ? QString() : sessionIn(path, id); !file.isEmpty()) return file;
   return {};
+}
+
+QString sessionFile(const QString& id) {
+  const QString lesson = lessons().isEmpty() ? QString() : lessonFile(lessons().front().id);
+  return lesson.isEmpty() ? QString() : sessionIn(QFileInfo(lesson).dir().filePath(QStringLiteral("../..")), id);
 }
 
 }  // namespace glint::gui

@@ -385,6 +385,14 @@ void ScenePanel::look(const QString& at, int highlight, const QString& model) {
   });
 }
 
+void ScenePanel::lookFrom(const std::vector<viz::ViewPoint>& viewPoints) {
+  if (viewPoints.empty()) return;
+  glide_->stop();
+  for (int i = 0; i < views_->viewCount(); ++i)
+    views_->view(i).setViewPoint(viewPoints[std::size_t(i) < viewPoints.size() ? std::size_t(i) : 0]);
+  views_->scheduleRender();
+}
+
 void ScenePanel::frameAll() {
   glide_->stop();
   views_->active().frameAll();

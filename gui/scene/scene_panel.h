@@ -45,6 +45,8 @@ class ScenePanel : public QWidget {
   /// The 3D cameras to save: those on screen (one where they are linked), and before there are results those that they will be
   /// looked at from.
   std::vector<viz::ViewPoint> viewPoints() const;
+  /// Goes there at once; of views beyond the last, to the first.
+  void lookFrom(const std::vector<viz::ViewPoint>& viewPoints);
   QStringList savedViews() const;
 
  public slots:

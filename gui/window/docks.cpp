@@ -17,6 +17,7 @@ namespace glint::gui {
 namespace {
 constexpr int kNarrow = 1100, kLow = 740;  // below these, px, columns of docks would leave the views too little
 constexpr int kTimeline = 150;             // px: its rows and an axis that is read
+constexpr int kBeside = 330;               // px: sliders with their names
 constexpr QSize kLeastContent(150, 80);
 constexpr QSize kAsTabs(800, 500);  // what every layout fits into then
 }  // namespace
@@ -79,13 +80,41 @@ QDockWidget* Docks::at(const QString& name) const {
   return dock;
 }
 
+void Docks::keepVisible(const QString& name, std::function<bool()> needed) {
+  kept_ = name;
+  needed_ = std::move(needed);
+}
+
+void Docks::hideAll() {
+  for (QDockWidget* dock : std::as_const(docks_)) dock->hide();
+}
+
+bool Docks::wouldCover(QDockWidget* dock) const {
+  if (kept_.isEmpty() || !needed_()) return false;
+  QDockWidget* const kept = at(kept_);
+  return dock != kept && !kept->isHidden() && !kept->isFloating() && !isBehind(kept) &&
+         (window_->tabifiedDockWidgets(kept).contains(dock) || dock->isHidden()) &&
+         window_->dockWidgetArea(dock) == Qt::RightDockWidgetArea;
+}
+
 void Docks::bring(const QString& name) {
-  at(name)->show();
-  at(name)->raise();
+  QDockWidget* const dock = at(name);
+  if (wouldCover(dock)) {
+    moved_ = true;
+    if (room_ && room_->narrow) {
+      window_->addDockWidget(Qt::RightDockWidgetArea, dock);
+      window_->splitDockWidget(at(kept_), dock, Qt::Vertical);
+    } else {
+      window_->addDockWidget(Qt::LeftDockWidgetArea, dock);
+      window_->resizeDocks({dock}, {std::min(kBeside, window_->width() * 22 / 100)}, Qt::Horizontal);
+    }
+  }
+  dock->show();
+  dock->raise();
 }
 
 void Docks::apply(const Layout& layout) {
-  if (const Room now = room(); !(room_ && *room_ == now)) arrange(now);
+  if (const Room now = room(); std::exchange(moved_, false) || !(room_ && *room_ == now)) arrange(now);
   for (const Place& place : std::as_const(places_)) {
     // What is a tab behind another dock follows it, unless the layout names it itself.
     const QString& follows = place.behind.isEmpty() ? place.name : place.behind;
@@ -118,10 +147,9 @@ bool Docks::isBehind(const QWidget* widget) {
 void Docks::addActions(Actions& actions, QMenu* menu) {
   for (auto it = docks_.begin(); it != docks_.end(); ++it) {
     QDockWidget* dock = it.value();
-    const auto run = [dock](bool) {
+    const auto run = [this, dock, name = it.key()](bool) {
       if (dock->isVisible() && !isBehind(dock)) return dock->hide();
-      dock->show();
-      dock->raise();
+      bring(name);
     };
     QAction* action = actions.addToggle("view.panel-" + it.key(), menu, dock->windowTitle(), run, {});
     const auto follow = [action, dock] { action->setChecked(!dock->isHidden()); };

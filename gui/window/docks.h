@@ -6,6 +6,7 @@
 #include <QMap>
 #include <QSize>
 #include <QString>
+#include <functional>
 #include <optional>
 
 #include "gui/base/actions.h"
@@ -22,8 +23,13 @@ class Docks {
   /// Content that needs much room gets scroll bars. It has no place in the window before the first apply().
   /// @param behind  name of the dock that it is a tab behind; "" = it has a place of its own, where the window is large.
   QDockWidget* add(const char* name, const QString& title, QWidget* content, Qt::DockWidgetArea area, const char* behind = "");
-  /// Shows a dock and puts it before its tabs. std::invalid_argument for an unknown name.
+  /// Shows a dock and puts it before its tabs; where it would cover the dock that is to stay visible, beside the views instead.
+  /// std::invalid_argument for an unknown name.
   void bring(const QString& name);
+  /// @param needed  whether this dock must stay visible now, when another one is brought.
+  void keepVisible(const QString& name, std::function<bool()> needed);
+  /// Until a layout is applied.
+  void hideAll();
   /// Shows what the layout names. In a window that is narrow or low, docks become tabs of one another, so that the views keep
   /// room; what was moved by hand stays there while the window does not change between these.
   void apply(const Layout& layout);
@@ -51,10 +57,14 @@ class Docks {
   Room room() const;
   QString host(const Place& place, const Room& room) const;
   void arrange(const Room& room);
+  bool wouldCover(QDockWidget* dock) const;
   QMainWindow* window_;
   QMap<QString, QDockWidget*> docks_;
   QList<Place> places_;       ///< in the order of adding
   std::optional<Room> room_;  ///< that the docks are arranged for
+  QString kept_;              ///< see keepVisible()
+  std::function<bool()> needed_;
+  bool moved_ = false;  ///< a dock was put beside the views: the next layout puts it back
 };
 
 }  // namespace glint::gui

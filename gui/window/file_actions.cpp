@@ -115,7 +115,7 @@ void FileActions::drop(const QString& path) {
 
 bool FileActions::mayDiscard() {
   waitForSave();
-  if (!document_.hasUnsavedChanges()) return true;
+  if (!document_.hasUnsavedChanges() || isOpenLesson(document_)) return true;
   QMessageBox question(QMessageBox::Question, tr("Unsaved changes"), tr("This session has unsaved changes."),
                        QMessageBox::Discard | QMessageBox::Cancel, window_);
   question.setObjectName(QStringLiteral("unsavedQuestion"));

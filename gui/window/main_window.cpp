@@ -11,7 +11,6 @@
 #include <QMenuBar>
 #include <QMimeData>
 #include <QScreen>
-#include <QScrollArea>
 #include <QSplitter>
 #include <QStackedWidget>
 #include <QStatusBar>
@@ -26,12 +25,12 @@
 #include "gui/base/draw_turns.h"
 #include "gui/base/eliding_delegate.h"
 #include "gui/base/job_queue.h"
+#include "gui/base/panel_scroll.h"
 #include "gui/base/stale_badge.h"
 #include "gui/base/text.h"
 #include "gui/base/undo_keys.h"
+#include "gui/document/own_files.h"
 #include "gui/explain/explain_panel.h"
-#include "gui/explain/lessons.h"
-#include "gui/explain/walk_player.h"
 #include "gui/export/export_actions.h"
 #include "gui/frame/frame_panel.h"
 #include "gui/frame/ladder_panel.h"
@@ -52,7 +51,6 @@
 #include "gui/scene/scene_tree.h"
 #include "gui/timeline/timeline.h"
 #include "gui/whatif/what_if_panel.h"
-#include "gui/window/about.h"
 #include "gui/window/changed_inputs.h"
 #include "gui/window/context_menus.h"
 #include "gui/window/file_actions.h"
@@ -66,11 +64,16 @@
 #include "gui/window/scripted_actions.h"
 #include "gui/window/shortcut_dialog.h"
 #include "gui/window/start_page.h"
+#include "gui/window/teaching.h"
 #include "gui/window/undecided.h"
 #include "gui/window/unreadable_files.h"
 #include "gui/window/window_layout.h"
 
 namespace glint::gui {
+
+namespace {
+constexpr QSize kLeastStart(300, 200);  // px of the start page; the rest scrolls
+}
 
 MainWindow::MainWindow(Engine engine, QWidget* parent)
     : QMainWindow(parent),
@@ -82,6 +85,7 @@ MainWindow::MainWindow(Engine engine, QWidget* parent)
       exports_(new ExportActions(engine_, document_, this)) {
   setAcceptDrops(true);
   new UndoKeys(this);
+  connect(&document_, &Document::sceneOpened, this, [this] { layout_->showAgain(); });  // before the views fit what they show
   resize(QSize(1600, 1000).boundedTo(screen()->availableSize()));
   setDockNestingEnabled(true);
   setWindowIcon(icon(QStringLiteral("glint")));
@@ -199,13 +203,9 @@ void MainWindow::buildCentre() {
   connect(start_, &StartPage::openFile, files_, &FileActions::openDialog);
   connect(start_, &StartPage::openFolder, files_, &FileActions::openFolderDialog);
   connect(start_, &StartPage::openRecent, files_, &FileActions::open);
-  for (const Lesson& lesson : lessons())
-    if (const QString file = lessonFile(lesson.id); !file.isEmpty()) start_->addLesson(lesson.title, file);
-  auto* startScroll = new QScrollArea;  // hidden pages of a stack count for its least height, and this one is long
-  startScroll->setWidget(start_);
-  startScroll->setWidgetResizable(true);
-  startScroll->setFrameShape(QFrame::NoFrame);
-  centre_->addWidget(startScroll);
+  fillStartPage(*start_);
+  centre_->addWidget(
+      new PanelScroll(start_, kLeastStart));  // hidden pages of a stack count for its least height, and this one is long
   views_ = new QSplitter(Qt::Horizontal);
   frame_ = new FramePanel(document_);  // first: it shows new results before the others take their time
   scene_ = new ScenePanel(document_);
@@ -270,17 +270,9 @@ void MainWindow::buildDocks() {
 
   explain_ = new ExplainPanel(document_);
   docks_.add("explain", tr("Explain"), explain_, Qt::RightDockWidgetArea, "parameters");
-  connect(explain_, &ExplainPanel::started, this, &MainWindow::makeRoomToExplain);
-  connect(explain_, &ExplainPanel::left, layout_, &WindowLayout::putBack);
-  connect(explain_, &ExplainPanel::look, scene_, &ScenePanel::look);
-  connect(explain_, &ExplainPanel::look, frame_, &FramePanel::look);
   connect(explain_, &ExplainPanel::lessonRequested, files_, &FileActions::open);
   connect(explain_, &ExplainPanel::problem, this, &MainWindow::showProblem);
-  connect(&explain_->walk(), &WalkPlayer::changed, this, [this] {
-    const WalkPlayer& walk = explain_->walk();
-    scene_->showWalk(walk.story(), walk.step(), walk.playing());
-    frame_->showWalk(walk.story(), walk.step());
-  });
+  teaching_ = new Teaching({this, document_, docks_, *layout_, *explain_, *scene_, *frame_});
 
   timeline_ = new Timeline(document_);
   docks_.add("timeline", tr("Timeline"), timeline_, Qt::BottomDockWidgetArea);
@@ -430,7 +422,8 @@ void MainWindow::buildMenus() {
                [this] { setTheme(currentTheme() == Theme::Dark ? Theme::Light : Theme::Dark); }, {{}, "theme"});
 
   explain_->addActions(actions_, menuBar()->addMenu(tr("E&xplain")));
-  actions_.add("help.about", menuBar()->addMenu(tr("&Help")), tr("&About Glint"), [this] { showAbout(this); });
+  teaching_->addActions(actions_, menuBar()->addMenu(tr("&Help")), view);
+  connect(teaching_, &Teaching::frameRequested, this, [this](int by) { timeline_->strip()->step(by); });
 
   QToolBar* bar = addToolBar(tr("Tools"));
   bar->setObjectName(QStringLiteral("tools"));
@@ -463,16 +456,9 @@ void MainWindow::open(const QString& input, const QString& frame, const InputCho
   files_->openRelinked(input, how);
 }
 
-void MainWindow::applyLayout(const QString& name) { layout_->apply(name); }
-
-/// A text and a 3D view that fit beside each other.
-void MainWindow::makeRoomToExplain() {
-  // Without a scene there is only the overview.
-  if (!layout_->makeRoomFor(QStringLiteral("explain"), document_.scene() != nullptr)) return;
-  // A step fits the view to what it is about: the view has to know its new size by then.
-  layout()->activate();
-  QCoreApplication::sendPostedEvents(nullptr, QEvent::LayoutRequest);
-  scene_->renderNow();
+void MainWindow::applyLayout(const QString& name) {
+  layout_->apply(name);
+  if (!document_.scene()) layout_->hideUntilOpen();
 }
 
 void MainWindow::resizeEvent(QResizeEvent* e) {
@@ -569,7 +555,7 @@ void MainWindow::showTitle() {
   // "[*]" is where Qt puts the mark of unsaved changes; twice it stands for itself.
   const QString name = shownText(QFileInfo(file).fileName()).replace(QStringLiteral("[*]"), QStringLiteral("[*][*]"));
   setWindowTitle(QStringLiteral("%1[*] – %2").arg(name, tr("Glint inspector")));
-  setWindowModified(document_.hasUnsavedChanges());
+  setWindowModified(document_.hasUnsavedChanges() && !isOpenLesson(document_));
 }
 
 bool MainWindow::focusNextPrevChild(bool next) {

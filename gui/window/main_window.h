@@ -36,6 +36,7 @@ class ScenePanel;
 class SceneTree;
 class ScriptedActions;
 class StartPage;
+class Teaching;
 class SetupPanel;
 class Timeline;
 class DiagnosisPanel;
@@ -100,7 +101,6 @@ class MainWindow : public QMainWindow {
   void showTitle();
   bool quiet() const;
   void addView(Opened& opened) const;
-  void makeRoomToExplain();
   Opened snapshot() const;
 
   Engine engine_;
@@ -123,6 +123,7 @@ class MainWindow : public QMainWindow {
   DiagnosisPanel* diagnosis_ = nullptr;
   ErrorTable* errors_ = nullptr;
   ExplainPanel* explain_ = nullptr;
+  Teaching* teaching_ = nullptr;
   NumbersPanel* numbers_ = nullptr;
   ParameterPanel* parameters_ = nullptr;
   WhatIfPanel* whatIf_ = nullptr;

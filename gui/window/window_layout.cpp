@@ -15,23 +15,34 @@ WindowLayout::WindowLayout(QMainWindow* window, Docks& docks, QSplitter* views)
 void WindowLayout::apply(const QString& name) {
   const Layout& layout = layoutByName(name);
   name_ = QLatin1String(layout.name);
-  own_ = false;
+  own_ = hidden_ = false;
   before_.reset();  // what was chosen meanwhile stays
   docks_.apply(layout);
   views_->setSizes({layout.sceneShare * 10, (100 - layout.sceneShare) * 10});
 }
 
+void WindowLayout::hideUntilOpen() {
+  hidden_ = true;
+  docks_.hideAll();
+}
+
+void WindowLayout::showAgain() {
+  if (hidden_) apply(name_);
+}
+
 void WindowLayout::setOwn() {
   own_ = true;
+  hidden_ = false;
   before_.reset();
 }
 
 bool WindowLayout::makeRoomFor(const QString& dock, bool rearrange) {
   const auto* widget = window_->findChild<QDockWidget*>(dock);
   const bool arranged = own_ ? widget && !widget->isHidden() : name_ == dock;
-  if (!arranged && rearrange) {
+  const bool covered = widget && Docks::isBehind(widget);
+  if (rearrange && (!arranged || covered)) {
     const Arrangement before{name_, own_, window_->size(), window_->saveState(), views_->saveState()};
-    apply(dock);
+    if (!arranged) apply(dock);
     before_ = before;
   }
   docks_.bring(dock);
@@ -50,9 +61,9 @@ void WindowLayout::putBack() {
 }
 
 void WindowLayout::followSize() {
-  if (own_ || name_.isEmpty() || !window_->isVisible() || docks_.fits()) return;
+  if (own_ || hidden_ || name_.isEmpty() || !window_->isVisible() || docks_.fits()) return;
   QTimer::singleShot(0, this, [this] {  // not while Qt lays out the docks
-    if (!own_ && !docks_.fits()) apply(name_);
+    if (!own_ && !hidden_ && !docks_.fits()) apply(name_);
   });
 }
 

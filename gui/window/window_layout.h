@@ -23,6 +23,10 @@ class WindowLayout : public QObject {
   /// Of the layout that was applied last.
   const QString& name() const { return name_; }
   void apply(const QString& name);
+  /// No docks while nothing is open. @see showAgain
+  void hideUntilOpen();
+  /// The docks of the layout that was applied last, where they were hidden.
+  void showAgain();
   /// The user's own arrangement was applied: it stays as it is, whatever size the window gets.
   void setOwn();
   /// Arranges the window as the layout `dock` does, where that dock is not shown as it should be, and brings the dock to the front.
@@ -48,6 +52,7 @@ class WindowLayout : public QObject {
   QSplitter* views_;
   QString name_;
   bool own_ = false;
+  bool hidden_ = false;                ///< see hideUntilOpen()
   std::optional<Arrangement> before_;  ///< to go back to; none where makeRoomFor() found what it wants
 };
 

@@ -355,6 +355,15 @@ class ExplainTest : public QObject {
     };
     const QStringList before = shown();
     auto* scene = window_->findChild<ScenePanel*>();
+    auto* front = window_->findChild<QDockWidget*>("history");
+    front->show();
+    front->raise();
+    const auto layers = window_->document().state().layers;
+    const auto eye = [&] { return scene->view().viewPoint().position; };
+    scene->frameAll();
+    viz::ViewPoint own = scene->view().viewPoint();
+    own.position *= 1.1;
+    scene->view().setViewPoint(own);
     const int width = scene->width();
     QVERIFY(before.contains("plots"));
     window_->actions().find("explain.start")->trigger();
@@ -366,6 +375,9 @@ class ExplainTest : public QObject {
     panel_->findChild<QToolButton*>("explain.leave")->click();
     QTRY_COMPARE(shown(), before);
     QTRY_VERIFY(std::abs(scene->width() - width) <= 2);
+    QTRY_VERIFY(!front->visibleRegion().isEmpty());  // before its tabs again
+    QVERIFY(window_->document().state().layers == layers);
+    QVERIFY2((eye() - own.position).norm() < 1e-9, "looked at from where it was");
     // Undo leaves as well; what is chosen meanwhile stays.
     window_->actions().find("explain.start")->trigger();
     window_->document().undoStack()->undo();

@@ -55,6 +55,7 @@ QObject* makeFrameViewTest();
 QObject* makeThemeTest();
 QObject* makeTimelineTest();
 QObject* makePaletteTest();
+QObject* makeStartPageTest();
 QObject* makePanelTest();
 QObject* makeParametersTest();
 QObject* makePickingTest();

@@ -23,6 +23,7 @@ int main(int argc, char** argv) {
       {"timeline", makeTimelineTest},
       {"panel", makePanelTest},
       {"palette", makePaletteTest},
+      {"start_page", makeStartPageTest},
       {"linking", makeLinkingTest},
       {"window", makeWindowTest},
       {"scene", makeSceneTest},

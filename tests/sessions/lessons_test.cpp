@@ -8,40 +8,15 @@
 #include <numbers>
 #include <set>
 
-#include "core/explain/explain.h"
 #include "core/geometry/epipolar.h"
-#include "core/session/session.h"
+#include "tests/sessions/taught.h"
 
 namespace glint {
 namespace {
 
+using namespace taught;
+
 constexpr double kContour = 2e-3;  // px: contours and peaks of the lessons are stored to 0.001 px
-
-struct Taught {
-  Session session;
-  Inspection inspection;
-};
-
-const Taught& lesson(const std::string& id) {
-  static std::map<std::string, Taught> all;
-  if (const auto it = all.find(id); it != all.end()) return it->second;
-  OpenedSession opened = openSession(std::string(GLINT_SOURCE_DIR "/sessions/lessons/") + id + "/" + id + ".glint");
-  Inspection inspection = inspect(opened.scene, opened.session.request);
-  return all.emplace(id, Taught{std::move(opened.session), std::move(inspection)}).first->second;
-}
-
-const ExplainStep& stepOf(const Explanation& e, const std::string& id) {
-  for (const ExplainStep& s : e.steps)
-    if (s.id == id) return s;
-  throw std::runtime_error("no step " + id);
-}
-
-double number(const ExplainStep& s, const std::string& name, std::size_t at = 0) {
-  for (const ExplainNumber& n : s.numbers)
-    if (n.name == name) return n.values.at(at);
-  ADD_FAILURE() << s.id << " has no number \"" << name << "\"";
-  return std::nan("");
-}
 
 bool breaks(const ExplainStep& s, const std::string& id) {
   for (const BrokenAssumption& b : s.broken)
@@ -65,7 +40,7 @@ std::vector<double> errors(const Inspection& in, const std::string& model) {
 TEST(Lessons, EachOpensInTheExplainLayoutWithItsTexts) {
   std::ifstream file(GLINT_SOURCE_DIR "/resources/explain/lessons.json");
   const nlohmann::json texts = nlohmann::json::parse(file);
-  ASSERT_EQ(texts["lessons"].size(), 6u);
+  ASSERT_EQ(texts["lessons"].size(), 7u);
   const std::set<std::string> steps(explainSteps().begin(), explainSteps().end());
   for (const auto& text : texts["lessons"]) {
     const std::string id = text["id"];
@@ -74,6 +49,8 @@ TEST(Lessons, EachOpensInTheExplainLayoutWithItsTexts) {
     EXPECT_EQ(session.view.options.at("explain/lesson"), id);
     for (const char* key : {"title", "see"}) EXPECT_FALSE(text.at(key).get<std::string>().empty()) << id << key;
     EXPECT_GE(text.at("questions").size(), 3u) << id;
+    for (const auto& question : text.at("questions"))
+      for (const char* key : {"ask", "answer"}) EXPECT_FALSE(question.at(key).get<std::string>().empty()) << id << key;
     for (const std::string step : text.at("steps")) {
       EXPECT_TRUE(steps.count(step)) << id << ": " << step;
       EXPECT_TRUE(text.at("remarks").contains(step)) << id << ": " << step;

@@ -12,6 +12,8 @@ namespace {
 constexpr std::size_t kMostCones = 8;  // translucent sheets over each other: more are fog
 constexpr int kAround = 72;            // generators of a cone; every kLinesEvery-th of the selected frame's is a line
 constexpr int kLinesEvery = 9;
+constexpr double kStrongSheet = 0.24,
+                 kSheet = 0.10;  // opacity, of the selected frame and the others: eight of these still let the ellipsoid through
 
 /// The cone of one view: from its (virtual) camera through its ellipse.
 struct Cone {
@@ -61,8 +63,8 @@ void addCone(LayerContent& content, const LayerInput& in, const Cone& cone, cons
   for (std::size_t i = 0; strong && i < near.size(); i += kLinesEvery) lines.emplace_back(near[i], far[i]);
   near.push_back(near.front());
   far.push_back(far.front());
-  const double width = strong ? 1.6 : 0.8;
-  content.drawn.push_back({sheetActor(sheet, colour, strong ? 0.10 : 0.035), info, 0, false});
+  const double width = strong ? 1.8 : 1.2;
+  content.drawn.push_back({sheetActor(sheet, colour, strong ? kStrongSheet : kSheet), info, 0, false});
   if (strong) content.add(segmentActor(lines, colour, width), info, width);
   content.add(lineActor({near, far}, colour, 1.5 * width), info, 1.5 * width);
   if (strong) {  // back to the camera that it comes from

@@ -68,7 +68,9 @@ bool hiddenBySurface(const LayerInput& in, const Eigen::Vector3d& point) {
 
 LayerContent ellipsoidsLayer(const LayerInput& in) {
   LayerContent content;
-  for (const std::string& model : in.models) {
+  std::vector<std::string> models = in.models;  // of two things in one place the last one shows: the selected model's
+  std::stable_partition(models.begin(), models.end(), [&](const std::string& m) { return m != in.selection.model; });
+  for (const std::string& model : models) {
     for (const ModelFit* fit : in.fits(model)) {
       const EllipsoidFit* const fitted = fit->as<EllipsoidFit>();
       if (!fitted) continue;
@@ -93,12 +95,12 @@ LayerContent ellipsoidsLayer(const LayerInput& in) {
       // A vanishing axis would make the unit sphere's normals undefined: keep it thinner than a line.
       const Eigen::Vector3d axes = e.semiAxes().cwiseMax(1e-5 * std::max(e.semiAxes().maxCoeff(), 1e-300));
       const Eigen::Affine3d worldFromUnit = Eigen::Affine3d(e.worldFromBody()) * Eigen::Scaling(axes);
-      content.add(ellipsoidActor(worldFromUnit, colour, 0.15), info);
       const Eigen::Matrix3d a = worldFromUnit.linear();
       const Eigen::Vector3d c = e.centre();
       const std::vector<Points> outlines{circle(c, a.col(0), a.col(1)), circle(c, a.col(1), a.col(2)),
                                          circle(c, a.col(2), a.col(0))};
       const bool selected = in.selection.model == model && (in.selection.light.empty() || in.selection.light == fit->light);
+      content.add(ellipsoidActor(worldFromUnit, colour, selected ? 0.4 : 0.15), info);
       if (selected) content.add(lineActor(outlines, in.ink(), 5.0), info, 5.0);  // ink about the model's colour
       const double width = selected ? 3.0 : 1.5;
       content.add(lineActor(outlines, colour, width), info, width);

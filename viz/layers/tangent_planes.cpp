@@ -9,16 +9,17 @@ namespace {
 
 constexpr double kPlanePx = 2;  // see Drawn::nearerPx: below what lies on the plane
 
-/// What the plane has to reach: the contour, and where it is looked at alone the canonical one, which lies on it and is several
+/// What the plane has to reach: three highlights, and where it is looked at alone the canonical contour, which lies on it and is several
 /// times as large where the surface bulges. Of all frames together such planes would hide the surface.
-std::vector<Pixel> onPlane(const LayerInput& in, std::vector<Pixel> contour, const std::optional<CanonicalContour>& canonical) {
-  if (in.solo && canonical) contour.insert(contour.end(), canonical->pixels.begin(), canonical->pixels.end());
-  return contour;
+double radiusOf(const LayerInput& in, const Camera& camera, const Plane& plane, const Eigen::Vector3d& at,
+                const std::vector<Pixel>& contour, const std::optional<CanonicalContour>& canonical) {
+  const double own = planeRadius(camera, plane, at, contour, in.scale);
+  if (!in.solo || !canonical) return own;
+  return std::max(own, planeRadius(camera, plane, at, canonical->pixels, in.scale, kAboutCanonical));
 }
 
-void addPlane(LayerContent& content, const LayerInput& in, const Camera& camera, const Plane& plane, const Eigen::Vector3d& at,
-              const std::vector<Pixel>& contour, bool strong, bool filled, const Colour& colour, const Picked& info) {
-  const double radius = planeRadius(camera, plane, at, contour, in.scale);
+void addPlane(LayerContent& content, const Plane& plane, const Eigen::Vector3d& at, double radius, bool strong, bool filled,
+              const Colour& colour, const Picked& info) {
   const Eigen::Matrix<double, 3, 2> basis = tangentBasis(plane.normal);
   const double width = strong ? 2.0 : 1.0;
   if (filled) content.addOnSurface(discActor(at, plane.normal, radius, colour, strong ? 0.32 : 0.18), info, 0, kPlanePx);
@@ -42,8 +43,9 @@ LayerContent tangentPlanesLayer(const LayerInput& in) {
   const auto addObserved = [&](const TrainingView& view) {
     if (!view.seen) return;
     const Eigen::Vector3d& at = view.seen->brightest.point.position;
-    addPlane(content, in, view.camera, view.seen->tangentPlane, at, onPlane(in, view.highlight.contour.points, view.canonical),
-             view.frame == in.selection.frame, true, kVirtualCamera, describe(view.seen->tangentPlane, at, view.frame, ""));
+    const Plane& plane = view.seen->tangentPlane;
+    addPlane(content, plane, at, radiusOf(in, view.camera, plane, at, view.highlight.contour.points, view.canonical),
+             view.frame == in.selection.frame, true, kVirtualCamera, describe(plane, at, view.frame, ""));
   };
   bool trains = false;
   for (const TrainingView* view : in.views()) {
@@ -62,9 +64,11 @@ LayerContent tangentPlanesLayer(const LayerInput& in) {
     for (const FrameComparison* comparison : in.comparisons(model)) {
       for (const PredictedHighlight& h : comparison->prediction.highlights()) {
         if (!h.tangentPlane) continue;
-        addPlane(content, in, in.frame(in.selection.frame).camera, *h.tangentPlane, h.brightest.point.position,
-                 onPlane(in, h.contour.points, h.canonical), true, own.empty(), modelColour(model),
-                 describe(*h.tangentPlane, h.brightest.point.position, in.selection.frame, model));
+        const Eigen::Vector3d& at = h.brightest.point.position;
+        const double radius =
+            radiusOf(in, in.frame(in.selection.frame).camera, *h.tangentPlane, at, h.contour.points, h.canonical);
+        addPlane(content, *h.tangentPlane, at, radius, true, own.empty(), modelColour(model),
+                 describe(*h.tangentPlane, at, in.selection.frame, model));
       }
     }
   }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <set>
 
 #include "viz/glyphs.h"
@@ -46,6 +47,29 @@ void addPair(LayerContent& content, const LayerInput& in, int frame, const Layer
   if (labelled) content.labels.push_back({mirrored, "virtual camera " + in.frame(frame).id, kVirtualCamera});
 }
 
+/// How one sees in the mirror: the camera the brightest point, and the virtual camera the lamp, in a straight line through it.
+void addSight(LayerContent& content, const LayerInput& in, const TrainingView& view) {
+  if (!view.seen || in.eye != Eye::Outside) return;
+  const Eigen::Vector3d eye = view.camera.centreInWorld(), mirrored = view.seen->tangentPlane.reflected(eye);
+  const Eigen::Vector3d& at = view.seen->brightest.point.position;
+  const Eigen::Vector3d on = (at - mirrored).normalized();
+  double reach = 0.6 * in.scale.sceneSize;
+  const LightEstimate* const estimate = in.inspection->lightFor(view.frame, view.highlight.light);
+  if (estimate && !estimate->light.atInfinity()) {
+    const double along = on.dot(estimate->light.position() - at);
+    if (along > 0) reach = std::min(along, 4 * in.scale.sceneSize);
+  }
+  Picked info;
+  info.layer = "virtual-cameras";
+  info.frame = view.frame;
+  info.highlight = in.highlightOf(view);
+  info.light = view.highlight.light;
+  info.text = line("line of sight of virtual camera", in.frame(view.frame).id) + line("P", at, "m") + line("direction", on);
+  content.add(segmentActor({{mirrored, at}}, kVirtualCamera, 2.5), info, 2.5);
+  content.add(segmentActor({{at, at + reach * on}}, kLightColour, 2.5), info, 2.5);
+  content.add(segmentActor({{eye, at}}, in.ink(), 1.5), info, 1.5);
+}
+
 }  // namespace
 
 LayerContent virtualCamerasLayer(const LayerInput& in) {
@@ -62,6 +86,9 @@ LayerContent virtualCamerasLayer(const LayerInput& in) {
       first = false;
     }
   }
+  for (const TrainingView* view : in.views())
+    if (view->frame == in.selection.frame) addSight(content, in, *view);
+  for (const TrainingView& view : in.ownViews()) addSight(content, in, view);
   return content;
 }
 
