@@ -11,7 +11,7 @@
 namespace glint {
 namespace {
 
-constexpr std::size_t kMostExcluded = 3;  // frames tried one by one
+constexpr std::size_t kMostExcluded = 2;  // frames tried one by one
 constexpr std::size_t kFewestViews = 4;   // an exclusion must leave one more than a fit with a free centre needs
 constexpr std::size_t kMoreFrames = 12;   // twice the default: enough to tell whether more help
 constexpr double kSmallRadiusPx = 6;      // a contour is known to about 0.1 px, 2 % of this
@@ -23,10 +23,10 @@ class Candidates {
       : r_(inspection), model_(model), evidence_(evidence) {}
 
   std::vector<CandidateChange> run() {
+    lobes();
     lightSolver();
     exclusions();
     ellipsoidSolvers();
-    lobes();
     surface();
     cameras();
     slow_ = true;

@@ -16,6 +16,7 @@ namespace {
 
 constexpr std::size_t kMostNamed = 4;           // views in one sentence; --json has all that are measured
 constexpr std::size_t kMostLeftOutOfScore = 2;  // more frames are no exceptions
+constexpr double kSolved = 0.25;                // of the error before: a smaller gain leaves the search worth its time
 constexpr int kMostFrames = 10;  // of the sequence, predicted each time: a mean of so many is known to a third of their spread
 
 std::string placeOf(const Inspection& r, const HighlightEvidence& e) {
@@ -58,9 +59,9 @@ class ModelCase {
     explain();
     const std::vector<CandidateChange> candidates = candidateChanges(r_, model_, d_.evidence);
     d_.known += static_cast<int>(candidates.size());
-    changes(candidates, false);
     otherModels();
     leaveOutOfScore();
+    changes(candidates, false);
     changes(candidates, true);
     std::stable_sort(d_.remedies.begin(), d_.remedies.end(),
                      [](const Remedy& a, const Remedy& b) { return a.after.meanPct() < b.after.meanPct(); });
@@ -175,11 +176,12 @@ class ModelCase {
     d_.remedies.push_back(std::move(remedy));
   }
 
-  /// Some remedy has brought nearly every view under the bound.
+  /// Some remedy has brought nearly every view under the bound, and the error to a fraction of what it was.
   bool solved() const {
     return std::any_of(d_.remedies.begin(), d_.remedies.end(), [this](const Remedy& r) {
       return 4 * r.after.views.size() >= 3 * d_.unseen.views.size() &&
-             r.after.answered() == static_cast<int>(r.after.views.size()) && r.after.meanPct() <= kLargestExpectedPct;
+             r.after.answered() == static_cast<int>(r.after.views.size()) &&
+             r.after.meanPct() <= std::min(kLargestExpectedPct, kSolved * r.before.meanPct());
     });
   }
 
@@ -209,9 +211,10 @@ class ModelCase {
   }
 
   void changes(const std::vector<CandidateChange>& candidates, bool slow) {
+    const int most = hasLobe() && !options_.slowToo ? (options_.mostTried + 1) / 2 : options_.mostTried;  // seconds for each
     for (const CandidateChange& candidate : candidates) {
       if (candidate.slow != slow) continue;
-      if (measured_ == options_.mostTried || (slow && !options_.slowToo && solved())) break;
+      if (measured_ >= most || (!options_.slowToo && solved())) break;
       if (!report(progress_, {d_.model + ": try " + flagsOf(candidate.change), measured_, static_cast<int>(candidates.size())}))
         throw Stopped{};
       const Inspection inspection = changed(candidate.change);
