@@ -72,7 +72,7 @@
 namespace glint::gui {
 
 namespace {
-constexpr QSize kLeastStart(300, 200);  // px of the start page; the rest scrolls
+constexpr QSize kLeastStart(150, 100);  // px of the start page; the rest scrolls
 }
 
 MainWindow::MainWindow(Engine engine, QWidget* parent)

@@ -71,6 +71,7 @@ class WindowSizeTest : public QObject, WindowFixture {
     MainWindow window(fixture_.engine());
     window.resize(1600, 1000);
     show(window);
+    openAndWait(window);  // without a scene there are no docks
     auto* parameters = window.findChild<QDockWidget*>(QStringLiteral("parameters"));
     auto* setup = window.findChild<QDockWidget*>(QStringLiteral("setup"));
     auto* numbers = window.findChild<QDockWidget*>(QStringLiteral("numbers"));
