@@ -197,6 +197,8 @@ void DiagnosisPanel::fillDiagnosis(const ModelDiagnosis& d) {
   if (d.status == ModelDiagnosis::Status::Ok) return;
   QTreeWidgetItem* const top = itemOf(d.model, tr("%1: %2").arg(toQString(d.model), QLatin1String(nameOf(d.status))));
   for (const std::string& cause : d.causes) addLine(top, tr("because %1").arg(toQString(cause)));
+  for (const Remedy& remedy : d.remedies) addRemedy(d.model, remedy);
+  if (d.remedies.empty()) addLine(top, tr("nothing helps: %1 changes were tried").arg(d.tried));
   std::vector<const HighlightEvidence*> against;
   for (const HighlightEvidence& e : d.evidence)
     if (!e.against.empty()) against.push_back(&e);
@@ -212,8 +214,6 @@ void DiagnosisPanel::fillDiagnosis(const ModelDiagnosis& d) {
     line->setData(0, kLight, toQString(e.light));
     line->setData(0, kHighlight, e.highlight);
   }
-  for (const Remedy& remedy : d.remedies) addRemedy(d.model, remedy);
-  if (d.remedies.empty()) addLine(top, tr("nothing helps: %1 changes were tried").arg(d.tried));
 }
 
 QTreeWidgetItem* DiagnosisPanel::itemOf(const std::string& model, const QString& otherwise) {
