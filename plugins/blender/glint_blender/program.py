@@ -62,7 +62,8 @@ class Job:
             pass
         try:
             self.process = subprocess.Popen(command, cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                                            stderr=theirs if theirs is not None else subprocess.PIPE, start_new_session=os.name == "posix")
+                                            stderr=theirs if theirs is not None else subprocess.PIPE, start_new_session=os.name == "posix",
+                                            env=dict(os.environ, NO_COLOR="1"))  # the lines are read, not looked at
         except OSError as e:
             if own_end is not None:
                 os.close(own_end)
@@ -94,7 +95,7 @@ class Job:
             os.close(handle)
 
     def _line(self, data, whole):
-        text = re.sub(r"\x1b\[K", "", data.decode("utf-8", "replace")).strip()
+        text = re.sub(r"\x1b\[[0-9;]*[Km]", "", data.decode("utf-8", "replace")).strip()
         if not text:
             return
         with self.lock:

@@ -217,7 +217,7 @@ class Operator(unittest.TestCase):
         steps = run.commands("glint", settings, "scene.json", "out")
         common = ["--train", "first:4", "--source", "image", "--set", "detect.level=0.3", "--set", "fit.solver=linear", "--set", "surface.normals=facet"]
         self.assertEqual(steps[0][1], ["glint", "reconstruct", "scene.json", "--model", "canonical,dual", *common, "-o", os.path.join("out", "run.glint")])
-        self.assertEqual(steps[1][1], ["glint", "predict", os.path.join("out", "run.glint"), "--out", os.path.join("out", "predictions")])
+        self.assertEqual(steps[1][1], ["glint", "predict", os.path.join("out", "run.glint"), "--set", "predict.band=false", "--out", os.path.join("out", "predictions")])
         self.assertEqual(steps[2][1], ["glint", "evaluate", os.path.join("out", "run.glint"), "--models", "canonical,dual", *common, "--json",
                                        os.path.join("out", "evaluation.json")])
         settings.training = "PER_SURFACE"
