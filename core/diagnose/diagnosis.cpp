@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
 #include "core/base/angle.h"
 #include "core/base/number_text.h"
@@ -63,8 +64,9 @@ class ModelCase {
     leaveOutOfScore();
     changes(candidates, false);
     changes(candidates, true);
-    std::stable_sort(d_.remedies.begin(), d_.remedies.end(),
-                     [](const Remedy& a, const Remedy& b) { return a.after.meanPct() < b.after.meanPct(); });
+    std::stable_sort(d_.remedies.begin(), d_.remedies.end(), [](const Remedy& a, const Remedy& b) {
+      return std::pair(!a.measured, a.after.meanPct()) < std::pair(!b.measured, b.after.meanPct());
+    });
     return std::move(d_);
   }
 
@@ -172,6 +174,7 @@ class ModelCase {
     remedy.why =
         "leaves frames out of the score that the model gets wrong; right only if their highlight is not of the part that matters";
     remedy.before = d_.unseen;
+    remedy.measured = false;
     if (options_.found) options_.found(d_.model, remedy);
     d_.remedies.push_back(std::move(remedy));
   }

@@ -33,6 +33,8 @@ struct Remedy {
   /// Over the views that both have, none of them seen by the fit that predicts it: left-out training views, and some held-out frames. A change
   /// that makes other contours is measured by the left-out training views alone.
   LeftOutError before, after;
+  /// False where frames that the model gets wrong are only left out of the score: `after` is smaller by definition, and the remedy stands last.
+  bool measured = true;
 };
 
 struct ModelDiagnosis {

@@ -16,8 +16,8 @@
 namespace glint {
 namespace {
 
-constexpr double kConflict =
-    1.25;  // of two limit angles: a point light's own vary by less over the shipped scenes (docs/accuracy.md)
+// Of two limit angles of one light. Those of the shipped sessions differ by a factor of at most 1.02 (`glint diagnose --json`, limit_angle_deg).
+constexpr double kConflict = 1.25;
 constexpr double kOutlier = 1.12;    // of a limit angle from the median of its light: half of that, as a ratio
 constexpr double kLargeShare = 0.1;  // of the radius that a residual leaves: the default of fit.most_residual
 constexpr double kManyTimes = 3;     // times the median residual

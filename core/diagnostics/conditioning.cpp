@@ -17,11 +17,9 @@ namespace glint {
 namespace {
 
 constexpr double kOwnSizePct = 100;  // of the highlight's diameter: beyond, the outline is not that of the highlight
-// Of the sessions shipped with their lamps: the light of one limit angle stands 2 to 6 % of its distance from the lamp.
 constexpr const char* kLightOfOneAngle =
-    " It covers noise only: a real lobe moves the light of one limit angle off the lamp, by 2 to 6 % of the distance on the "
-    "shipped "
-    "sessions. `glint lights` measures lamps.";
+    " It covers noise only: a real lobe moves the light of one limit angle off the lamp by more than that. `glint lights` "
+    "measures lamps.";
 constexpr std::size_t kMostDirections = 256;  // 33,000 pairs: a millisecond
 
 double angleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }

@@ -54,6 +54,7 @@ Ordered remedyJson(const Remedy& r) {
           {"exclude", textOrNull(r.change.exclude)},
           {"flags", flagsOf(r.change)},
           {"why", r.why},
+          {"measured", r.measured},
           {"effect",
            {{"before_pct", numberOrNull(r.before.meanPct())},
             {"after_pct", numberOrNull(r.after.meanPct())},

@@ -148,6 +148,19 @@ TEST(Diagnosis, WithoutAUsableViewItSaysSo) {
   EXPECT_NE(diagnosisText(inspection, diagnose(inspection)).find("failed"), std::string::npos);
 }
 
+/// A held-out frame that shows something else: leaving it out makes the score better by definition, so that it must not stand before what was
+/// measured, and says what it is.
+TEST(Diagnosis, LeavingAFrameOutOfTheScoreIsNoMeasuredRemedy) {
+  const ModelDiagnosis d = diagnose(inspected(withMovedContour(7))).models.at(0);
+  EXPECT_EQ(d.status, ModelDiagnosis::Status::Poor);
+  const auto left = std::find_if(d.remedies.begin(), d.remedies.end(), [](const Remedy& r) { return r.change.exclude == "7"; });
+  ASSERT_NE(left, d.remedies.end());
+  EXPECT_FALSE(left->measured);
+  EXPECT_EQ(left + 1, d.remedies.end()) << "the last one";
+  EXPECT_NE(left->why.find("right only if"), std::string::npos);
+  EXPECT_LT(left->after.meanPct(), kExactPct) << "all others are exact";
+}
+
 TEST(Diagnosis, StopsWhenAsked) {
   const Inspection inspection = inspected(withMovedContour(2));
   EXPECT_THROW(diagnose(inspection, {}, [](const StageEvent&) { return false; }), Stopped);
