@@ -182,7 +182,7 @@ class ModelCase {
   /// Some remedy has brought nearly every view under the bound, and the error to a fraction of what it was.
   bool solved() const {
     return std::any_of(d_.remedies.begin(), d_.remedies.end(), [this](const Remedy& r) {
-      return 4 * r.after.views.size() >= 3 * d_.unseen.views.size() &&
+      return r.measured && 4 * r.after.views.size() >= 3 * d_.unseen.views.size() &&
              r.after.answered() == static_cast<int>(r.after.views.size()) &&
              r.after.meanPct() <= std::min(kLargestExpectedPct, kSolved * r.before.meanPct());
     });

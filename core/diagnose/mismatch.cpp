@@ -26,15 +26,18 @@ bool isOutside(const Camera& camera, const Polyline& contour) {
   return 2 * inside < static_cast<long>(contour.points.size());
 }
 
-/// What hides the lamp from the brightest point, or how flat it is seen; "" where neither does.
+/// What hides the lamp from the middle of the contour on the surface, or how flat it is seen; "" where neither does, or where that misses the
+/// surface. A brightest point would not do: `primal` predicts outlines that no point of the surface made.
 std::string geometryAgainst(const Inspection& inspection, const FrameComparison& c, const PredictedHighlight& h) {
   const Camera& camera = inspection.scene->frames[std::size_t(c.frame)].camera;
   const Eigen::Vector3d eye = camera.centreInWorld();
-  const SurfacePoint at = facing(h.brightest.point, eye);
   const LightEstimate* const light = inspection.lightFor(c.frame, c.light);
   const Outcome<std::shared_ptr<const Surface>> surface = surfaceFor(inspection, c.frame, c.light);
-  if (light && surface && *surface &&
-      (*surface)->occluded(at, occlusionTarget(**surface, at.position, light->light, (eye - at.position).norm())))
+  if (!surface || !*surface) return "";
+  const Outcome<SurfacePoint> hit = (*surface)->firstHit(camera.ray(centroid(h.contour)));
+  if (!hit) return "";
+  const SurfacePoint at = facing(*hit, eye);
+  if (light && (*surface)->occluded(at, occlusionTarget(**surface, at.position, light->light, (eye - at.position).norm())))
     return "in the shadow of the object itself";
   const double cosine = at.normal.dot((eye - at.position).normalized());
   if (const double angle = degrees(std::acos(std::clamp(cosine, -1.0, 1.0))); angle > kGrazing)

@@ -130,7 +130,10 @@ void addCommand(const Inspection& inspection, const ModelDiagnosis& d, std::stri
 
 }  // namespace
 
-std::string effectText(const Remedy& remedy) { return errorText(remedy.before) + " -> " + errorText(remedy.after); }
+std::string effectText(const Remedy& remedy) {
+  return errorText(remedy.before) + " -> " + errorText(remedy.after) +
+         (remedy.measured ? "" : ", by leaving frames out of the score");
+}
 
 std::string diagnosisJson(const Inspection& inspection, const Diagnosis& diagnosis, const std::string& input) {
   Ordered models = Ordered::object();

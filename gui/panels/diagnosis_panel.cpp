@@ -165,9 +165,10 @@ void DiagnosisPanel::fillProblems() {
     const std::vector<WrongFrame> wrong = wrongFrames(*inspection, result->second);
     if (summary.answered && wrong.empty()) continue;
     ++problems_;
-    auto* top =
-        new QTreeWidgetItem(list_, {summary.answered ? tr("%1: %n frame(s) wrong", "", int(wrong.size())).arg(toQString(name))
-                                                     : tr("%1: no answer").arg(toQString(name))});
+    auto* top = new QTreeWidgetItem(
+        list_, {summary.answered
+                    ? tr(wrong.size() == 1 ? "%1: %2 frame wrong" : "%1: %2 frames wrong").arg(toQString(name)).arg(wrong.size())
+                    : tr("%1: no answer").arg(toQString(name))});
     top->setData(0, kModel, toQString(name));
     top->setExpanded(true);
     const bool explained = diagnosis_ && of_ == inspection;  // its causes say it
@@ -177,8 +178,8 @@ void DiagnosisPanel::fillProblems() {
     for (std::size_t i = 0; summary.answered && i < wrong.size() && i < kMostFrames; ++i) {
       const WrongFrame& w = wrong[i];
       QStringList words;
-      if (w.missed) words << tr("%n highlight(s) missed", "", w.missed);
-      if (w.spurious) words << tr("%n predicted that nothing shows", "", w.spurious);
+      if (w.missed) words << tr(w.missed == 1 ? "%1 highlight missed" : "%1 highlights missed").arg(w.missed);
+      if (w.spurious) words << tr("%1 predicted where none is seen").arg(w.spurious);
       if (!w.reason.empty()) words << toQString(w.reason);
       words << w.causes;
       if (w.pct > kLargestExpectedPct) words.prepend(tr("off by %1 %").arg(numberText(w.pct, 3)));
@@ -290,7 +291,7 @@ void DiagnosisPanel::showState(const QString& stage) {
     return state_->setText(tr("These remedies are of an earlier state; ask again for those of the new one"));
   if (problems_ == 0) return state_->setText(tr("Every model answers, and no frame is wrong"));
   state_->setText(diagnosis_ ? tr("Best first. Remedies are measured in views that the fit did not see")
-                             : tr("%n model(s) with problems", "", problems_));
+                             : tr(problems_ == 1 ? "%1 model with problems" : "%1 models with problems").arg(problems_));
 }
 
 }  // namespace glint::gui

@@ -46,11 +46,17 @@ TEST_F(Mismatch, OutsideOfTheImage) {
 }
 
 TEST_F(Mismatch, InItsOwnShadow) {
-  EXPECT_EQ(whySpurious([](PredictedHighlight& h) {  // the ball touches z = 0 from below; the lamp is above
-              h.brightest.point.position = Eigen::Vector3d(0, 0, -1);
-              h.brightest.point.normal = -Eigen::Vector3d::UnitZ();
-            }),
-            "in the shadow of the object itself");
+  Inspection below =
+      *inspection_;  // the ball touches z = 0 from below, and the cameras are above: they see no point that this lamp lights
+  for (auto& [key, light] : below.lights) light->light = Light::at(Eigen::Vector3d(0, 0, -5));
+  FrameComparison::Row row;
+  row.predicted = 0;
+  EXPECT_EQ(whyUnmatched(below, below.models.at("limit-angle").frames[7], row), "in the shadow of the object itself");
+}
+
+TEST_F(Mismatch, APointThatIsNotOfTheSurfaceSaysNothingOfItsShadow) {
+  EXPECT_THAT(whySpurious([](PredictedHighlight& h) { h.brightest.point.position = Eigen::Vector3d(0, 0, -1); }),
+              HasSubstr("the nearest observed highlight"));
 }
 
 TEST_F(Mismatch, SmallerThanDetectionTakes) {
