@@ -155,7 +155,7 @@ def model_rows(label, run):
         e = s["contour_error_pct"]
         reasons = {}
         for f in model["frames"]:
-            if f["reason"] and f["index"] not in held_in(run):
+            if f["reason"] and f["status"] != "spurious" and f["index"] not in held_in(run):
                 reasons[f["reason"]] = reasons.get(f["reason"], 0) + 1
         remark = model["reason"] if model["status"] != "ok" else "; ".join(f"{n} × {r}" for r, n in sorted(reasons.items()))
         rows.append(label + [
