@@ -29,6 +29,7 @@ class vtkRenderer;
 namespace glint::viz {
 
 struct WalkStory;
+struct DrawnRuns;
 
 constexpr double kAboutCanonical = 1.3;      ///< radius of a tangent plane that holds a canonical contour, of that contour's
 constexpr long long kLargeSurface = 200000;  ///< triangles: beyond, drawing takes more than 50 ms without a graphics card
@@ -102,6 +103,7 @@ struct LayerInput {
   std::shared_ptr<const WalkStory> walk{};                 ///< that the walk layer shows; null = none
   int walkStep = 0;                                        ///< see WalkStory::at
   std::shared_ptr<const std::vector<LampAnswer>> lamps{};  ///< measured; null = not
+  std::shared_ptr<const std::vector<DrawnRuns>> runs{};    ///< of solvers; null = none are known
 
   const Frame& frame(int index) const { return inspection->scene->frames[static_cast<std::size_t>(index)]; }
   /// Whether what belongs to a frame is drawn: neither hidden nor left out by solo.
@@ -200,7 +202,8 @@ enum Dependency : unsigned {
   kOnWalk = 4096,
   kOnScene = 8192,  ///< cameras and files: another scene, or a what-if that moves cameras
   kOnHidden = 16384,
-  kOnLamps = 32768  ///< measured anew
+  kOnLamps = 32768,  ///< measured anew
+  kOnRuns = 65536    ///< of solvers, see SceneView::setRuns()
 };
 
 struct LayerRecipe {
@@ -224,6 +227,7 @@ LayerContent conesLayer(const LayerInput& in);              ///< from the camera
 LayerContent ellipsoidsLayer(const LayerInput& in);         ///< Q* of each model
 LayerContent lightLayer(const LayerInput& in);              ///< estimates
 LayerContent trueLightLayer(const LayerInput& in);          ///< truth, ringed and labelled
+LayerContent solverRunsLayer(const LayerInput& in);         ///< from where each run of a solver started to where it ended
 LayerContent measuredLampsLayer(const LayerInput& in);      ///< places with their regions of 95 %, directions with their cones
 LayerContent raysLayer(const LayerInput& in);               ///< view rays and their reflections
 LayerContent observedContoursLayer(const LayerInput& in);   ///< cast onto the surface

@@ -77,6 +77,7 @@ SceneLegend legendOf(const LayerInput& in, const std::vector<ShownLayer>& layers
   if (drawn("light")) legend.entries.push_back({kLightColour, "light (estimate)"});
   if (drawn("true-light")) legend.entries.push_back({kTruth, "light (truth)"});
   if (drawn("measured-lamps")) legend.entries.push_back({kMeasuredLamp, "measured lamp, 95 % region"});
+  if (drawn("solver-runs")) legend.entries.push_back({in.ink(), "runs of a solver: hollow start, full end"});
   std::string noEvidence;
   if (const auto at = static_cast<std::size_t>(in.selection.frame); at < in.inspection->evidence.size()) {
     const std::optional<Failure>& failure = in.inspection->evidence[at].scoringFailure();

@@ -62,6 +62,7 @@ struct SceneView::Impl {
   std::vector<LayerState> layers{sceneLayers().size()};
   std::shared_ptr<LayerCache> cache;
   std::shared_ptr<const std::vector<LampAnswer>> lamps;
+  std::shared_ptr<const std::vector<DrawnRuns>> runs;
   LayerInput input;
   std::vector<int> allFrames;  // input.frames, solo or not
   CameraColours colours;
@@ -128,6 +129,7 @@ struct SceneView::Impl {
     input.colours = colours;
     input.cache = cache.get();
     input.lamps = lamps;
+    input.runs = runs;
     input.glyphScale = glyphScale;
     input.surface.reset();
     input.surfaceKey.clear();
@@ -476,6 +478,13 @@ void SceneView::setLamps(std::shared_ptr<const std::vector<LampAnswer>> lamps) {
   impl_->lamps = std::move(lamps);
   impl_->refreshInput();
   impl_->mark(kOnLamps);
+}
+
+void SceneView::setRuns(std::shared_ptr<const std::vector<DrawnRuns>> runs) {
+  if (runs == impl_->runs) return;
+  impl_->runs = std::move(runs);
+  impl_->refreshInput();
+  impl_->mark(kOnRuns);
 }
 
 void SceneView::frameAll() { impl_->frameAll(); }

@@ -28,6 +28,7 @@ namespace glint::viz {
 
 class LayerCache;
 struct WalkStory;
+struct DrawnRuns;
 
 /// A layer of the 3D picture, toggled by name (sessions keep visibility by `name`: docs/formats.md, "Session").
 struct Layer {
@@ -36,7 +37,7 @@ struct Layer {
   bool onByDefault = true;
 };
 /// surface, cameras, photographs, virtual-cameras, peaks, tangent-planes, canonical-ellipses, directions, walk, cones,
-/// ellipsoids, light, true-light, measured-lamps, rays, observed-contours, predicted-contours.
+/// ellipsoids, light, true-light, measured-lamps, solver-runs, rays, observed-contours, predicted-contours.
 const std::vector<Layer>& sceneLayers();
 
 /// What lies under the mouse, with its numbers.
@@ -108,6 +109,9 @@ class SceneView {
 
   /// What the layer "measured-lamps" draws; null = nothing. They stay until others come, also over another scene.
   void setLamps(std::shared_ptr<const std::vector<LampAnswer>> lamps);
+
+  /// What the layer "solver-runs" draws; null = nothing.
+  void setRuns(std::shared_ptr<const std::vector<DrawnRuns>> runs);
 
   /// A view from outside that holds the surface, the cameras and a light that is not far beyond them.
   void frameAll();

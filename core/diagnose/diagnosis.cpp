@@ -58,6 +58,7 @@ class ModelCase {
     judge();
     if (d_.status == ModelDiagnosis::Status::Ok) return std::move(d_);
     explain();
+    d_.fits = traceFits(r_, model_);
     const std::vector<CandidateChange> candidates = candidateChanges(r_, model_, d_.evidence);
     d_.known += static_cast<int>(candidates.size());
     otherModels();

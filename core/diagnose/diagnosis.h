@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/diagnose/fit_trace.h"
 #include "core/diagnose/highlight_evidence.h"
 #include "core/diagnose/left_out_error.h"
 #include "core/inspect/inspection.h"
@@ -44,6 +45,7 @@ struct ModelDiagnosis {
   std::vector<std::string> causes;  ///< in words, weightiest first; none where the status is Ok
   LeftOutError unseen;              ///< as it is now: left-out training views and some held-out frames
   std::vector<HighlightEvidence> evidence;
+  std::vector<FitTrace> fits;    ///< how they went; none where the status is Ok
   std::vector<Remedy> remedies;  ///< best first
   int tried = 0;                 ///< changes that were measured
   int known = 0;                 ///< changes that could have been

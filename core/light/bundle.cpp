@@ -12,6 +12,7 @@
 #include "core/base/number_text.h"
 #include "core/base/parallel.h"
 #include "core/base/residual_spread.h"
+#include "core/base/solver_trace.h"
 #include "core/light/bundle_attempt.h"
 #include "core/light/dense_solver.h"
 #include "core/light/estimate.h"
@@ -151,10 +152,24 @@ Attempt solve(std::vector<ContourEvidence>& points, Eigen::Vector4d start, bool 
 }
 
 /// From (x - origin) / scale to world.
-Light inWorld(const Eigen::Vector4d& light, const Eigen::Vector3d& origin, double scale) {
+Eigen::Vector4d worldOf(const Eigen::Vector4d& light, const NormalisedContours& in) {
   Eigen::Vector4d world;
-  world << scale * light.head<3>() + light.w() * origin, light.w();
-  return Light::homogeneous(world);
+  world << in.scale * light.head<3>() + light.w() * in.origin, light.w();
+  return world;
+}
+
+/// solve(), for whoever records.
+Attempt traced(NormalisedContours& contours, Eigen::Vector4d start, bool atInfinity, const BundleOptions& options) {
+  if (atInfinity) start.w() = 0;
+  TracedRun run(atInfinity ? "light at infinity with one limit angle" : "light with one limit angle", worldOf(start, contours));
+  Attempt a = solve(contours.points, start, atInfinity, options);
+  const char* const ending = !std::isfinite(a.cost) ? "no usable step"
+                             : a.behind             ? "the light lies behind the surface"
+                             : a.converged          ? "converged"
+                                                    : "out of iterations";
+  run.end(a.converged && !a.behind, ending, worldOf(a.light, contours));
+  a.run = run.index();
+  return a;
 }
 
 void setCovariance(const std::vector<ContourEvidence>& points, const Attempt& a, const Eigen::Vector3d& origin, double scale,
@@ -230,15 +245,15 @@ Outcome<Best> bestAttempt(NormalisedContours& contours, const Light& start, cons
   first << (start.homogeneous().head<3>() - start.homogeneous().w() * contours.origin) / contours.scale, start.homogeneous().w();
   if (!(first.norm() > 0) || !first.allFinite()) first << 0, 0, 1, 0;
   const auto attempt = [&](const Eigen::Vector4d& from) {
-    Attempt a = solve(points, from, from.w() == 0, options);
+    Attempt a = traced(contours, from, from.w() == 0, options);
     if (from.w() == 0 && std::isfinite(a.cost) && !a.behind) {  // the light may be nearer than infinity
-      const Attempt free = solve(points, (a.light + Eigen::Vector4d(0, 0, 0, 1e-3)).normalized(), false, options);
+      const Attempt free = traced(contours, (a.light + Eigen::Vector4d(0, 0, 0, 1e-3)).normalized(), false, options);
       if (!free.behind && free.converged && free.cost < a.cost) a = free;
     } else if (a.behind || a.light.w() < 1e-6) {  // a million scene sizes away: perhaps at infinity
       // Beyond infinity (the rays towards it converge behind the scene), or nearly there: try infinity itself.
       Eigen::Vector4d direction = a.light;
       if (a.behind) direction = -direction;
-      const Attempt far = solve(points, direction, true, options);
+      const Attempt far = traced(contours, direction, true, options);
       // As good but for round-off is enough for the simpler light.
       if (!far.behind && (a.behind || far.cost <= a.cost * (1 + 1e-9) + 1e-18 * points.size())) a = far;
     }
@@ -270,11 +285,22 @@ Outcome<Best> bestAttempt(NormalisedContours& contours, const Light& start, cons
   if (best.behind) return Failure{Reason::LightBehindSurface, "every light that explains the contours is behind the surface"};
   if (!std::isfinite(best.cost) || !best.converged) return Failure{Reason::NotConverged, "light bundle"};
 
+  traceAnswer(best.run);
   // The evidence still holds weights and biases of the last attempt, which need not be the best one.
   restoreBiases(points, best);
   renew(points, best, best.noiseShare);
   keepBiases(points, best);
   return Best{best, iterations};
+}
+
+/// directed(), for whoever records.
+Attempt directedAndTraced(NormalisedContours& contours, const Attempt& start, const BundleOptions& options) {
+  TracedRun run("light with its extent", worldOf(start.light, contours));
+  const Attempt a = directed(contours.points, start, options.robustPx, options.maxIterations);
+  run.end(a.directed, a.directed ? "converged" : "no extent in front of the surface explains the contours better",
+          worldOf(a.light, contours));
+  if (a.directed) traceAnswer(run.index());
+  return a;
 }
 
 /// Why a limit angle is none: every point of the contours sees the light in its mirror direction, so that any light near it would do.
@@ -334,12 +360,10 @@ Outcome<Bundle> bundleLight(const std::vector<ContourEvidence>& evidence, std::s
   const Outcome<Best> found = bestAttempt(*contours, start, options);
   if (!found) return found.failure();
   const std::vector<ContourEvidence>& points = contours->points;
-  const Attempt best = options.limitOrders > 0
-                           ? directed(contours->points, found->attempt, options.robustPx, options.maxIterations)
-                           : found->attempt;
+  const Attempt best = options.limitOrders > 0 ? directedAndTraced(*contours, found->attempt, options) : found->attempt;
   if (const std::optional<Failure> degenerate = withoutLimit(points, best)) return *degenerate;
   Bundle bundle;
-  bundle.light = inWorld(best.light, contours->origin, contours->scale);
+  bundle.light = Light::homogeneous(worldOf(best.light, *contours));
   bundle.limitAngle = best.limit;
   if (best.directed) bundle.extent = symmetric(best.extent) * (best.light.w() == 0 ? 1.0 : contours->scale * contours->scale);
   bundle.iterations = found->iterations;

@@ -23,6 +23,7 @@ struct Attempt {
   bool directed = false;             ///< the limit angle has an extent
   Vector6 extent = Vector6::Zero();  ///< normalised length squared; rad^2 for a light at infinity
   std::vector<double> biasesPx;      ///< of the points, as its rounds left them
+  int run = -1;                      ///< see TracedRun::index()
 };
 
 /// Incident angle of a point under a light seen with N.L > 0, rad.

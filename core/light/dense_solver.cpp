@@ -4,6 +4,9 @@
 #include <ceres/ceres.h>
 
 #include <algorithm>
+#include <vector>
+
+#include "core/base/solver_trace.h"
 
 namespace glint {
 
@@ -18,6 +21,11 @@ DenseSolution solveDense(ceres::Problem& problem, int maxIterations, double tole
   options.gradient_tolerance = 0.01 * tolerance;
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
+  // Half the sum of squares, with the costs of steps that were not taken among them.
+  std::vector<double> costs;
+  for (const ceres::IterationSummary& step : summary.iterations)
+    if (step.iteration == 0 || step.step_is_successful) costs.push_back(2 * step.cost);
+  traceRound(costs);
   // The first entry of the log is the start.
   return {summary.IsSolutionUsable(), summary.termination_type == ceres::CONVERGENCE, summary.final_cost,
           std::max<int>(1, static_cast<int>(summary.iterations.size()) - 1)};

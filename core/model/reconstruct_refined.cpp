@@ -8,6 +8,7 @@
 
 #include "core/base/dense_algebra.h"
 #include "core/base/number_text.h"
+#include "core/base/solver_trace.h"
 #include "core/model/ellipse_distance.h"
 #include "core/model/reconstruct_detail.h"
 
@@ -255,6 +256,9 @@ Outcome<Reconstruction> reconstructRefined(const std::vector<ConicView>& views, 
   double damping = 1e-3;  // of the largest singular value: cautious first; it adapts by decades
   int iterations = 0;
   bool converged = false;
+  const auto inWorld = [&](const State& s) { return (origin + scale * s.centre).homogeneous().eval(); };
+  TracedRun run(prior ? "ellipsoid, centre held near the light" : "ellipsoid", inWorld(state));
+  std::vector<double> costs{linear.cost};
   for (; iterations < maxIterations && !converged; ++iterations) {
     constexpr double kEnough = 1e-14;  // the cost cannot be told apart below a hundred units of its round-off
     if (!(linear.cost > 0) || linear.gain() <= kEnough * kEnough * linear.cost) break;
@@ -268,6 +272,7 @@ Outcome<Reconstruction> reconstructRefined(const std::vector<ConicView>& views, 
       converged = linear.cost - cost <= kEnough * linear.cost && linear.gain() <= kStationary * linear.cost;
       state = next;
       linear = Linearised(rows, state);
+      costs.push_back(linear.cost);
       damping = std::max(damping * 0.03, 1e-16);  // below round-off of the singular values damping does nothing
       moved = true;
       break;
@@ -286,8 +291,12 @@ Outcome<Reconstruction> reconstructRefined(const std::vector<ConicView>& views, 
     if (!contours.rows(next, rows) || !(rows.col(9).squaredNorm() <= linear.cost * (1 + 1e-11))) break;  // round-off of the sum
     state = next;
     linear = Linearised(rows, state);
+    costs.push_back(linear.cost);
     last = length;
   }
+  traceRound(costs);
+  run.end(converged, converged ? "converged" : "out of iterations", inWorld(state));
+  traceAnswer(run.index());
 
   if (!(linear.smallest() > kRankRatio * linear.largest()))
     return Failure{Reason::RankDeficient, "several ellipsoids explain the contours equally well"};

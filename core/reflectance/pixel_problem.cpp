@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "core/base/parallel.h"
+#include "core/base/solver_trace.h"
 #include "core/light/dense_solver.h"
 #include "core/reflectance/light_radiance.h"
 
@@ -235,7 +236,15 @@ double PixelProblem::evaluations() const {
   return nodes * double(evidence_.cells);
 }
 
-Attempt solve(PixelProblem& problem, const State& start, const SolveOptions& options) {
+Eigen::Vector4d PixelProblem::worldOf(const Eigen::Vector4d& light) const {
+  Eigen::Vector4d world;
+  world << evidence_.scale * light.head<3>() + light.w() * evidence_.origin, light.w();
+  return world;
+}
+
+namespace {
+
+Attempt solveFrom(PixelProblem& problem, const State& start, const SolveOptions& options) {
   Attempt a;
   a.at = start;
   const bool atInfinity = start.atInfinity();
@@ -267,6 +276,20 @@ Attempt solve(PixelProblem& problem, const State& start, const SolveOptions& opt
     far.iterations += a.iterations;
     return far;
   }
+  return a;
+}
+
+}  // namespace
+
+Attempt solve(PixelProblem& problem, const State& start, const SolveOptions& options) {
+  TracedRun run(options.blur ? "lamp, lobe and blur from pixels" : "lamp and lobe from pixels", problem.worldOf(start.light),
+                "squares of relative radiance");
+  const Attempt a = solveFrom(problem, start, options);
+  run.end(a.converged,
+          !std::isfinite(a.cost) ? "no usable step"
+          : a.converged          ? "converged"
+                                 : "out of iterations",
+          problem.worldOf(a.at.light));
   return a;
 }
 

@@ -35,6 +35,8 @@ class PixelProblem {
   bool chooseRule(const State& at);
   /// Evaluations of the lobe in one look at all cells, with the quadrature chosen.
   double evaluations() const;
+  /// A normalised light, homogeneous, in the world.
+  Eigen::Vector4d worldOf(const Eigen::Vector4d& light) const;
 
  private:
   template <class F>

@@ -10,6 +10,7 @@
 #include <memory>
 
 #include "core/base/median.h"
+#include "core/base/solver_trace.h"
 #include "core/light/dense_solver.h"
 #include "core/reflectance/light_radiance.h"
 #include "core/reflectance/radiance_field.h"
@@ -262,6 +263,22 @@ void RadianceProblem::settle(const State& state) {
 }
 
 Attempt RadianceProblem::solve(const State& start) {
+  const auto light = [&](const State& s) {
+    Eigen::Vector4d world;
+    world << scale_ * s.at.head<3>() + s.at(3) * origin_, s.at(3);
+    return world;
+  };
+  TracedRun run("lamp and lobe from contours", light(start));
+  const Attempt a = solveFrom(start);
+  run.end(a.converged,
+          !std::isfinite(a.cost) ? "no usable step"
+          : a.converged          ? "converged"
+                                 : "out of iterations",
+          light(a.state));
+  return a;
+}
+
+Attempt RadianceProblem::solveFrom(const State& start) {
   Attempt a;
   a.state = start;
   Parameters& at = a.state.at;

@@ -99,6 +99,7 @@ class RadianceProblem {
   void chooseRule(const State& state);
   bool tooLarge(const State& state) const;
   bool judge(Attempt& a);
+  Attempt solveFrom(const State& start);
   void settle(const State& state);
   void relinearise(const State& state, bool moveFeet);
   void unbias(const State& state);

@@ -65,8 +65,37 @@ Ordered remedyJson(const Remedy& r) {
             {"held_out", partJson(r, false)}}}};
 }
 
+Ordered placeJson(const std::optional<Eigen::Vector4d>& place) {
+  return place ? Ordered({(*place)(0), (*place)(1), (*place)(2), (*place)(3)}) : Ordered();
+}
+
+Ordered fitJson(const FitTrace& fit) {
+  Ordered runs = Ordered::array();
+  for (const SolverRun& run : fit.runs) {
+    Ordered rounds = Ordered::array();
+    for (const std::vector<double>& round : run.rounds) {
+      Ordered costs = Ordered::array();
+      for (const double cost : round) costs.push_back(numberOrNull(cost));
+      rounds.push_back(std::move(costs));
+    }
+    runs.push_back({{"what", run.what},
+                    {"start", placeJson(run.start)},
+                    {"end", placeJson(run.end)},
+                    {"costs", std::move(rounds)},
+                    {"unit", run.unit},
+                    {"converged", run.converged},
+                    {"ending", run.ending},
+                    {"taken", run.answer}});
+  }
+  return {{"light", fit.key.light},
+          {"surface", textOrNull(fit.key.surface)},
+          {"failure", fit.failure ? Ordered(fit.failure->message()) : Ordered()},
+          {"runs", std::move(runs)}};
+}
+
 Ordered modelJson(const Inspection& inspection, const ModelDiagnosis& d) {
-  Ordered evidence = Ordered::array(), remedies = Ordered::array();
+  Ordered evidence = Ordered::array(), fits = Ordered::array(), remedies = Ordered::array();
+  for (const FitTrace& fit : d.fits) fits.push_back(fitJson(fit));
   for (const HighlightEvidence& e : d.evidence) evidence.push_back(evidenceJson(inspection, e));
   for (const Remedy& r : d.remedies) remedies.push_back(remedyJson(r));
   return {{"status", nameOf(d.status)},
@@ -75,6 +104,7 @@ Ordered modelJson(const Inspection& inspection, const ModelDiagnosis& d) {
           {"left_out", errorJson(ofTraining(d.unseen, true))},
           {"held_out", errorJson(ofTraining(d.unseen, false))},
           {"evidence", std::move(evidence)},
+          {"fits", std::move(fits)},
           {"remedies", std::move(remedies)},
           {"tried", d.tried},
           {"known", d.known}};
@@ -155,6 +185,8 @@ std::string diagnosisText(const Inspection& inspection, const Diagnosis& diagnos
     if (d.status == ModelDiagnosis::Status::Ok) continue;
     for (const std::string& cause : d.causes) text += "  because " + cause + "\n";
     addEvidence(inspection, d, text);
+    for (const FitTrace& fit : d.fits)
+      for (const std::string& line : textOf(fit)) text += "  fit of light " + textOf(fit.key) + ": " + line + "\n";
     addRemedies(d, text);
     addCommand(inspection, d, text);
   }

@@ -61,8 +61,9 @@ void Runner::open(const std::string& path, const Relinked& instead) {
 }
 
 void Runner::inspect(std::shared_ptr<const Scene> scene, const InspectionRequest& request, InspectionPtr previous, int frame) {
-  const auto work = [this, previous = std::move(previous), frame](const JobToken& token, const OpenedPtr& asked) mutable {
-    ProgressFn progress = progressOf(token, cutOff_ ? kLongGraceMs : kGraceMs);
+  auto stages = [this, previous = std::move(previous), frame](const JobToken& token, const OpenedPtr& asked,
+                                                                    const std::shared_ptr<StageTimes>& times) mutable {
+    ProgressFn progress = progressOf(token, cutOff_ ? kLongGraceMs : kGraceMs, times);
     if (engine_.inspectOneFrame && frame >= 0) {
       cutOff_ = true;
       const auto ahead = std::make_shared<const Inspection>(
@@ -76,11 +77,23 @@ void Runner::inspect(std::shared_ptr<const Scene> scene, const InspectionRequest
         if (!token.wanted()) throw Stopped{};
         QThread::msleep(2);
       }
-      progress = progressOf(token, kRestGraceMs);
+      progress = progressOf(token, kRestGraceMs, times);
     }
     Inspection all = engine_.inspect(asked->scene, asked->request, progress, previous.get());
     sinceRest_.start();
     return all;
+  };
+  const auto work = [this, stages = std::move(stages)](const JobToken& token, const OpenedPtr& asked) mutable {
+    const auto times = std::make_shared<StageTimes>();
+    const auto say = [&](const QString& line) { token.deliver([this, line] { emit timed(line); }); };
+    try {
+      Inspection all = stages(token, asked, times);
+      say(tr("Computed: %1").arg(toQString(times->text())));
+      return all;
+    } catch (...) {
+      if (!token.overtaken()) say(tr("Ended in stage \"%1\": %2").arg(toQString(times->stage()), toQString(times->text())));
+      throw;
+    }
   };
   compute(asked(std::move(scene), request), work, &Runner::finished);
 }
@@ -132,11 +145,12 @@ void Runner::compute(About about, Work work, void (Runner::*tell)(const std::sha
       Asks::Newest);
 }
 
-ProgressFn Runner::progressOf(const JobToken& token, int graceMs) {
+ProgressFn Runner::progressOf(const JobToken& token, int graceMs, std::shared_ptr<StageTimes> times) {
   const auto show = [this](const StageEvent& e) { emit progressed(toQString(e.stage), e.done, e.total); };
   QElapsedTimer clock;
   clock.start();
-  return [token, graceMs, clock, go = token.progress(show)](const StageEvent& e) {
+  return [token, graceMs, clock, times = std::move(times), go = token.progress(show)](const StageEvent& e) {
+    if (times) times->note(e);
     return !(token.overtaken() && clock.elapsed() > graceMs) && go(e);
   };
 }

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/stage_times.h"
 #include "core/capture/capture.h"
 #include "gui/base/job_queue.h"
 #include "gui/document/engine.h"
@@ -92,6 +93,8 @@ class Runner : public QObject {
   void measured(const glint::gui::TradeoffPtr& tradeoff, const glint::gui::OpenedPtr& computedFor);
   void influenceMeasured(const glint::gui::InfluencePtr& influence, const glint::gui::InspectionPtr& inspection);
   void failed(const QString& oneLine);
+  /// An inspection has come to its end: each stage with its time; or the stage in which it ended early. Before finished() or failed().
+  void timed(const QString& oneLine);
   /// With failed() after it: opening can be tried again with the place of what is missing.
   void inputMissing(const glint::gui::MissingPtr& missing);
   /// With failed() after it: opening can be tried again when a person allows the folder.
@@ -106,7 +109,7 @@ class Runner : public QObject {
   /// @param about  comes with the result in the signal.
   template <class Work, class About, class Result>
   void compute(About about, Work work, void (Runner::*tell)(const std::shared_ptr<const Result>&, const About&));
-  ProgressFn progressOf(const JobToken& token, int graceMs = kGraceMs);
+  ProgressFn progressOf(const JobToken& token, int graceMs = kGraceMs, std::shared_ptr<StageTimes> times = {});
   void end(const JobEnd& end);
 
   Engine engine_;

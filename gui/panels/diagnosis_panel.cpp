@@ -14,6 +14,7 @@
 #include "core/report/diagnosis_report.h"
 #include "core/selection/selection.h"
 #include "gui/base/text.h"
+#include "viz/solver_runs.h"
 
 namespace glint::gui {
 namespace {
@@ -151,7 +152,18 @@ void DiagnosisPanel::refresh() {
   else
     for (const auto& [model, remedy] : found_) addRemedy(model, remedy);
   emit problemsChanged(problems_);
+  tellRuns();
   showState();
+}
+
+void DiagnosisPanel::tellRuns() {
+  std::shared_ptr<std::vector<viz::DrawnRuns>> runs;
+  if (diagnosis_ && of_ == document_.inspection()) {
+    runs = std::make_shared<std::vector<viz::DrawnRuns>>();
+    for (const ModelDiagnosis& d : diagnosis_->models)
+      for (const FitTrace& fit : d.fits) runs->push_back({d.model, fit.key.light, fit.runs});
+  }
+  emit runsChanged(runs);
 }
 
 void DiagnosisPanel::fillProblems() {
@@ -198,6 +210,10 @@ void DiagnosisPanel::fillDiagnosis(const ModelDiagnosis& d) {
   if (d.status == ModelDiagnosis::Status::Ok) return;
   QTreeWidgetItem* const top = itemOf(d.model, tr("%1: %2").arg(toQString(d.model), QLatin1String(nameOf(d.status))));
   for (const std::string& cause : d.causes) addLine(top, tr("because %1").arg(toQString(cause)));
+  for (const FitTrace& fit : d.fits)
+    for (const std::string& line : textOf(fit))
+      addLine(top, tr("fit of light %1: %2").arg(toQString(textOf(fit.key)), toQString(line)))
+          ->setData(0, kLight, toQString(fit.key.light));
   for (const Remedy& remedy : d.remedies) addRemedy(d.model, remedy);
   if (d.remedies.empty()) addLine(top, tr("nothing helps: %1 changes were tried").arg(d.tried));
   std::vector<const HighlightEvidence*> against;

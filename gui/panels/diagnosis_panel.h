@@ -8,6 +8,10 @@
 #include "gui/base/job_queue.h"
 #include "gui/document/document.h"
 
+namespace glint::viz {
+struct DrawnRuns;
+}
+
 class QLabel;
 class QPushButton;
 class QTreeWidget;
@@ -36,11 +40,14 @@ class DiagnosisPanel : public QWidget {
   void problemsChanged(int count);  ///< models that do not answer, and frames with missed or spurious highlights or large errors
   void problem(const QString& oneLine);
   void message(const QString& oneLine);
+  /// How the fits that were asked about went, for the 3D view; null = nothing is known, or of an earlier state.
+  void runsChanged(const std::shared_ptr<const std::vector<glint::viz::DrawnRuns>>& runs);
 
  private:
   void refresh();
   void fillProblems();
   void fillDiagnosis(const ModelDiagnosis& model);
+  void tellRuns();
   /// The line of a model, made with this text where there is none.
   QTreeWidgetItem* itemOf(const std::string& model, const QString& otherwise);
   void addRemedy(const std::string& model, const Remedy& remedy);

@@ -139,6 +139,12 @@ void SceneViews::setLamps(const std::shared_ptr<const std::vector<LampAnswer>>& 
   scheduleRender();
 }
 
+void SceneViews::setRuns(const std::shared_ptr<const std::vector<viz::DrawnRuns>>& runs) {
+  runs_ = runs;
+  for (auto& view : views_) view->setRuns(runs);
+  scheduleRender();
+}
+
 std::array<double, 4> SceneViews::placeOf(int view) const { return viewport(options_, view); }
 
 void SceneViews::setDark(bool dark) {
@@ -174,6 +180,7 @@ std::unique_ptr<viz::SceneView> SceneViews::copyOf(int at) {
   copy->setDarkBackground(dark_);
   copy->setInspection(inspection_);
   copy->setLamps(lamps_);
+  copy->setRuns(runs_);
   copy->setSelection(selection_);
   for (const viz::Layer& layer : viz::sceneLayers()) copy->setLayerVisible(layer.name, view(at).layerVisible(layer.name));
   copy->setModels(o.models);

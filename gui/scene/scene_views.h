@@ -58,6 +58,8 @@ class SceneViews : public QWidget {
   void setLayerVisible(int view, const std::string& name, bool visible);
   /// What the layer "measured-lamps" draws; null = nothing.
   void setLamps(const std::shared_ptr<const std::vector<LampAnswer>>& lamps);
+  /// What the layer "solver-runs" draws; null = nothing.
+  void setRuns(const std::shared_ptr<const std::vector<viz::DrawnRuns>>& runs);
   void setDark(bool dark);
   void apply(const SceneOptions& options);
   /// Draws soon; several changes in one turn of the event loop make one picture.
@@ -112,6 +114,7 @@ class SceneViews : public QWidget {
   std::array<bool, kMostSceneViews> own_{};  ///< a view that is not shown comes back where it stands
   std::shared_ptr<const Inspection> inspection_;
   std::shared_ptr<const std::vector<LampAnswer>> lamps_;
+  std::shared_ptr<const std::vector<viz::DrawnRuns>> runs_;
   draw::Selection selection_;
   SceneOptions options_;
   VtkCanvas* widget_;

@@ -48,6 +48,7 @@
 #include "gui/plots/plots_panel.h"
 #include "gui/scene/layer_list.h"
 #include "gui/scene/scene_panel.h"
+#include "gui/scene/scene_views.h"
 #include "gui/scene/scene_tree.h"
 #include "gui/timeline/timeline.h"
 #include "gui/whatif/what_if_panel.h"
@@ -132,6 +133,7 @@ MainWindow::MainWindow(Engine engine, QWidget* parent)
     runFailed_ = false;  // the message stays
     if (document_.stale()) recompute();
   });
+  connect(&runner_, &Runner::timed, this, &MainWindow::log);
   connect(&runner_, &Runner::stopped, this, [this] { log(tr("Computation stopped")); });
   // A run that ends and leaves what is on screen out of date was stopped, or has failed.
   connect(&runner_, &Runner::busyChanged, this, [this, updating = true](bool busy) mutable {
@@ -282,6 +284,7 @@ void MainWindow::buildDocks() {
   QDockWidget* const problems = docks_.add("problems", tr("Problems"), diagnosis_, Qt::BottomDockWidgetArea, "errors");
   connect(diagnosis_, &DiagnosisPanel::problem, this, &MainWindow::showProblem);
   connect(diagnosis_, &DiagnosisPanel::message, this, &MainWindow::tell);
+  connect(diagnosis_, &DiagnosisPanel::runsChanged, scene_, [this](const auto& runs) { scene_->views().setRuns(runs); });
   connect(diagnosis_, &DiagnosisPanel::problemsChanged, problems,
           [problems](int count) { problems->setWindowTitle(count == 0 ? tr("Problems") : tr("Problems (%1)").arg(count)); });
   plots_ = new PlotsPanel(document_);

@@ -136,6 +136,7 @@ TEST_F(StoredScenes, LookAsTheyDid) {
 TEST_F(StoredScenes, AMissingLayerIsNoticed) {
   for (const Layer& layer : sceneLayers()) {
     if (layer.name == "measured-lamps") continue;  // empty until lamps are measured: tests/viz/measured_lamps_test.cpp
+    if (layer.name == "solver-runs") continue;     // empty until it is asked why models fail: tests/viz/solver_runs_test.cpp
     double most = 0;
     for (const char* look : kLooks) {
       const Image without = picture(look, layer.name);
