@@ -62,7 +62,7 @@ void Runner::open(const std::string& path, const Relinked& instead) {
 
 void Runner::inspect(std::shared_ptr<const Scene> scene, const InspectionRequest& request, InspectionPtr previous, int frame) {
   auto stages = [this, previous = std::move(previous), frame](const JobToken& token, const OpenedPtr& asked,
-                                                                    const std::shared_ptr<StageTimes>& times) mutable {
+                                                              const std::shared_ptr<StageTimes>& times) mutable {
     ProgressFn progress = progressOf(token, cutOff_ ? kLongGraceMs : kGraceMs, times);
     if (engine_.inspectOneFrame && frame >= 0) {
       cutOff_ = true;
