@@ -11,6 +11,7 @@
 namespace glint::gui {
 
 const char* const kSavedView = "scene/view/";
+const char* const kAxisViews = "axes";
 
 namespace {
 const std::string kNone;
@@ -71,7 +72,8 @@ SceneOptions sceneOptions(const Document& document) {
   const bool wipe = o.arrangement == Arrangement::Wipe;
   o.linked = wipe || isOn(document, "scene/linked", true);
   o.wipe = std::clamp(document.option("scene/wipe", 0.5), 0.02, 0.98);
-  o.parallel = isOn(document, "scene/parallel", false);
+  const bool axes = document.option("scene/parallel", kNone) == kAxisViews && o.arrangement == Arrangement::Grid;
+  o.parallel = !axes && isOn(document, "scene/parallel", false);
   o.solo = isOn(document, "scene/solo", false);
   o.glyphScale = std::clamp(document.option("scene/glyph-scale", 1.0), 0.05, 20.0);
   o.opacity = std::clamp(document.option("scene/photograph-opacity", 0.5), 0.0, 1.0);
@@ -100,6 +102,7 @@ SceneOptions sceneOptions(const Document& document) {
       view.models = {models};
     else if (models.empty() && wipe && !all.empty())
       view.models = {i == 0 ? all.front() : all.back()};  // something to compare
+    view.parallel = o.parallel || (axes && i + 1 < kMostSceneViews);
     if (o.viewCount() == 1) continue;
     const std::string letter(1, char('A' + i));
     view.name = letter + (view.models.empty() ? "" : ": " + *view.models.begin());

@@ -18,9 +18,9 @@ enum class Arrangement { One, SideBySide, Grid, Wipe };
 /// What the document's options say about the 3D views ("scene/..."), with their defaults.
 struct SceneOptions {
   Arrangement arrangement = Arrangement::One;
-  bool linked = true;  ///< cameras move together, one eye for all; always in a wipe
-  double wipe = 0.5;   ///< where the line stands, share of the width
-  bool parallel = false, solo = false;
+  bool linked = true;                   ///< cameras move together, one eye for all; always in a wipe
+  double wipe = 0.5;                    ///< where the line stands, share of the width
+  bool parallel = false, solo = false;  ///< `parallel`: all views; else each its own
   double glyphScale = 1, opacity = 0.5;
   bool lampsMove = false;  ///< true lights can be dragged
   viz::CameraColours colours;
@@ -28,7 +28,8 @@ struct SceneOptions {
   struct View {
     viz::Eye eye = viz::Eye::Outside;
     std::set<std::string> models;  ///< empty = all
-    std::string name;              ///< "A: dual"; "" where there is nothing to tell apart
+    bool parallel = false;
+    std::string name;  ///< "A: dual"; "" where there is nothing to tell apart
   };
   std::array<View, kMostSceneViews> views;
 
@@ -52,6 +53,8 @@ void setOwnLayers(Document& document, int view, bool own);
 
 /// Saved 3D cameras are options "scene/view/NAME", so that saving one is a step of undo like any other.
 extern const char* const kSavedView;
+/// Value of the option "scene/parallel": of four views, all but the last are without perspective.
+extern const char* const kAxisViews;
 std::string toText(const viz::ViewPoint& view);
 std::optional<viz::ViewPoint> viewPointFromText(const std::string& text);
 

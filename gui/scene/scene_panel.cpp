@@ -21,6 +21,7 @@
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
 #include "gui/document/frame_roles.h"
+#include "gui/scene/axis_views.h"
 #include "gui/scene/before_results.h"
 #include "gui/scene/camera_glide.h"
 #include "gui/scene/scene_views.h"
@@ -323,9 +324,8 @@ void ScenePanel::setEye(viz::Eye eye) {
 }
 
 void ScenePanel::setArrangement(Arrangement arrangement) {
-  document_.setOption(
-      "scene/views", std::string(toText(arrangement)),
-      arrangement == Arrangement::Wipe ? tr("3D views: wipe") : tr("3D views: %1").arg(QLatin1String(toText(arrangement))));
+  document_.setOption("scene/views", std::string(toText(arrangement)),
+                      tr("3D views: %1").arg(QLatin1String(toText(arrangement))));
 }
 
 void ScenePanel::setColourBy(const QString& by) {
@@ -547,6 +547,7 @@ QMenu* ScenePanel::addArrangeMenu(Actions& actions, QMenu* menu) {
     toggles_.arrangements.append(
         {addToggle(actions, a.id, arrange, tr(a.title), {}, [this, to = a.arrangement](bool) { setArrangement(to); }),
          a.arrangement});
+  addAxisViews(actions, arrange, document_, *views_);
   arrange->addSeparator();
   toggles_.linked = addToggle(actions, "view.link-views", arrange, tr("&Linked cameras"),
                               {{int(Qt::CTRL) | Qt::Key_L}, {}, tr("All 3D views move together")}, [this](bool on) {

@@ -13,6 +13,7 @@
 #include <QWheelEvent>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "gui/base/draw_turns.h"
@@ -21,15 +22,19 @@
 #include "gui/base/vtk_canvas.h"
 #include "viz/text_lock.h"
 #include "viz/view_camera.h"
+#include "viz/view_motion.h"
 
 namespace glint::gui {
 
 namespace {
-constexpr int kStillMs = 300;        // after the last movement everything is drawn in full
-constexpr int kCaughtUpMs = 250;     // without another picture that was late
-constexpr int kQuickMs = 40;         // where that took longer, what changes is first drawn the quick way
-constexpr int kPhotographPx = 4096;  // widest photograph while looking through a camera
-constexpr double kGrabPx = 6;        // about the wipe's line
+constexpr int kStillMs = 300;                           // after the last movement everything is drawn in full
+constexpr int kCaughtUpMs = 250;                        // without another picture that was late
+constexpr int kQuickMs = 40;                            // where that took longer, what changes is first drawn the quick way
+constexpr int kPhotographPx = 4096;                     // widest photograph while looking through a camera
+constexpr double kGrabPx = 6;                           // about the wipe's line
+constexpr double kZoomStep = 1.2;                       // of a notch of the wheel: twelve notches are a factor of nine
+constexpr int kOneZoomMs = 500;                         // notches that follow one another zoom to the same point
+constexpr double kTurn = 200 * std::numbers::pi / 180;  // of a drag across the whole view, as in other VTK programs
 
 /// left, bottom, right, top of each view, shares of the window.
 std::array<double, 4> viewport(const SceneOptions& o, int view) {
@@ -167,7 +172,7 @@ void SceneViews::apply(const SceneOptions& options) {
     v.setCameraColours(options.colours);
     v.setPhotographOpacity(options.opacity);
     if (i >= shown_) continue;  // the others follow when they are shown
-    v.setParallel(options.parallel);
+    v.setParallel(o.parallel);
     v.setEye(o.eye);
   }
   fetchPhotograph();
@@ -189,7 +194,7 @@ std::unique_ptr<viz::SceneView> SceneViews::copyOf(int at) {
   copy->setHidden(options_.hidden);
   copy->setCameraColours(options_.colours);
   copy->setPhotographOpacity(options_.opacity);
-  copy->setParallel(options_.parallel);
+  copy->setParallel(o.parallel);
   copy->setViewPoint(view(at).viewPoint());
   copy->setEye(o.eye);
   if (copy->looksThrough()) copy->setPhotograph(selection_.frame, photographs_->get(selection_.frame, kPhotographPx).texture);
@@ -352,7 +357,7 @@ std::vector<viz::ViewPoint> SceneViews::places() const {
 void SceneViews::setPlaces(const std::vector<viz::ViewPoint>& places) {
   for (int i = 0; i < kMostSceneViews; ++i) {
     view(i).setViewPoint(places[std::size_t(i)]);
-    view(i).setParallel(options_.parallel);
+    view(i).setParallel(options_.views[std::size_t(i)].parallel);
   }
   scheduleRender();
 }
@@ -384,18 +389,46 @@ QPointF SceneViews::toDisplay(const QPointF& position) const {
   return {position.x() * widget_->devicePixelRatioF(), (widget_->height() - position.y()) * widget_->devicePixelRatioF()};
 }
 
-bool SceneViews::mouse(QEvent* event) {
-  if (event->type() == QEvent::Wheel) {
-    const auto* wheel = static_cast<QWheelEvent*>(event);
-    const int at = viewAt(wheel->position());
-    activate(at);
-    if (!view(at).looksThrough()) return false;
-    const double factor = std::pow(1.2, wheel->angleDelta().y() / 120.0);
-    const QPointF display = toDisplay(wheel->position());
+Eigen::Vector3d SceneViews::underPointer(const QPointF& position) const {
+  const QPointF display = toDisplay(position);
+  const viz::SceneView& view = *views_[std::size_t(active_)];
+  if (const auto hit = view.pick(int(display.x()), int(display.y()) - 1)) return hit->position;
+  return viz::worldAt(view.renderer(), display.x(), display.y(), view.viewPoint().focalPoint);
+}
+
+bool SceneViews::wheel(const QWheelEvent& event) {
+  const int at = viewAt(event.position());
+  activate(at);
+  const double factor = std::pow(kZoomStep, event.angleDelta().y() / 120.0);
+  const QPointF display = toDisplay(event.position());
+  if (view(at).looksThrough()) {
     for (int i = 0; i < shown_; ++i)
       if (i == at || options_.arrangement == Arrangement::Wipe) view(i).zoomPhotograph(factor, display.x(), display.y());
-    scheduleRender();
-    return true;
+  } else {
+    if (!sinceWheel_.isValid() || sinceWheel_.elapsed() > kOneZoomMs || wheelAt_ != event.position())
+      zoomedAt_ = underPointer(event.position());
+    wheelAt_ = event.position();
+    sinceWheel_.start();
+    active().setViewPoint(viz::zoomedAbout(active().viewPoint(), zoomedAt_, factor));
+    full_.start();
+    setMoving(true);
+  }
+  scheduleRender();
+  return true;
+}
+
+void SceneViews::turn(const QPointF& from, const QPointF& to) {
+  if (!pivot_) pivot_ = underPointer(pressed_);
+  const std::array<double, 4> v = viewport(options_, active_);
+  const double width = std::max(1.0, (v[2] - v[0]) * widget_->width()), height = std::max(1.0, (v[3] - v[1]) * widget_->height());
+  active().setViewPoint(
+      viz::turnedAbout(active().viewPoint(), *pivot_, kTurn * (to.x() - from.x()) / width, kTurn * (from.y() - to.y()) / height));
+  scheduleRender();
+}
+
+bool SceneViews::mouse(QEvent* event) {
+  if (event->type() == QEvent::Wheel) {
+    return wheel(*static_cast<QWheelEvent*>(event));
   }
   const auto* e = static_cast<QMouseEvent*>(event);
   const QPointF at = e->localPos();
@@ -407,6 +440,8 @@ bool SceneViews::mouse(QEvent* event) {
     }
     activate(viewAt(at));
     drag_ = active().looksThrough() ? Drag::Photograph : Drag::Vtk;
+    turns_ = drag_ == Drag::Vtk && e->button() == Qt::LeftButton && e->modifiers() == Qt::NoModifier;
+    pivot_.reset();
     if (options_.lampsMove && e->button() == Qt::LeftButton && drag_ == Drag::Vtk) {
       const QPointF display = toDisplay(at);
       if (const auto hit = active().pickLamp(int(display.x()), int(display.y()) - 1)) {
@@ -435,8 +470,10 @@ bool SceneViews::mouse(QEvent* event) {
           viz::worldAt(renderer, to.x(), to.y(), lamp_.position) - viz::worldAt(renderer, from.x(), from.y(), lamp_.position);
       emit lampMoved(exactQString(lamp_.light), by.x(), by.y(), by.z());
     }
+    const bool turns = drag_ == Drag::Vtk && turns_ && (e->buttons() & Qt::LeftButton);
+    if (turns) turn(last_, at);
     last_ = at;
-    return drag_ != Drag::Vtk;
+    return turns || drag_ != Drag::Vtk;
   }
   // Released
   const Drag was = std::exchange(drag_, Drag::None);

@@ -107,6 +107,10 @@ class SceneViews : public QWidget {
   void endBehind();
   void syncCameras();
   bool mouse(QEvent* event);
+  bool wheel(const QWheelEvent& event);
+  /// What the user moves about: what lies under a point of the active view, else a place there as far away as the focal point.
+  Eigen::Vector3d underPointer(const QPointF& position) const;
+  void turn(const QPointF& from, const QPointF& to);
 
   std::shared_ptr<viz::LayerCache> cache_;
   PhotographStore* photographs_;
@@ -125,7 +129,12 @@ class SceneViews : public QWidget {
   bool behind_ = false;
   QPointF pressed_, last_;
   Drag drag_ = Drag::None;
-  viz::Picked lamp_;  ///< what is dragged
+  viz::Picked lamp_;                      ///< what is dragged
+  bool turns_ = false;                    ///< the plain left button was pressed: the view turns about `pivot_`
+  std::optional<Eigen::Vector3d> pivot_;  ///< looked for when the drag begins
+  Eigen::Vector3d zoomedAt_{0, 0, 0};     ///< of the last turn of the wheel
+  QPointF wheelAt_;
+  QElapsedTimer sinceWheel_;
   int active_ = 0, shown_ = 0;
   bool renderPending_ = false, dark_ = true;
   std::deque<vtkSmartPointer<vtkImageData>> toLoad_;  ///< photographs that wait for the graphics card

@@ -88,6 +88,7 @@ QObject* makeWindowSizeTest();
 QObject* makeCameraPickingTest();
 QObject* makePlotsTest();
 QObject* makeSceneTest();
+QObject* makeNavigationTest();
 QObject* makeSceneTreeTest();
 QObject* makeSaveTest();
 QObject* makeHostileNamesTest();

@@ -27,6 +27,7 @@ int main(int argc, char** argv) {
       {"linking", makeLinkingTest},
       {"window", makeWindowTest},
       {"scene", makeSceneTest},
+      {"navigation", makeNavigationTest},
       {"scene_tree", makeSceneTreeTest},
       {"session", makeSessionTest},
       {"program", makeProgramTest},
