@@ -85,10 +85,12 @@ std::vector<ParamSpec>& params() {
        0,
        0,
        0,
-       {"smooth", "lobe"},
+       {"smooth", "lobe", "colours"},
        "Smooth: a quadratic fitted to the pixels around a highlight; it absorbs the tail of a long-tailed lobe, which makes "
        "contours too small. Lobe: the lobe is fitted to the pixels of the training frames, and contours are found again over "
-       "the background that remains. I = K S + B.",
+       "the background that remains. Colours: in each frame whose colours tell diffuse light from the lamp's, contours are found "
+       "on "
+       "the specular part alone; the others keep the smooth one and say why. I = K S + B.",
        "detect"},
       {"detect.motion",
        "Bright texture",

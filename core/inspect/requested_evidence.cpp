@@ -18,6 +18,9 @@ FrameEvidence evidenceFor(const Scene& scene, int frame, const InspectionRequest
     return evidence;
   }
   evidence = gatherEvidence(scene, frame, request.source, request.settings);
+  const bool detected = !evidence.highlights.empty() && !evidence.highlights.front().fromScene;
+  if (detected && request.settings.text("detect.background") == "colours")
+    evidence.notParted = partEvidence(scene, frame, request.source, request.settings, evidence).reason;
   if (request.truthFolder.empty()) return evidence;
   evidence.againstTruth = true;
   Outcome<std::vector<Highlight>> truth = readTruth(request.truthFolder, scene, frame, request.settings.number("detect.level"));

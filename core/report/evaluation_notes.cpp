@@ -2,6 +2,8 @@
 #include "core/report/evaluation_notes.h"
 
 #include <algorithm>
+#include <map>
+#include <utility>
 
 #include "core/base/number_list.h"
 
@@ -19,6 +21,7 @@ FrameNote noteOf(const Inspection& inspection, int frame) {
   }
   for (const Highlight& h : e.scored()) (h.fromScene ? note.given : note.detected) = true;
   note.unreadable = e.scoringFailure() && e.scoringFailure()->reason == Reason::FrameUnreadable;
+  note.notParted = e.notParted;
   return note;
 }
 
@@ -44,6 +47,23 @@ std::string clippedWarning(const std::vector<FrameNote>& notes) {
   if (!others.empty()) text += (training.empty() ? "frames " : " and other frames ") + shortList(others);
   return text + (known ? ": the peak, and so the level of the contour, comes from the lobe fitted around the clipped pixels"
                        : ": the peak is unknown, so a contour lies at a smaller fraction of it than the stated level");
+}
+
+std::string notPartedWarning(const std::vector<FrameNote>& notes) {
+  std::map<std::string, std::vector<int>> frames;
+  for (const FrameNote& n : notes)
+    if (!n.notParted.empty() && (n.training || n.heldOut)) frames[n.notParted].push_back(n.frame);
+  std::string text;
+  for (const auto& [reason, which] : frames)
+    text += (text.empty() ? "frames " : "; frames ") + shortList(which) + " (" + reason + ")";
+  return text.empty() ? "" : "colours do not tell what is specular, and the smooth background is used, in " + text;
+}
+
+std::vector<std::string> evidenceWarnings(const std::vector<FrameNote>& notes) {
+  std::vector<std::string> warnings;
+  for (std::string warning : {clippedWarning(notes), notPartedWarning(notes)})
+    if (!warning.empty()) warnings.push_back(std::move(warning));
+  return warnings;
 }
 
 std::string scoredAgainst(const std::vector<FrameNote>& notes) {

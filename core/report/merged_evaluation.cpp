@@ -278,8 +278,7 @@ MergedEvaluation mergedEvaluation(const std::vector<std::string>& files) {
     heldOut.unreadable += r.note.heldOut && r.note.unreadable;
   }
 
-  std::vector<std::string> warnings;
-  if (std::string clipped = clippedWarning(notes); !clipped.empty()) warnings.push_back(std::move(clipped));
+  std::vector<std::string> warnings = evidenceWarnings(notes);
   std::vector<std::pair<std::string, ModelSummary>> summaries;
   Json models = Json::object();
   for (const std::string& name : first.checked.at("models").keys()) {

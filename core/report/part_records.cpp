@@ -44,6 +44,7 @@ std::string jsonOf(const FrameRecord& r) {
   Json j = {{"frame", r.note.frame},       {"training", r.note.training},      {"held_out", r.note.heldOut},
             {"clipped", r.note.clipped},   {"level_known", r.note.levelKnown}, {"given", r.note.given},
             {"detected", r.note.detected}, {"unreadable", r.note.unreadable}};
+  if (!r.note.notParted.empty()) j["not_parted"] = r.note.notParted;
   if (r.detection)
     j["detection"] = {{"missed", r.detection->missed},
                       {"contour_error_pct", numbersJson(r.detection->percent)},
@@ -61,6 +62,7 @@ FrameRecord readFrameRecord(const JsonNode& j) {
   r.note.given = j.at("given").boolean();
   r.note.detected = j.at("detected").boolean();
   r.note.unreadable = j.at("unreadable").boolean();
+  if (const std::optional<JsonNode> reason = j.find("not_parted")) r.note.notParted = reason->text();
   if (const std::optional<JsonNode> d = j.find("detection")) {
     r.detection = FrameDetection{};
     r.detection->missed = countIn(d->at("missed"));

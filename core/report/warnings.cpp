@@ -11,8 +11,7 @@ std::string fitWarning(const std::string& model, const std::string& light, const
 }
 
 std::vector<std::string> warningsOf(const Inspection& inspection) {
-  std::vector<std::string> warnings;
-  if (std::string clipped = clippedWarning(notesOf(inspection)); !clipped.empty()) warnings.push_back(std::move(clipped));
+  std::vector<std::string> warnings = evidenceWarnings(notesOf(inspection));
   for (const std::string& name : inspection.request.models) {
     const auto model = inspection.models.find(name);
     if (model == inspection.models.end()) continue;

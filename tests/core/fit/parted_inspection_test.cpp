@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// detect.background = colours in an inspection: contours on the specular part, and a warning where the colours do not tell it.
+#include "core/inspect/requested_evidence.h"
+#include "core/report/evaluation_notes.h"
+#include "core/report/warnings.h"
+#include "tests/core/fit/coloured_scene.h"
+
+namespace glint::parted_inspection_tests {
+
+using test::Coloured;
+
+FrameEvidence evidenceOf(const Coloured& c, const std::string& background) {
+  InspectionRequest request;
+  request.settings.set("detect.background", background);
+  return evidenceFor(c.scene, 0, request);
+}
+
+double errorPx(const Coloured& c, const FrameEvidence& e) {
+  return test::meanDistance(e.highlights.at(0).contour, c.blob.levelSet(0.5));
+}
+
+Inspection inspectionOf(const Coloured& c, FrameEvidence evidence) {
+  Inspection r;
+  r.scene = std::make_shared<const Scene>(c.scene);
+  r.evidence = {std::move(evidence)};
+  r.train.frames = {0};
+  return r;
+}
+
+TEST(ColoursAsBackground, TheContourIsTheLobesAndNothingIsWarnedOf) {
+  for (const bool distorted : {false, true}) {
+    const Coloured c(false, distorted);
+    const FrameEvidence smooth = evidenceOf(c, "smooth"), parted = evidenceOf(c, "colours");
+    EXPECT_LT(errorPx(c, parted), 0.1);
+    EXPECT_GT(errorPx(c, smooth), 3 * errorPx(c, parted));
+    EXPECT_EQ(parted.notParted, "");
+    EXPECT_TRUE(warningsOf(inspectionOf(c, parted)).empty());
+  }
+}
+
+TEST(ColoursAsBackground, GreyFramesKeepTheSmoothOneAndSayWhy) {
+  const Coloured c(true, false);
+  const FrameEvidence smooth = evidenceOf(c, "smooth"), parted = evidenceOf(c, "colours");
+  EXPECT_EQ(parted.highlights.at(0).contour.points, smooth.highlights.at(0).contour.points);
+  EXPECT_EQ(parted.notParted, "the image is grey");
+  EXPECT_EQ(smooth.notParted, "") << "nobody asked";
+  const std::vector<std::string> warnings = warningsOf(inspectionOf(c, parted));
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_EQ(warnings[0],
+            "colours do not tell what is specular, and the smooth background is used, in frames 0 (the image is grey)");
+}
+
+TEST(ColoursAsBackground, ReasonsAreListedWithTheirFrames) {
+  std::vector<FrameNote> notes(5);
+  for (int f = 0; f < 5; ++f) {
+    notes[std::size_t(f)].frame = f;
+    notes[std::size_t(f)].heldOut = f != 4;  // the last one is excluded
+    notes[std::size_t(f)].notParted = f == 1 ? "too much noise" : f == 3 ? "" : "the image is grey";
+  }
+  EXPECT_EQ(
+      notPartedWarning(notes),
+      "colours do not tell what is specular, and the smooth background is used, in frames 0, 2 (the image is grey); frames 1 "
+      "(too much noise)");
+}
+
+}  // namespace glint::parted_inspection_tests
