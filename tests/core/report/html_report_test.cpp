@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "core/base/html_text.h"
 #include "core/report/report.h"
 #include "tests/core/inspect/exact_scene.h"
 
@@ -23,7 +24,7 @@ Inspection sheetRun() {
 
 TEST(HtmlReport, NamesWhatWasMissedAndWhy) {
   Inspection run = sheetRun();
-  EXPECT_THAT(evaluationHtml(run, {}), Not(HasSubstr("Missed highlights")));
+  EXPECT_THAT(evaluationHtml(run, {}), Not(HasSubstr(" missed</td>")));
   for (FrameComparison& c : run.models.at("dual").frames) {
     if (c.frame != 0 && c.frame != 5) continue;  // 0 trains: it is not part of what the report is about
     ASSERT_FALSE(c.rows.empty());
@@ -31,13 +32,53 @@ TEST(HtmlReport, NamesWhatWasMissedAndWhy) {
     c.rows[0].failure = Failure{Reason::NotReached, "frame " + std::to_string(c.frame) + " <went astray>"};
   }
   const std::string html = evaluationHtml(run, {});
-  EXPECT_THAT(html, HasSubstr("Missed highlights"));
-  EXPECT_THAT(html, HasSubstr("frame 5 &lt;went astray&gt;"));
-  const std::string table =
-      html.substr(html.find("Missed highlights"), html.find("Worst frames") - html.find("Missed highlights"));
-  EXPECT_THAT(table, Not(HasSubstr("frame 0")));
+  EXPECT_THAT(html, HasSubstr("<td>1 missed</td>"));
+  EXPECT_THAT(html, HasSubstr("frame 5 &lt;went astray&gt;</td><td class=\"text\">5 (v5)</td>"));
+  EXPECT_THAT(html.substr(html.find("Models</h2>")), Not(HasSubstr("frame 0 &lt;went")));
   EXPECT_THAT(html.substr(html.find("Worst frames")), HasSubstr("<b>frame 5</b>")) << "it is shown, and first";
-  EXPECT_LT(html.find("<b>frame 5</b>"), html.find("<b>frame 4</b>"));
+  const std::string worst = html.substr(html.find("Worst frames"));
+  EXPECT_LT(worst.find("<b>frame 5</b>"), worst.find("<b>frame 4</b>"));
+  EXPECT_THAT(html, HasSubstr("<b>Missed</b>, <b>frame 5</b>")) << "the summary shows it, too";
+}
+
+TEST(HtmlReport, WhatIsMissedForOneReasonIsOneRow) {
+  Inspection run = sheetRun();
+  for (FrameComparison& c : run.models.at("dual").frames) {
+    c.rows.at(0).metrics.reset();
+    c.rows[0].failure = Failure{Reason::NotReached, "the same"};
+  }
+  const std::string html = evaluationHtml(run, {});
+  EXPECT_THAT(html, HasSubstr("<td>2 missed</td>"));
+  EXPECT_THAT(html, HasSubstr(">4 (v4), 5 (v5)</td>"));
+}
+
+/// Words of models come from the models themselves, so that they are the same everywhere.
+TEST(HtmlReport, BeginsInWordsAndExplainsTheModels) {
+  ReportContext context;
+  context.input = "a & b";
+  const std::string html = evaluationHtml(sheetRun(), context);
+  const std::size_t inShort = html.find("In short"), doubt = html.find("What to doubt"), table = html.find("Numbers</h2>");
+  ASSERT_NE(inShort, std::string::npos);
+  EXPECT_LT(inShort, doubt);
+  EXPECT_LT(doubt, table);
+  EXPECT_THAT(html.substr(inShort, doubt - inShort), HasSubstr("dual: its contours are off by "));
+  EXPECT_THAT(html.substr(inShort, doubt - inShort), HasSubstr("<svg")) << "and in pictures";
+  EXPECT_THAT(html, HasSubstr(html::escaped(modelByName("dual").assumption())));
+  EXPECT_THAT(html, HasSubstr("content=\"light\"")) << "it is printed: a dark page would waste ink";
+}
+
+TEST(HtmlReport, GroupsTheRowsOfAModelByLight) {
+  EXPECT_THAT(evaluationHtml(sheetRun(), {}), Not(HasSubstr("class=\"part\""))) << "one light needs no row of its own";
+  Inspection run = sheetRun();
+  std::vector<FrameComparison>& frames = run.models.at("dual").frames;
+  const std::vector<FrameComparison> first = frames;
+  for (FrameComparison c : first) {
+    c.light = "<second>";
+    c.rows.at(0).metrics->contourErrorPct = 12.5;
+    frames.push_back(c);
+  }
+  const std::string html = evaluationHtml(run, {});
+  EXPECT_THAT(html, HasSubstr("<td class=\"part\">light &lt;second&gt;</td><td>2/2</td><td>12.5</td><td>12.5</td>"));
 }
 
 /// The mean over what was matched would make the frame with the miss the best of all.

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/inspect/inspection.h"
+#include "core/report/report.h"
+
+namespace glint {
+
+/// What an evaluation says, in sentences for a person who does not read its tables.
+struct EvaluationWords {
+  std::string best;                  ///< the model that they are about: the chosen one, else bestModel(); "" = none answered
+  std::vector<std::string> inShort;  ///< how good it is, what it misses and invents, the next best, who gives no answer and why
+  std::vector<std::string>
+      doubts;  ///< why all that may be wrong: what it is scored against, how few frames, remarks of the best model's fits
+};
+EvaluationWords evaluationWords(const Inspection& inspection, const ReportContext& context);
+
+/// How much larger the errors of one model are than those of another, over the held-out highlights that both matched.
+struct ErrorDifference {
+  int highlights = 0;
+  double meanPct = 0;           ///< of other - best, % of the diameter; NaN without highlights
+  double standardErrorPct = 0;  ///< of that mean, as if highlights were independent; NaN with fewer than two
+  /// Larger than two standard errors: chance alone makes such a difference once in twenty times.
+  bool isClear() const { return meanPct > 2 * standardErrorPct; }
+};
+ErrorDifference errorDifference(const Inspection& inspection, const std::string& best, const std::string& other);
+
+}  // namespace glint
