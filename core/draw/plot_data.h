@@ -73,7 +73,8 @@ struct PlotData {
   PlotAxis x, y;
   std::vector<PlotSeries> series;
   std::vector<PlotShade> shades;
-  std::string noValue;  ///< what the crosses at the top stand for, for the legend: "missed highlight"
+  std::vector<std::string> remarks{};  ///< stand before the legend: how many samples there are, what is not shown
+  std::string noValue;                 ///< what the crosses at the top stand for, for the legend: "missed highlight"
 };
 
 /// A sample: which series, which point.

@@ -16,7 +16,7 @@ constexpr double kSwatch = 18;                       // width of what stands bef
 /// One entry of the legend: what is drawn from the left end of its swatch about the line's middle, and its name.
 struct Entry {
   std::string name;
-  std::function<void(double left, double middle)> paint;
+  std::function<void(double left, double middle)> paint;  ///< empty: a remark, which is a text alone
 };
 
 bool hasCrosses(const PlotData& plot) {
@@ -47,6 +47,7 @@ void paintSwatch(Painter& painter, const PlotSeries& series, const PlotLook& loo
 std::vector<Entry> entriesOf(Painter& painter, const PlotData& plot, const PlotLook& look) {
   const double swatch = look.px(kSwatch);
   std::vector<Entry> entries;
+  for (const std::string& remark : plot.remarks) entries.push_back({remark, {}});
   for (const PlotSeries& series : plot.series)
     if (series.inLegend)
       entries.push_back({series.name, [&](double left, double middle) { paintSwatch(painter, series, look, left, middle); }});
@@ -87,7 +88,8 @@ double paintPlotHeader(Painter& painter, const PlotData& plot, const PlotLook& l
   x += painter.textWidth(plot.title, look.px(kPlotFont), true) + look.px(18);
   const double lowest = height - look.px(plot.dial ? kLeastDial : kLeastPlot) - 0.5 * lineHeight;
   for (const Entry& entry : legend ? entriesOf(painter, plot, look) : std::vector<Entry>{}) {
-    const double needed = swatch + gap + painter.textWidth(entry.name, small) + look.px(14);
+    const double before = entry.paint ? swatch + gap : 0;
+    const double needed = before + painter.textWidth(entry.name, small) + look.px(14);
     if (x + needed > width - margin && x > margin) {
       if (y + lineHeight > lowest) {
         const std::string dots = "\u2026";
@@ -100,8 +102,8 @@ double paintPlotHeader(Painter& painter, const PlotData& plot, const PlotLook& l
       y += lineHeight;
     }
     if (draw) {
-      entry.paint(x, y);
-      painter.text({x + swatch + gap, y + belowMiddle(small)}, entry.name, small, look.text);
+      if (entry.paint) entry.paint(x, y);
+      painter.text({x + before, y + belowMiddle(small)}, entry.name, small, look.text);
     }
     x += needed;
   }

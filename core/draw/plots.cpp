@@ -33,6 +33,10 @@ const std::vector<PlotKind>& plotKinds() {
       {"limit-angle", "Limit angle by direction",
        "alpha = angle(N, H) along the contours: the same value in all directions if the highlight is a level set of the angle."},
       {"lobe", "Lobe", "Logarithm of radiance against alpha, with the lobe |alpha| = m sqrt(-log I/K') fitted to the pixels."},
+      {"scatter", "Any two columns",
+       "Two numbers of every highlight, one dot each. Click selects, dragging a rectangle brushes: the table of errors can show "
+       "what is "
+       "brushed. A highlight without a value is counted in words and not drawn; rings have no error."},
       {"axes", "Semi-axes", "Semi-axes of each model's ellipsoid, longest first, with one standard deviation where it is known."},
       {"singular", "Singular values",
        "Of the linear system for Q*. A small last value beside a large second-last value means a well-determined ellipsoid."},

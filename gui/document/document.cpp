@@ -25,6 +25,11 @@ bool Document::layerVisible(const std::string& name) const {
 }
 
 FrameRole Document::role(int frame) const {
+  if (!pinnedShown_) return requestedRole(frame);
+  return pinned_->isTraining(frame) ? FrameRole::Training : pinned_->isHeldOut(frame) ? FrameRole::HeldOut : FrameRole::Excluded;
+}
+
+FrameRole Document::requestedRole(int frame) const {
   const std::vector<int>& excluded = state_.request.excluded;
   if (std::find(excluded.begin(), excluded.end(), frame) != excluded.end()) return FrameRole::Excluded;
   return training_.count(frame) ? FrameRole::Training : FrameRole::HeldOut;
@@ -67,7 +72,7 @@ void Document::setObservation(std::shared_ptr<const Observation> observation) {
 
 void Document::holdAgainstObservation() {
   observed_.reset();
-  const std::shared_ptr<const Inspection> newest = results();
+  const std::shared_ptr<const Inspection> newest = ahead_ ? ahead_ : inspection_;
   if (!observation_ || !newest) return;
   // Results of an earlier position of the slider come after the observation of a later one: they must not put the contour back.
   const bool caughtUp = newest->request == state_.request || newest->inputs.same(Stage::Evidence, observation_->inputs);
@@ -75,6 +80,43 @@ void Document::holdAgainstObservation() {
     observation_.reset();
   else
     observed_ = std::make_shared<const Inspection>(heldAgainst(*newest, *observation_));
+}
+
+RowsPtr Document::rowsOf(const std::shared_ptr<const Inspection>& inspection) const {
+  if (!inspection) return std::make_shared<const std::vector<HighlightRow>>();
+  std::erase_if(rows_, [this](const auto& known) { return known.first != inspection_ && known.first != pinned_; });
+  RowsPtr& rows = rows_[inspection];
+  if (!rows) rows = std::make_shared<const std::vector<HighlightRow>>(highlightRows(*inspection));
+  return rows;
+}
+
+bool Document::pin() {
+  if (!inspection_) return false;
+  pinned_ = inspection_;
+  const bool was = std::exchange(pinnedShown_, false);
+  emit pinnedChanged();
+  if (was) emit inspectionChanged();
+  return true;
+}
+
+void Document::unpin() {
+  if (!pinned_) return;
+  showPinned(false);
+  pinned_.reset();
+  emit pinnedChanged();
+}
+
+void Document::showPinned(bool shown) {
+  if (shown == pinnedShown_ || (shown && !pinned_)) return;
+  pinnedShown_ = shown;
+  emit pinnedChanged();
+  emit inspectionChanged();
+}
+
+void Document::brush(std::set<RowKey> rows) {
+  if (rows == brushed_) return;
+  brushed_ = std::move(rows);
+  emit brushedChanged();
 }
 
 void Document::setTradeoff(std::shared_ptr<const Tradeoff> tradeoff) {
@@ -124,11 +166,17 @@ void Document::open(const Opened& opened) {
   observed_.reset();
   observation_.reset();
   influence_.reset();
+  pinned_.reset();
+  pinnedShown_ = false;
+  brushed_.clear();
+  rows_.clear();
   tradeoff_ = savedTradeoff_ = opened.tradeoff;
   unsaved_ = opened.unsaved;
   updateTraining();
   setStale(scene_ != nullptr);
+  emit pinnedChanged();
   emit sceneOpened();
+  emit brushedChanged();
   emit tradeoffChanged();
   emit influenceChanged();
 }
@@ -219,6 +267,7 @@ void Document::setWhatIf(const WhatIf& whatIf, const QString& text, const QStrin
 }
 
 void Document::setRole(int frame, FrameRole role) {
+  showPinned(false);  // a change is of what is computed
   if (frame < 0 || frame >= frameCount() || role == this->role(frame)) return;
   ViewState after = state_;
   std::vector<int>& excluded = after.request.excluded;
@@ -336,6 +385,7 @@ void Document::apply(const ViewState& state) {
     observed_.reset();
     observation_.reset();
   }
+  if (request) showPinned(false);
   state_ = state;
   if (request) {
     updateTraining();

@@ -11,9 +11,12 @@
 #include <string>
 #include <vector>
 
+#include "core/diagnostics/highlight_rows.h"
 #include "gui/document/engine.h"
 
 namespace glint::gui {
+
+using RowsPtr = std::shared_ptr<const std::vector<HighlightRow>>;
 
 enum class FrameRole { Training, HeldOut, Excluded };
 
@@ -52,13 +55,32 @@ class Document : public QObject {
   /// A number that no gesture had before.
   int newGesture() { return ++gesture_; }
 
-  /// Newest results; null before the first. They may belong to an older request: see stale().
-  std::shared_ptr<const Inspection> inspection() const { return inspection_; }
+  /// What every view shows: the newest results, or the pinned ones while those are flipped to; null before the first. They may belong to
+  /// an older request: see stale().
+  std::shared_ptr<const Inspection> inspection() const { return pinnedShown_ ? pinned_ : inspection_; }
+  /// The newest results, whatever is shown: what files are written from.
+  std::shared_ptr<const Inspection> computed() const { return inspection_; }
+  /// highlightRows() of inspection(), made once; never null.
+  RowsPtr rows() const { return rowsOf(inspection()); }
+
+  /// Results kept beside the newest ones to compare them with; null = none. Held in memory, neither stored nor a step of undo.
+  std::shared_ptr<const Inspection> pinned() const { return pinned_; }
+  RowsPtr pinnedRows() const { return rowsOf(pinned_); }
+  /// Views show the pinned results. A change of the request ends that.
+  bool pinnedShown() const { return pinnedShown_; }
+  /// Pins the newest results; false while there are none.
+  bool pin();
+  void unpin();
+  void showPinned(bool shown);
+
+  /// Highlights chosen together, as by a rectangle in a plot; empty = none. No step of undo, and not stored.
+  const std::set<RowKey>& brushed() const { return brushed_; }
+  void brush(std::set<RowKey> rows);
   bool stale() const { return stale_; }
   /// Newest results for the selected frame: inspection(), or those that came before it was complete.
-  std::shared_ptr<const Inspection> results() const { return ahead_ ? ahead_ : inspection_; }
+  std::shared_ptr<const Inspection> results() const { return pinnedShown_ ? pinned_ : ahead_ ? ahead_ : inspection_; }
   /// results(), held against what was observed in the frame since then.
-  std::shared_ptr<const Inspection> frameInspection() const { return observed_ ? observed_ : results(); }
+  std::shared_ptr<const Inspection> frameInspection() const { return observed_ && !pinnedShown_ ? observed_ : results(); }
   /// results() are not what the request asks for.
   bool frameStale() const { return stale_ && !(ahead_ && ahead_->request == state_.request); }
   /// Results for one frame while the others' are being computed. Ignored when another frame is selected by now.
@@ -128,6 +150,9 @@ class Document : public QObject {
   void layersChanged();
   void optionsChanged();  ///< ViewState::options
   void inspectionChanged();
+  void
+  pinnedChanged();  ///< other results are pinned, or none, or views flipped to them or back; inspectionChanged() follows a flip
+  void brushedChanged();
   void frameInspectionChanged();  ///< results for the selected frame came first; inspectionChanged() follows later
   void staleChanged(bool stale);
   void savedStateChanged();
@@ -141,6 +166,8 @@ class Document : public QObject {
   void updateTraining();
   void holdAgainstObservation();
   void setStale(bool stale);
+  RowsPtr rowsOf(const std::shared_ptr<const Inspection>& inspection) const;
+  FrameRole requestedRole(int frame) const;
 
   ParseTrain parseTrain_;
   std::shared_ptr<const Scene> scene_;
@@ -148,8 +175,11 @@ class Document : public QObject {
   std::set<int> training_;
   QString sessionFile_, inputFile_;
   std::shared_ptr<const Session> session_;
-  std::shared_ptr<const Inspection> inspection_, ahead_, observed_;
-  std::shared_ptr<const Observation> observation_;  ///< newer than results(); null = none
+  std::shared_ptr<const Inspection> inspection_, ahead_, observed_, pinned_;
+  bool pinnedShown_ = false;
+  std::set<RowKey> brushed_;
+  mutable std::map<std::shared_ptr<const Inspection>, RowsPtr> rows_;  ///< of inspection_ and pinned_ alone
+  std::shared_ptr<const Observation> observation_;                     ///< newer than results(); null = none
   std::shared_ptr<const Tradeoff> tradeoff_, savedTradeoff_;
   std::shared_ptr<const Influence> influence_;
   InspectionRequest influenceFor_;

@@ -10,6 +10,7 @@
 #include <algorithm>
 
 #include "core/diagnose/mismatch.h"
+#include "core/diagnose/shared_causes.h"
 #include "core/inspect/summary.h"
 #include "core/report/diagnosis_report.h"
 #include "core/selection/selection.h"
@@ -19,7 +20,8 @@
 namespace glint::gui {
 namespace {
 
-constexpr int kFrame = Qt::UserRole, kLight = Qt::UserRole + 1, kModel = Qt::UserRole + 2, kHighlight = Qt::UserRole + 3;
+constexpr int kFrame = Qt::UserRole, kLight = Qt::UserRole + 1, kModel = Qt::UserRole + 2, kHighlight = Qt::UserRole + 3,
+              kShared = Qt::UserRole + 4;
 constexpr std::size_t kMostFrames = 12;      // of a model: more are in the table of errors
 constexpr std::size_t kMostHighlights = 12;  // that stand against a model
 
@@ -168,6 +170,7 @@ void DiagnosisPanel::tellRuns() {
 
 void DiagnosisPanel::fillProblems() {
   problems_ = 0;
+  shared_.clear();
   const std::shared_ptr<const Inspection> inspection = document_.inspection();
   if (!inspection) return;
   for (const std::string& name : inspection->request.models) {
@@ -187,6 +190,7 @@ void DiagnosisPanel::fillProblems() {
     for (const ModelResult::Fit& fit : result->second.fits)
       if (fit.failure() && !explained)
         addLine(top, tr("because light %1: %2").arg(toQString(textOf(fit.key())), toQString(fit.failure()->message())));
+    if (summary.answered) addShared(top, *inspection, name);
     for (std::size_t i = 0; summary.answered && i < wrong.size() && i < kMostFrames; ++i) {
       const WrongFrame& w = wrong[i];
       QStringList words;
@@ -203,6 +207,18 @@ void DiagnosisPanel::fillProblems() {
     }
     if (summary.answered && wrong.size() > kMostFrames)
       addLine(top, tr("and %1 more: see Errors").arg(wrong.size() - kMostFrames));
+  }
+}
+
+void DiagnosisPanel::addShared(QTreeWidgetItem* top, const Inspection& inspection, const std::string& model) {
+  for (SharedCause& cause : sharedCauses(inspection, *document_.rows(), model)) {
+    auto* const line = new QTreeWidgetItem(top, {tr("in common: %1").arg(toQString(cause.text))});
+    line->setToolTip(
+        0, tr("%1\nWhat goes together; it need not be the cause. A click brushes these highlights: the table of errors and the "
+              "plot \"Any two columns\" show them.")
+               .arg(toQString(cause.text)));
+    line->setData(0, kShared, int(shared_.size()));
+    shared_.push_back({cause.highlights.begin(), cause.highlights.end()});
   }
 }
 
@@ -295,6 +311,7 @@ void DiagnosisPanel::choose(QTreeWidgetItem* item) {
     selection.direction = std::nullopt;
   }
   document_.select(selection);
+  if (const QVariant shared = item->data(0, kShared); shared.isValid()) document_.brush(shared_[std::size_t(shared.toInt())]);
 }
 
 void DiagnosisPanel::showState(const QString& stage) {

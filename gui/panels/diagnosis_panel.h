@@ -46,6 +46,8 @@ class DiagnosisPanel : public QWidget {
  private:
   void refresh();
   void fillProblems();
+  /// What the highlights that this model gets wrong have in common.
+  void addShared(QTreeWidgetItem* top, const Inspection& inspection, const std::string& model);
   void fillDiagnosis(const ModelDiagnosis& model);
   void tellRuns();
   /// The line of a model, made with this text where there is none.
@@ -63,6 +65,7 @@ class DiagnosisPanel : public QWidget {
   DiagnosisPtr diagnosis_;
   std::vector<std::pair<std::string, Remedy>> found_;  ///< so far, by the model's name
   int problems_ = 0;
+  std::vector<std::set<RowKey>> shared_;  ///< highlights of the lines "in common"
   JobQueue queue_{JobQueue::Rank::Background};
 };
 

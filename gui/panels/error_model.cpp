@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/diagnostics/row_changes.h"
 #include "core/draw/frame_overlay.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
@@ -17,169 +18,191 @@ namespace glint::gui {
 
 namespace {
 struct ColumnInfo {
+  const char* id;
   const char* title;
   const char* tip;
 };
-const ColumnInfo kColumns[] = {
-    {QT_TRANSLATE_NOOP("ErrorModel", "Frame"), QT_TRANSLATE_NOOP("ErrorModel", "Frame id")},
-    {QT_TRANSLATE_NOOP("ErrorModel", "Role"),
+const ColumnInfo kTexts[] = {
+    {"frame", QT_TRANSLATE_NOOP("ErrorModel", "Frame"), QT_TRANSLATE_NOOP("ErrorModel", "Frame id")},
+    {"role", QT_TRANSLATE_NOOP("ErrorModel", "Role"),
      QT_TRANSLATE_NOOP("ErrorModel", "Training, held out or excluded; summaries count held-out frames")},
-    {QT_TRANSLATE_NOOP("ErrorModel", "Model"), QT_TRANSLATE_NOOP("ErrorModel", "Predicting model")},
-    {QT_TRANSLATE_NOOP("ErrorModel", "Light"),
+    {"model", QT_TRANSLATE_NOOP("ErrorModel", "Model"), QT_TRANSLATE_NOOP("ErrorModel", "Predicting model")},
+    {"light", QT_TRANSLATE_NOOP("ErrorModel", "Light"),
      QT_TRANSLATE_NOOP("ErrorModel", "Light id; with several highlights of one light, which highlight")},
-    {QT_TRANSLATE_NOOP("ErrorModel", "Status"),
+    {"status", QT_TRANSLATE_NOOP("ErrorModel", "Status"),
      QT_TRANSLATE_NOOP("ErrorModel",
-                       "ok; missed: observed, not predicted; spurious: predicted, not observed; failed: no prediction")},
-    {QT_TRANSLATE_NOOP("ErrorModel", "Error %"),
-     QT_TRANSLATE_NOOP("ErrorModel", "Mean contour distance (symmetric) in % of the observed region's equivalent diameter")},
-    {QT_TRANSLATE_NOOP("ErrorModel", "Error px"),
-     QT_TRANSLATE_NOOP("ErrorModel",
-                       "Mean contour distance, px: symmetric, over the length of both contours, without sign. "
-                       "(The residual dial shows the signed distance by direction.)")},
-    {QT_TRANSLATE_NOOP("ErrorModel", "Ellipse %"),
-     QT_TRANSLATE_NOOP("ErrorModel", "As Error %, between the fitted and the predicted ellipse")},
-    {QT_TRANSLATE_NOOP("ErrorModel", "Hausd. px"), QT_TRANSLATE_NOOP("ErrorModel", "Hausdorff distance, pixels")},
-    {QT_TRANSLATE_NOOP("ErrorModel", "IoU"), QT_TRANSLATE_NOOP("ErrorModel", "Intersection over union of the filled contours")},
-    {QT_TRANSLATE_NOOP("ErrorModel", "Coverage"),
-     QT_TRANSLATE_NOOP("ErrorModel", "Share of directions that gave a contour point")},
-    {QT_TRANSLATE_NOOP("ErrorModel", "Centre px"), QT_TRANSLATE_NOOP("ErrorModel", "Distance of the area centroids, pixels")},
-    {QT_TRANSLATE_NOOP("ErrorModel", "Peak px"), QT_TRANSLATE_NOOP("ErrorModel", "Distance of the peaks, pixels")},
-    {QT_TRANSLATE_NOOP("ErrorModel", "Time µs"), QT_TRANSLATE_NOOP("ErrorModel", "Prediction time, microseconds")},
-    {QT_TRANSLATE_NOOP("ErrorModel", "Reason"), QT_TRANSLATE_NOOP("ErrorModel", "Reason for a missing value")}};
-static_assert(std::size(kColumns) == ErrorModel::ColumnCount);
+                       "ok; poor: off by more than 5 %; missed: observed, not predicted; spurious: predicted, not observed; "
+                       "failed: no prediction in this frame; refused: the model has no fit")}};
+const ColumnInfo kLast[] = {
+    {"pinned", QT_TRANSLATE_NOOP("ErrorModel", "Pinned %"),
+     QT_TRANSLATE_NOOP("ErrorModel", "Error % in the pinned results, or its status there")},
+    {"difference", QT_TRANSLATE_NOOP("ErrorModel", "Change"),
+     QT_TRANSLATE_NOOP("ErrorModel", "Error now minus pinned error, in percentage points")},
+    {"reason", QT_TRANSLATE_NOOP("ErrorModel", "Reason"), QT_TRANSLATE_NOOP("ErrorModel", "Reason for a missing value")}};
+static_assert(std::size(kTexts) == ErrorModel::ErrorPct);
+static_assert(std::size(kLast) == ErrorModel::ColumnCount - ErrorModel::Pinned);
 
 constexpr double kManyDigits = 1000;  // from here on decimals say nothing
 
-int digitsOf(int column) { return column == ErrorModel::Time ? 0 : column == ErrorModel::Iou ? 4 : 3; }
-bool isNumber(int column) { return column >= ErrorModel::ErrorPct && column <= ErrorModel::Time; }
+bool isNumber(int column) { return column >= ErrorModel::ErrorPct && column <= ErrorModel::LastNumber; }
+RowValue valueOf(int column) { return RowValue(column - ErrorModel::ErrorPct + 1); }
+bool hasError(const HighlightRow& row) { return std::isfinite(row.value(RowValue::ErrorPct)); }
+FrameRole frameRole(RowRole role) {
+  return role == RowRole::Training ? FrameRole::Training : role == RowRole::HeldOut ? FrameRole::HeldOut : FrameRole::Excluded;
+}
+QString fixed(double value, int decimals) {
+  if (!std::isfinite(value)) return QStringLiteral("–");
+  return QString::number(value, 'f', std::abs(value) < kManyDigits ? decimals : 0);
+}
 }  // namespace
 
 ErrorModel::ErrorModel(Document& document, QObject* parent) : QAbstractTableModel(parent), document_(document) {
+  rows_ = pinnedRows_ = std::make_shared<const std::vector<HighlightRow>>();
   connect(&document_, &Document::inspectionChanged, this, &ErrorModel::rebuild);
   connect(&document_, &Document::sceneOpened, this, &ErrorModel::rebuild);
+  connect(&document_, &Document::pinnedChanged, this, &ErrorModel::rebuild);
 }
 
-int ErrorModel::rowCount(const QModelIndex& parent) const { return parent.isValid() ? 0 : int(rows_.size()); }
+int ErrorModel::rowCount(const QModelIndex& parent) const { return parent.isValid() ? 0 : int(rows_->size()); }
 int ErrorModel::columnCount(const QModelIndex& parent) const { return parent.isValid() ? 0 : int(ColumnCount); }
 
 void ErrorModel::rebuild() {
   beginResetModel();
-  rows_.clear();
-  if (const std::shared_ptr<const Inspection> inspection = document_.inspection()) {
-    const std::vector<std::string> models = modelsInOrder(*inspection);
-    for (int frame = 0; frame < int(inspection->evidence.size()); ++frame)
-      for (const std::string& model : models)
-        for (const FrameComparison& c : inspection->models.at(model).frames)
-          if (c.frame == frame) addComparison(*inspection, model, c);
+  rows_ = document_.rows();
+  texts_.assign(rows_->size(), QString());
+  counterparts_.clear();
+  const std::shared_ptr<const Inspection> now = document_.inspection(), pinned = document_.pinned();
+  if (now && pinned && now != pinned) {
+    pinnedRows_ = document_.pinnedRows();
+    counterparts_ = counterparts(*pinned, *pinnedRows_, *now, *rows_);
   }
   endResetModel();
 }
 
-void ErrorModel::addComparison(const Inspection& inspection, const std::string& model, const FrameComparison& c) {
-  Row base;
-  base.frame = c.frame;
-  base.role = document_.role(c.frame);
-  base.model = model;
-  base.frameId = nameText(inspection.scene->frames[std::size_t(c.frame)].id);
-  base.light = nameText(c.light);
-  std::fill(std::begin(base.values), std::end(base.values), std::numeric_limits<double>::quiet_NaN());
-  base.values[Frame] = c.frame;
-  if (c.rows.empty()) {
-    if (!c.prediction.failure()) return;
-    base.status = tr("failed");
-    base.reason = toQString(c.prediction.failure()->message());
-    base.problem = true;
-    rows_.push_back(base);
-    return;
+const HighlightRow* ErrorModel::pinnedOf(int row) const {
+  if (counterparts_.empty() || counterparts_[std::size_t(row)] < 0) return nullptr;
+  return &(*pinnedRows_)[std::size_t(counterparts_[std::size_t(row)])];
+}
+
+QStringList ErrorModel::models() const {
+  QStringList all;
+  for (const HighlightRow& row : *rows_)
+    if (const QString model = toQString(row.model); !all.contains(model)) all << model;
+  return all;
+}
+
+const QString& ErrorModel::textOf(int row) const {
+  QString& text = texts_[std::size_t(row)];
+  if (text.isNull()) {
+    QStringList cells;
+    for (int column = 0; column < ColumnCount; ++column)
+      if (const QString words = cell(row, column); !words.isEmpty()) cells << words;
+    text = cells.join(QLatin1Char('\n')).toLower();  // no text of two cells is found
   }
-  const auto several = [&](int FrameComparison::Row::*index) {
-    return std::count_if(c.rows.begin(), c.rows.end(), [&](const FrameComparison::Row& r) { return r.*index >= 0; }) > 1;
-  };
-  const bool manyObserved = several(&FrameComparison::Row::observed), manyPredicted = several(&FrameComparison::Row::predicted);
-  for (const FrameComparison::Row& r : c.rows) {
-    Row row = base;
-    row.highlight = r.observed;
-    // Numbered as everywhere, from 1.
-    if (r.observed >= 0 && manyObserved)
-      row.light = tr("%1, highlight %2").arg(base.light).arg(r.observed + 1);
-    else if (r.observed < 0 && manyPredicted)
-      row.light = tr("%1, predicted %2").arg(base.light).arg(r.predicted + 1);
-    const bool compared = r.observed >= 0 || r.predicted >= 0;  // else the frame cannot be read
-    row.status = r.metrics                ? tr("ok")
-                 : !compared              ? tr("not compared")
-                 : r.observed < 0         ? tr("spurious")
-                 : c.prediction.failure() ? tr("failed")
-                                          : tr("missed");
-    row.problem = !r.metrics;
-    if (r.failure)
-      row.reason = toQString(r.failure->message());
-    else if (c.prediction.failure())
-      row.reason = toQString(c.prediction.failure()->message());
-    else if (!r.metrics)
-      row.reason = r.observed < 0 ? tr("no observed highlight overlaps it") : tr("no prediction overlaps it");
-    if (r.metrics) {
-      row.values[ErrorPct] = r.metrics->contourErrorPct;
-      row.values[ErrorPx] = r.metrics->contourErrorPx;
-      row.values[EllipsePct] = r.metrics->ellipseErrorPct;
-      row.values[Hausdorff] = r.metrics->hausdorffPx;
-      row.values[Iou] = r.metrics->iou;
-      row.values[CentreOffset] = r.metrics->centreOffsetPx;
-      row.values[PeakOffset] = r.metrics->peakOffsetPx;
-    }
-    if (r.predicted >= 0 && r.predicted < int(c.prediction.highlights().size())) {
-      row.values[Coverage] = c.prediction.highlights()[std::size_t(r.predicted)].coverage;
-      row.values[Time] = c.prediction.timeUs;
-    }
-    rows_.push_back(row);
+  return text;
+}
+
+QString ErrorModel::differenceText(int row) const {
+  const HighlightRow* const before = pinnedOf(row);
+  const HighlightRow& now = at(row);
+  if (!before) return counterparts_.empty() ? QString() : tr("new");
+  if (!hasError(now) || !hasError(*before)) {
+    if (hasError(now)) return tr("gained");
+    if (hasError(*before)) return tr("lost");
+    return QStringLiteral("–");
   }
+  const double a = before->value(RowValue::ErrorPct), b = now.value(RowValue::ErrorPct);
+  if (sameError(a, b)) return tr("= same");
+  // Sign, arrow and word say the same, so that no colour is needed.
+  return (b < a ? tr("▼ %1 better") : tr("▲ +%1 worse")).arg(QString::number(b - a, 'f', std::abs(b - a) < kManyDigits ? 3 : 0));
+}
+
+QString ErrorModel::cell(int row, int column) const {
+  const HighlightRow& r = at(row);
+  switch (column) {
+    case Frame: return nameText(document_.scene()->frames[std::size_t(r.frame)].id);
+    case Role: return roleName(frameRole(r.role));
+    case Model: return toQString(r.model);
+    case Light: return nameText(r.place);
+    case Status: return tr(nameOf(r.status));
+    case ReasonText: return toQString(r.reason);
+    case Difference: return differenceText(row);
+    case Pinned: {
+      const HighlightRow* const before = pinnedOf(row);
+      if (!before) return QString();
+      return hasError(*before) ? fixed(before->value(RowValue::ErrorPct), 3) : tr(nameOf(before->status));
+    }
+    default: return fixed(r.value(valueOf(column)), columnOf(valueOf(column)).decimals);
+  }
+}
+
+QVariant ErrorModel::sorted(int row, int column) const {
+  // Rows without a number come last in ascending order.
+  const auto number = [](double v) { return std::isfinite(v) ? v : std::numeric_limits<double>::max(); };
+  const HighlightRow* const before = pinnedOf(row);
+  if (column == Frame) return at(row).frame;
+  if (column == Pinned) return number(before ? before->value(RowValue::ErrorPct) : NAN);
+  if (column == Difference) return number(before ? at(row).value(RowValue::ErrorPct) - before->value(RowValue::ErrorPct) : NAN);
+  return isNumber(column) ? QVariant(number(at(row).value(valueOf(column)))) : QVariant(cell(row, column));
+}
+
+QVariant ErrorModel::colour(int row, int column) const {
+  const HighlightRow& r = at(row);
+  if (r.role == RowRole::Excluded)  // shown, but nothing of it counts
+    return QGuiApplication::palette().brush(QPalette::Disabled, QPalette::Text);
+  if (column == Difference) {
+    const HighlightRow* const before = pinnedOf(row);
+    const bool worse = before && hasError(*before) && !(r.value(RowValue::ErrorPct) <= before->value(RowValue::ErrorPct));
+    return worse && !(hasError(r) && sameError(r.value(RowValue::ErrorPct), before->value(RowValue::ErrorPct)))
+               ? QVariant(warningColour())
+               : QVariant();
+  }
+  if (!hasError(r) && (column == Status || column == ReasonText)) return warningColour();
+  return {};
+}
+
+QVariant ErrorModel::tip(int row, int column) const {
+  if (at(row).role == RowRole::Excluded && column != ReasonText && column != Light)
+    return tr("Excluded frame: used neither for training nor in any summary");
+  if (column == ReasonText || column == Light) return plainTip(cell(row, column));
+  if (column == Difference && differenceText(row) == tr("new")) return tr("Nothing pinned is about this highlight");
+  return {};
 }
 
 QVariant ErrorModel::data(const QModelIndex& index, int role) const {
   if (!index.isValid()) return {};
-  const Row& row = rows_[std::size_t(index.row())];
+  const HighlightRow& row = at(index.row());
   const int column = index.column();
-  const double number = row.values[column];
   switch (role) {
-    case Qt::DisplayRole:
-    case kSortRole:
-      switch (column) {
-        case Frame: return role == kSortRole ? QVariant(row.frame) : QVariant(row.frameId);
-        case Role: return roleName(row.role);
-        case Model: return toQString(row.model);
-        case Light: return row.light;
-        case Status: return row.status;
-        case ReasonText: return row.reason;
-        default: break;
-      }
-      // Rows without a number come last in ascending order.
-      if (role == kSortRole) return std::isfinite(number) ? number : std::numeric_limits<double>::max();
-      if (!std::isfinite(number)) return QStringLiteral("–");
-      return QString::number(number, 'f', std::abs(number) < kManyDigits ? digitsOf(column) : 0);
+    case Qt::DisplayRole: return cell(index.row(), column);
+    case kSortRole: return sorted(index.row(), column);
     case Qt::DecorationRole:
       if (column == Model) return colourSwatch(toQColor(draw::modelColour(row.model)));
       return {};
-    case Qt::ForegroundRole:
-      if (row.role == FrameRole::Excluded)  // shown, but nothing of it counts
-        return QGuiApplication::palette().brush(QPalette::Disabled, QPalette::Text);
-      if (row.problem && (column == Status || column == ReasonText)) return warningColour();
-      return {};
-    case Qt::ToolTipRole:
-      if (row.role == FrameRole::Excluded && column != ReasonText && column != Light)
-        return tr("Excluded frame: used neither for training nor in any summary");
-      return column == ReasonText ? QVariant(plainTip(row.reason)) : column == Light ? QVariant(plainTip(row.light)) : QVariant();
-    case Qt::TextAlignmentRole: return int((isNumber(column) ? Qt::AlignRight : Qt::AlignLeft) | Qt::AlignVCenter);
-    case kProblemRole: return row.problem && row.role != FrameRole::Excluded;
-    case kFrameRoleRole: return int(row.role);
+    case Qt::ForegroundRole: return colour(index.row(), column);
+    case Qt::ToolTipRole: return tip(index.row(), column);
+    case Qt::TextAlignmentRole:
+      return int((isNumber(column) || column == Pinned ? Qt::AlignRight : Qt::AlignLeft) | Qt::AlignVCenter);
+    case kProblemRole: return !hasError(row) && row.role != RowRole::Excluded;
+    case kFrameRoleRole: return int(frameRole(row.role));
     default: return {};
   }
 }
 
+QString ErrorModel::idOf(int column) {
+  if (column < ErrorPct) return QLatin1String(kTexts[column].id);
+  return QLatin1String(column <= LastNumber ? columnOf(valueOf(column)).id : kLast[column - Pinned].id);
+}
+
 QVariant ErrorModel::headerData(int section, Qt::Orientation orientation, int role) const {
   if (orientation != Qt::Horizontal || section < 0 || section >= ColumnCount) return {};
-  if (role == Qt::DisplayRole) return tr(kColumns[section].title);
-  if (role == Qt::ToolTipRole) return tr(kColumns[section].tip);
-  if (role == Qt::TextAlignmentRole) return int((isNumber(section) ? Qt::AlignRight : Qt::AlignLeft) | Qt::AlignVCenter);
-  return {};
+  if (role == Qt::TextAlignmentRole)
+    return int((isNumber(section) || section == Pinned ? Qt::AlignRight : Qt::AlignLeft) | Qt::AlignVCenter);
+  if (role != Qt::DisplayRole && role != Qt::ToolTipRole) return {};
+  const bool title = role == Qt::DisplayRole;
+  if (isNumber(section)) return tr(title ? columnOf(valueOf(section)).title : columnOf(valueOf(section)).help);
+  const ColumnInfo& info = section < ErrorPct ? kTexts[section] : kLast[section - Pinned];
+  return tr(title ? info.title : info.tip);
 }
 
 }  // namespace glint::gui

@@ -6,16 +6,17 @@
 #include <memory>
 #include <vector>
 
-#include "core/inspect/inspection.h"
+#include "core/diagnostics/highlight_rows.h"
 #include "gui/document/document.h"
 
 namespace glint::gui {
 
 /// The error table's rows: one per frame, model and matched, missed or spurious highlight, and one per prediction that failed,
-/// each with its reason.
+/// each with its reason. While results are pinned, two more columns have the pinned error and the difference.
 class ErrorModel : public QAbstractTableModel {
   Q_OBJECT
  public:
+  /// From ErrorPct on the numbers of highlightColumns(), in their order without the frame's position.
   enum Column {
     Frame,
     Role,
@@ -30,7 +31,9 @@ class ErrorModel : public QAbstractTableModel {
     Coverage,
     CentreOffset,
     PeakOffset,
-    Time,
+    LastNumber = ErrorPct + int(kRowValues) - 2,
+    Pinned,
+    Difference,
     ReasonText,
     ColumnCount
   };
@@ -43,24 +46,31 @@ class ErrorModel : public QAbstractTableModel {
   int columnCount(const QModelIndex& parent = {}) const override;
   QVariant data(const QModelIndex& index, int role) const override;
   QVariant headerData(int section, Qt::Orientation orientation, int role) const override;
-  int frameOf(int row) const { return rows_[std::size_t(row)].frame; }
-  const std::string& modelOf(int row) const { return rows_[std::size_t(row)].model; }
-  int highlightOf(int row) const { return rows_[std::size_t(row)].highlight; }
+  int frameOf(int row) const { return at(row).frame; }
+  const std::string& modelOf(int row) const { return at(row).model; }
+  int highlightOf(int row) const { return at(row).observed; }
+  const HighlightRow& at(int row) const { return (*rows_)[std::size_t(row)]; }
+  /// Every text of the row, in lower case, for a search.
+  const QString& textOf(int row) const;
+  /// What a column is called in the program's settings: "error-pct".
+  static QString idOf(int column);
+  /// The models among the rows, from simple to rich.
+  QStringList models() const;
 
  private:
-  struct Row {
-    int frame = -1, highlight = -1;
-    FrameRole role = FrameRole::HeldOut;
-    std::string model;
-    QString frameId, light, status, reason;
-    bool problem = false;
-    double values[ColumnCount];  ///< NaN where a column has no number
-  };
   void rebuild();
-  void addComparison(const Inspection& inspection, const std::string& model, const FrameComparison& comparison);
+  /// The pinned row of the same highlight; null where there is none, or nothing to compare with.
+  const HighlightRow* pinnedOf(int row) const;
+  QString cell(int row, int column) const;
+  QVariant sorted(int row, int column) const;
+  QString differenceText(int row) const;
+  QVariant colour(int row, int column) const;
+  QVariant tip(int row, int column) const;
 
   Document& document_;
-  std::vector<Row> rows_;
+  RowsPtr rows_, pinnedRows_;
+  std::vector<int> counterparts_;  ///< of each row among the pinned ones; empty = nothing to compare with
+  mutable std::vector<QString> texts_;
 };
 
 }  // namespace glint::gui

@@ -8,10 +8,11 @@
 #include <QHeaderView>
 #include <QKeyEvent>
 #include <QLabel>
+#include <QLineEdit>
 #include <QMenu>
 #include <QResizeEvent>
 #include <QScrollBar>
-#include <QSortFilterProxyModel>
+#include <QSignalBlocker>
 #include <QTableView>
 #include <QTimer>
 #include <QToolButton>
@@ -22,53 +23,31 @@
 
 #include "core/draw/frame_overlay.h"
 #include "core/inspect/summary.h"
+#include "core/report/csv_text.h"
 #include "core/report/warnings.h"
 #include "gui/base/flow_layout.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
 #include "gui/base/tips.h"
+#include "gui/panels/error_columns.h"
 #include "gui/panels/error_model.h"
+#include "gui/panels/pinned_summary.h"
+#include "gui/panels/row_filter.h"
 
 namespace glint::gui {
 
 namespace {
-constexpr int kColumnGapPx = 12;                     // of the summary
-constexpr double kWorstPct = 1000;                   // ten times the highlight's size: how far astray beyond that says nothing
-constexpr int kIou = 4, kMissed = 6, kSpurious = 7;  // columns of its values
-
-enum class Shown { All, HeldOut, Training, Problems };
-
-class RowFilter : public QSortFilterProxyModel {
- public:
-  using QSortFilterProxyModel::QSortFilterProxyModel;
-  void show(Shown shown) {
-    shown_ = shown;
-    invalidateFilter();
-  }
-
- protected:
-  bool filterAcceptsRow(int row, const QModelIndex& parent) const override {
-    const QModelIndex index = sourceModel()->index(row, 0, parent);
-    const auto role = FrameRole(sourceModel()->data(index, ErrorModel::kFrameRoleRole).toInt());
-    switch (shown_) {
-      case Shown::HeldOut: return role == FrameRole::HeldOut;
-      case Shown::Training: return role == FrameRole::Training;
-      case Shown::Problems: return sourceModel()->data(index, ErrorModel::kProblemRole).toBool();
-      case Shown::All: break;
-    }
-    return true;
-  }
-
- private:
-  Shown shown_ = Shown::All;
-};
+constexpr int kSearchWidth = 130, kChangeWidth = 110;  // px
+constexpr int kColumnGapPx = 12;                       // of the summary
+constexpr double kWorstPct = 1000;                     // ten times the highlight's size: how far astray beyond that says nothing
+constexpr int kIou = 4, kMissed = 6, kSpurious = 7;    // columns of its values
 }  // namespace
 
 ErrorTable::ErrorTable(Document& document, QWidget* parent) : QWidget(parent), document_(document) {
   auto* column = new QVBoxLayout(this);
   column->setContentsMargins(0, 0, 0, 0);
   column->setSpacing(0);
-  auto* head = new FlowLayout(16);  // a narrow dock puts the choice of rows below the summary
+  auto* head = new FlowLayout(10);  // a narrow dock puts the choice of rows below the summary
   head->setContentsMargins(8, 4, 6, 4);
   summary_ = new QLabel;
   summary_->setObjectName(QStringLiteral("errorSummary"));
@@ -78,17 +57,22 @@ ErrorTable::ErrorTable(Document& document, QWidget* parent) : QWidget(parent), d
   head->addWidget(summary_);
   filter_ = new QComboBox;
   filter_->setObjectName(QStringLiteral("errorFilter"));
-  filter_->addItems({tr("all frames"), tr("held-out frames"), tr("training frames"), tr("problems only")});
+  filter_->addItems({tr("all frames"), tr("held-out frames"), tr("training frames"), tr("problems only"), tr("brushed only")});
+  filter_->setAccessibleName(tr("Rows by frame"));
+  filter_->setToolTip(
+      tr("Which rows are shown. Problems have no error; brushed is what a rectangle in the plot \"Any two columns\" chose"));
   auto* choices = new QWidget;
   auto* choice = new QHBoxLayout(choices);
   choice->setContentsMargins(0, 0, 0, 0);
   choice->setSpacing(6);
   choice->addWidget(new QLabel(tr("Show")));
   choice->addWidget(filter_);
+  head->addWidget(choices);
+  buildFilters(*head);
   count_ = new QLabel;
   count_->setObjectName(QStringLiteral("errorCount"));
   count_->setProperty("role", "faded");
-  choice->addWidget(count_);
+  head->addWidget(count_);
   warnings_ = new QToolButton;
   warnings_->setObjectName(QStringLiteral("errorWarnings"));
   warnings_->setAutoRaise(true);
@@ -107,15 +91,12 @@ ErrorTable::ErrorTable(Document& document, QWidget* parent) : QWidget(parent), d
   menu->addAction(texts);
   connect(warnings_, &QToolButton::clicked, menu,
           [this, menu] { menu->popup(warnings_->mapToGlobal(warnings_->rect().bottomLeft())); });
-  choice->addWidget(warnings_);
-  head->addWidget(choices);
+  head->addWidget(warnings_);
   column->addLayout(head);
+  column->addWidget(new PinnedSummary(document));
 
   model_ = new ErrorModel(document, this);
-  auto* proxy = new RowFilter(this);
-  proxy_ = proxy;
-  proxy_->setSourceModel(model_);
-  proxy_->setSortRole(ErrorModel::kSortRole);
+  proxy_ = new RowFilter(*model_, this);
   view_ = new QTableView;
   view_->setObjectName(QStringLiteral("errorTable"));
   view_->setTabKeyNavigation(false);  // arrows go about in it, Tab leaves it
@@ -131,31 +112,38 @@ ErrorTable::ErrorTable(Document& document, QWidget* parent) : QWidget(parent), d
   view_->verticalHeader()->setDefaultSectionSize(fontMetrics().height() + 5);
   view_->horizontalHeader()->setHighlightSections(false);
   view_->horizontalHeader()->setStretchLastSection(false);
-  const int widths[] = {54, 66, 98, 50, 64, 66, 68, 74, 80, 62, 78, 76, 68, 72};
-  constexpr int kArrow = 34;  // px, of a heading's edges and the arrow of sorting
-  for (int i = 0; i < int(std::size(widths)); ++i)
+  constexpr int kTextWidths[] = {54, 66, 98, 50, 64}, kNumberWidth = 62;  // px, least
+  constexpr int kArrow = 34;                                              // px, of a heading's edges and the arrow of sorting
+  for (int i = 0; i < ErrorModel::ReasonText; ++i)
     view_->setColumnWidth(
-        i, std::max(widths[i],
+        i, std::max(i < int(std::size(kTextWidths)) ? kTextWidths[i]
+                    : i == ErrorModel::Difference   ? kChangeWidth
+                                                    : kNumberWidth,
                     fontMetrics().horizontalAdvance(model_->headerData(i, Qt::Horizontal, Qt::DisplayRole).toString()) + kArrow));
   // Why there is no number stands beside "failed", not out of sight behind a row of dashes.
   view_->horizontalHeader()->moveSection(ErrorModel::ReasonText, ErrorModel::Status + 1);
   // The errors themselves are in sight without scrolling.
-  for (const int column : {ErrorModel::ErrorPx, ErrorModel::ErrorPct})
+  for (const int column : {ErrorModel::Difference, ErrorModel::Pinned, ErrorModel::ErrorPx, ErrorModel::ErrorPct})
     view_->horizontalHeader()->moveSection(view_->horizontalHeader()->visualIndex(column), ErrorModel::Model + 1);
+  columns_ = new ErrorColumns(view_);
+  columnsButton_->setMenu(columns_->menu());
   view_->installEventFilter(this);
   view_->viewport()->installEventFilter(this);
   column->addWidget(view_, 1);
 
-  connect(filter_, QOverload<int>::of(&QComboBox::currentIndexChanged), this, [this, proxy](int i) {
-    proxy->show(Shown(i));
-    showCount();
-    selectFromDocument();
+  connect(filter_, QOverload<int>::of(&QComboBox::currentIndexChanged), this, [this](int i) {
+    proxy_->setFrames(RowFilter::Frames(i));
+    showFiltered();
   });
+  connect(&document_, &Document::brushedChanged, this, &ErrorTable::followBrush);
+  connect(&document_, &Document::pinnedChanged, this, &ErrorTable::followPinned);
   connect(model_, &QAbstractItemModel::modelReset, this, [this] {
     showSummary();
     showCount();
     showWarnings();
+    listModels();
     fitReason();
+    followPinned();
     selectFromDocument();
   });
   connect(&document_, &Document::staleChanged, this, &ErrorTable::showSummary);
@@ -163,6 +151,80 @@ ErrorTable::ErrorTable(Document& document, QWidget* parent) : QWidget(parent), d
   connect(view_->selectionModel(), &QItemSelectionModel::currentRowChanged, this, &ErrorTable::selectFromTable);
   showSummary();
   showWarnings();
+}
+
+void ErrorTable::buildFilters(QLayout& row) {
+  models_ = new QComboBox;
+  models_->setObjectName(QStringLiteral("errorModelFilter"));
+  models_->setAccessibleName(tr("Rows by model"));
+  models_->setToolTip(tr("Rows of one model alone"));
+  models_->addItem(tr("all models"));
+  models_->setSizeAdjustPolicy(QComboBox::AdjustToContents);
+  statuses_ = new QComboBox;
+  statuses_->setObjectName(QStringLiteral("errorStatusFilter"));
+  statuses_->setAccessibleName(tr("Rows by status"));
+  statuses_->setToolTip(tr("Rows of one status alone"));
+  statuses_->addItem(tr("any status"));
+  for (const RowStatus status : allRowStatuses()) statuses_->addItem(tr(nameOf(status)), int(status));
+  search_ = new QLineEdit;
+  search_->setObjectName(QStringLiteral("errorSearch"));
+  search_->setAccessibleName(tr("Search in errors"));
+  search_->setPlaceholderText(tr("Search…"));
+  search_->setToolTip(tr("Rows with all of these words in any column. Esc clears"));
+  search_->setClearButtonEnabled(true);
+  search_->setFixedWidth(kSearchWidth);
+  search_->installEventFilter(this);
+  columnsButton_ = new QToolButton;
+  columnsButton_->setObjectName(QStringLiteral("errorColumnsButton"));
+  columnsButton_->setText(tr("Columns"));
+  columnsButton_->setToolTip(tr("Which columns are shown; a right click on a heading opens the same list"));
+  columnsButton_->setAutoRaise(true);
+  columnsButton_->setPopupMode(QToolButton::InstantPopup);
+  for (QWidget* widget : {static_cast<QWidget*>(models_), static_cast<QWidget*>(statuses_), static_cast<QWidget*>(search_),
+                          static_cast<QWidget*>(columnsButton_)})
+    row.addWidget(widget);
+  connect(models_, QOverload<int>::of(&QComboBox::currentIndexChanged), this, [this](int i) {
+    proxy_->setModel(i > 0 ? models_->itemText(i) : QString());
+    showFiltered();
+  });
+  connect(statuses_, QOverload<int>::of(&QComboBox::currentIndexChanged), this, [this](int i) {
+    proxy_->setStatus(i > 0 ? std::optional(RowStatus(statuses_->itemData(i).toInt())) : std::nullopt);
+    showFiltered();
+  });
+  connect(search_, &QLineEdit::textChanged, this, [this](const QString& words) {
+    proxy_->setSearch(words);
+    showFiltered();
+  });
+}
+
+void ErrorTable::showFiltered() {
+  showCount();
+  selectFromDocument();
+}
+
+void ErrorTable::listModels() {
+  const QStringList names = model_->models();
+  QStringList known;
+  for (int i = 1; i < models_->count(); ++i) known << models_->itemText(i);
+  if (known == names) return;  // a slider moves
+  const QString chosen = models_->currentIndex() > 0 ? models_->currentText() : QString();
+  const QSignalBlocker quiet(models_);
+  while (models_->count() > 1) models_->removeItem(1);
+  models_->addItems(names);
+  models_->setCurrentIndex(chosen.isEmpty() ? 0 : std::max(0, models_->findText(chosen)));
+  proxy_->setModel(models_->currentIndex() > 0 ? chosen : QString());
+}
+
+void ErrorTable::followBrush() {
+  const bool any = !document_.brushed().empty(), was = filter_->currentIndex() == int(RowFilter::Frames::Brushed);
+  proxy_->setBrushed(document_.brushed());
+  if (any && !was) beforeBrush_ = filter_->currentIndex();
+  if (any != was) filter_->setCurrentIndex(any ? int(RowFilter::Frames::Brushed) : beforeBrush_);
+  showFiltered();
+}
+
+void ErrorTable::followPinned() {
+  columns_->setPinned(document_.pinned() && !document_.pinnedShown() && document_.pinned() != document_.computed());
 }
 
 void ErrorTable::showWarnings() {
@@ -348,18 +410,45 @@ void ErrorTable::selectFromTable() {
   selecting_ = false;
 }
 
-void ErrorTable::copySelection() const {
+QString ErrorTable::selectedText(QChar separator) const {
   QModelIndexList rows = view_->selectionModel()->selectedRows();
   std::sort(rows.begin(), rows.end(), [](const QModelIndex& a, const QModelIndex& b) { return a.row() < b.row(); });
+  // As on screen: the columns that are shown, in their order.
+  std::vector<int> columns;
+  const QHeaderView* const head = view_->horizontalHeader();
+  for (int place = 0; place < head->count(); ++place)
+    if (const int column = head->logicalIndex(place); !view_->isColumnHidden(column)) columns.push_back(column);
+  const auto field = [separator](QString text) {
+    if (separator == QLatin1Char('\t')) return text.replace(QLatin1Char('\t'), QLatin1Char(' '));
+    return exactQString(csvText(text.toStdString()));
+  };
   QStringList lines, cells;
-  for (int c = 0; c < proxy_->columnCount(); ++c) cells << proxy_->headerData(c, Qt::Horizontal).toString();
-  lines << cells.join('\t');
+  for (const int c : columns) cells << field(proxy_->headerData(c, Qt::Horizontal).toString());
+  lines << cells.join(separator);
   for (const QModelIndex& row : rows) {
     cells.clear();
-    for (int c = 0; c < proxy_->columnCount(); ++c) cells << row.sibling(row.row(), c).data().toString();
-    lines << cells.join('\t');
+    for (const int c : columns) cells << field(row.sibling(row.row(), c).data().toString());
+    lines << cells.join(separator);
   }
-  QApplication::clipboard()->setText(lines.join('\n') + '\n');
+  return lines.join('\n') + '\n';
+}
+
+void ErrorTable::copySelection(QChar separator) const { QApplication::clipboard()->setText(selectedText(separator)); }
+
+void ErrorTable::addActions(Actions& actions, QMenu* menu) {
+  actions.add("edit.copy-error-rows", menu, tr("Copy &error rows"), [this] { copySelection(); },
+              {{}, {}, tr("The selected rows of the error table, columns as shown, separated by tabs")});
+  actions.add("edit.copy-error-rows-csv", menu, tr("Copy error rows as &CSV"), [this] { copySelection(QLatin1Char(',')); },
+              {{}, {}, tr("The selected rows of the error table, columns as shown, as comma-separated values")});
+  actions.add("edit.search-errors", menu, tr("Search in e&rrors"),
+              [this] {
+                emit shown();
+                search_->setFocus(Qt::ShortcutFocusReason);
+                search_->selectAll();
+              },
+              {{QKeySequence::Find}, {}, tr("Shows only the rows of the error table that have all typed words")});
+  actions.add("edit.brush-clear", menu, tr("Clear &brush"), [this] { document_.brush({}); },
+              {{}, {}, tr("No highlight is brushed in the plot \"Any two columns\" any more")});
 }
 
 void ErrorTable::uncutCurrent() {
@@ -372,10 +461,18 @@ void ErrorTable::uncutCurrent() {
 }
 
 bool ErrorTable::eventFilter(QObject* watched, QEvent* event) {
-  if (watched == view_->viewport() && event->type() == QEvent::Resize)  // as by a scroll bar below it
+  if (view_ && watched == view_->viewport() && event->type() == QEvent::Resize)  // as by a scroll bar below it
     QTimer::singleShot(0, this, &ErrorTable::uncutCurrent);
   if (watched == view_ && event->type() == QEvent::KeyPress && static_cast<QKeyEvent*>(event)->matches(QKeySequence::Copy)) {
     copySelection();
+    return true;
+  }
+  // Esc stops computations elsewhere.
+  if (watched == search_ && !search_->text().isEmpty() &&
+      (event->type() == QEvent::ShortcutOverride || event->type() == QEvent::KeyPress) &&
+      static_cast<QKeyEvent*>(event)->key() == Qt::Key_Escape) {
+    event->accept();
+    if (event->type() == QEvent::KeyPress) search_->clear();
     return true;
   }
   return QWidget::eventFilter(watched, event);

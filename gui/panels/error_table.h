@@ -3,26 +3,37 @@
 
 #include <QWidget>
 
+#include "gui/base/actions.h"
 #include "gui/document/step_run.h"
 
 class QComboBox;
 class QLabel;
-class QSortFilterProxyModel;
+class QLayout;
+class QLineEdit;
+class QMenu;
 class QTableView;
 class QToolButton;
 
 namespace glint::gui {
 
+class ErrorColumns;
 class ErrorModel;
+class RowFilter;
 
-/// Sortable table of errors with a summary line per model above it. Selecting a row selects its frame, model and highlight
-/// everywhere; Ctrl+C copies the selected rows as tab-separated text with a header.
+/// Sortable table of errors with a summary line per model above it; rows are chosen by frame, model, status, words and brush, columns by a
+/// menu. Selecting a row selects its frame, model and highlight everywhere; Ctrl+C copies the selected rows as tab-separated text with a header.
 class ErrorTable : public QWidget {
   Q_OBJECT
  public:
   explicit ErrorTable(Document& document, QWidget* parent = nullptr);
   QTableView* view() const { return view_; }
-  void copySelection() const;
+  ErrorColumns* columns() const { return columns_; }
+  void copySelection(QChar separator = QLatin1Char('\t')) const;
+  /// Adds "edit.copy-error-rows", "edit.copy-error-rows-csv", "edit.search-errors" and "edit.brush-clear".
+  void addActions(Actions& actions, QMenu* menu);
+
+ signals:
+  void shown();  ///< an action asked for the table: the dock should be raised
 
  protected:
   bool eventFilter(QObject* watched, QEvent* event) override;
@@ -36,6 +47,12 @@ class ErrorTable : public QWidget {
   QString summaryHtml(const std::vector<int>& columns, int problemWidth) const;
   int columnWidth(int column) const;  ///< px
   void showCount();
+  void buildFilters(QLayout& row);
+  void showFiltered();  ///< other rows are shown
+  void listModels();
+  void followBrush();
+  void followPinned();
+  QString selectedText(QChar separator) const;
   /// How many warnings the results have; a click opens their texts, which are the tool tip, too.
   void showWarnings();
   void fitReason();
@@ -46,8 +63,9 @@ class ErrorTable : public QWidget {
 
   Document& document_;
   ErrorModel* model_;
-  QSortFilterProxyModel* proxy_;
-  QTableView* view_;
+  RowFilter* proxy_;
+  QTableView* view_ = nullptr;
+  ErrorColumns* columns_ = nullptr;
   QLabel* summary_ = nullptr;
   struct SummaryRow {
     QString colour, name;  ///< no colour = the heading
@@ -57,6 +75,10 @@ class ErrorTable : public QWidget {
   std::vector<SummaryRow> summaryRows_;
   std::vector<int> columnOrder_;  ///< of the values: the last ones are left out first
   QComboBox* filter_;
+  QComboBox *models_ = nullptr, *statuses_ = nullptr;
+  QLineEdit* search_ = nullptr;
+  QToolButton* columnsButton_ = nullptr;
+  int beforeBrush_ = 0;  ///< which rows were shown before something was brushed
   QLabel* count_;
   QToolButton* warnings_ = nullptr;
   QLabel* warningTexts_ = nullptr;

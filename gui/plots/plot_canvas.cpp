@@ -36,6 +36,20 @@ void PlotCanvas::paintEvent(QPaintEvent*) {
   QtPainter into(painter);
   view_.setStyle(style());
   view_.paint(into, width(), height());
+  if (!brushing_ || !dragging_ || moves_) return;
+  QColor colour = palette().color(QPalette::Highlight);
+  painter.setPen(colour);
+  colour.setAlpha(50);
+  painter.setBrush(colour);
+  painter.drawRect(QRectF(pressed_, last_).normalized());
+}
+
+std::vector<draw::PlotSample> PlotCanvas::samplesIn(const QRectF& box) const {
+  std::vector<draw::PlotSample> samples;
+  for (int s = 0; s < int(plot().series.size()); ++s)
+    for (int i = 0; i < int(plot().series[std::size_t(s)].points.size()); ++i)
+      if (const std::optional<QPointF> at = positionOf({s, i}); at && box.contains(*at)) samples.push_back({s, i});
+  return samples;
 }
 
 /// In a turn of its own: several views that change at once must not make the interface stand still together.
@@ -92,23 +106,30 @@ void PlotCanvas::mousePressEvent(QMouseEvent* e) {
   pressed_ = last_ = e->localPos();
   held_ = e->button() == Qt::LeftButton;
   dragging_ = false;
+  moves_ = !brushing_ || e->modifiers() & Qt::ShiftModifier;
 }
 
 void PlotCanvas::mouseMoveEvent(QMouseEvent* e) {
   if (!held_) return hover(e->localPos(), e->globalPos());
   dragging_ = dragging_ || (e->localPos() - pressed_).manhattanLength() >= kDragPx;
   if (!dragging_) return;
-  view_.pan(placeOf(e->localPos() - last_));
+  if (moves_) view_.pan(placeOf(e->localPos() - last_));
   last_ = e->localPos();
   update();
 }
 
 void PlotCanvas::mouseReleaseEvent(QMouseEvent* e) {
-  const bool click = held_ && !dragging_;
-  held_ = false;
+  const bool click = held_ && !dragging_, box = held_ && dragging_ && !moves_;
+  held_ = dragging_ = false;
+  if (box) {
+    update();
+    emit brushed(samplesIn(QRectF(pressed_, e->localPos()).normalized()));
+  }
   if (!click) return;
   if (const std::optional<draw::PlotSample> sample = sampleAt(e->localPos()))
     emit clicked(plot().series[std::size_t(sample->series)].points[std::size_t(sample->point)].target);
+  else if (brushing_)
+    emit brushed({});
 }
 
 void PlotCanvas::mouseDoubleClickEvent(QMouseEvent*) { showAll(); }

@@ -25,12 +25,15 @@ class PlotCanvas : public QWidget {
   const draw::PlotData& plot() const;
   draw::PlotStyle style() const;
   void showAll();
+  /// Dragging marks a rectangle and tells what is in it; with Shift it moves what is zoomed. A click beside all samples marks nothing.
+  void setBrushing(bool brushing) { brushing_ = brushing; }
   /// Where a sample is drawn, in this widget's coordinates; empty when it is not.
   std::optional<QPointF> positionOf(const draw::PlotSample& sample) const;
   void renderNow() { repaint(); }
 
  signals:
   void clicked(const draw::PlotTarget& target);
+  void brushed(const std::vector<draw::PlotSample>& samples);
   void touched();  ///< pressed anywhere: this is the plot that actions are about
 
  protected:
@@ -47,11 +50,12 @@ class PlotCanvas : public QWidget {
   void scheduleRender();
   std::optional<draw::PlotSample> sampleAt(const QPointF& at) const;
   void hover(const QPointF& at, const QPoint& global);
+  std::vector<draw::PlotSample> samplesIn(const QRectF& box) const;
 
   draw::PlotView view_;
   std::optional<draw::PlotSample> hovered_;
   QPointF pressed_, last_;
-  bool dragging_ = false, held_ = false;
+  bool dragging_ = false, held_ = false, brushing_ = false, moves_ = false;
 };
 
 }  // namespace glint::gui

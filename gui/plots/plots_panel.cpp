@@ -24,6 +24,7 @@
 #include "gui/base/to_qimage.h"
 #include "gui/export/figure_actions.h"
 #include "gui/plots/plot_canvas.h"
+#include "gui/plots/scatter_bar.h"
 #include "viz/canvas.h"
 #include "viz/plot_export.h"
 
@@ -31,6 +32,7 @@ namespace glint::gui {
 
 namespace {
 const char* const kOptions[2] = {"plots/first", "plots/second"};
+const char* const kScatter[2] = {"plots/scatter-", "plots/second-scatter-"};
 const char* const kDefaults[2] = {"error", "dial"};
 constexpr double kPictureScale = 2;  // of saved and copied pictures: sharp on paper and on dense screens
 
@@ -63,7 +65,7 @@ PlotsPanel::PlotsPanel(Document& document, QWidget* parent) : QWidget(parent), d
   });
   connect(&document_, &Document::inspectionChanged, this, [this] {
     wantSamples();
-    setDirty({"error", "dial", "axes", "singular", "influence"});
+    setDirty({"error", "dial", "axes", "singular", "influence", "scatter"});
     drawInTurn(this, [this] { refresh(); });  // much else is shown at the same time
     if (wantsInfluence_ && !document_.stale()) askForInfluence();
   });
@@ -75,6 +77,7 @@ PlotsPanel::PlotsPanel(Document& document, QWidget* parent) : QWidget(parent), d
   connect(&document_, &Document::influenceChanged, this, [this] { markDirty({"influence"}); });
   connect(&document_, &Document::requestChanged, this, [this] { markDirty({"influence"}); });
   connect(&document_, &Document::optionsChanged, this, &PlotsPanel::showOptions);
+  connect(&document_, &Document::brushedChanged, this, [this] { markDirty({"scatter"}); });
   showOptions();
 }
 
@@ -135,6 +138,8 @@ void PlotsPanel::buildPane(int index) {
   save->setMenu(menu);
   row->addWidget(save);
   column->addLayout(row);
+  pane.bar = new ScatterBar(document_, kScatter[index]);
+  column->addWidget(pane.bar);
   pane.canvas = new PlotCanvas;
   column->addWidget(pane.canvas, 1);
   splitter_->addWidget(pane.widget);
@@ -142,6 +147,8 @@ void PlotsPanel::buildPane(int index) {
   connect(pane.selector, QOverload<int>::of(&QComboBox::activated), this,
           [this, index](int at) { setKind(index, panes_[std::size_t(index)].selector->itemData(at).toString().toStdString()); });
   connect(pane.canvas, &PlotCanvas::clicked, this, &PlotsPanel::clicked);
+  connect(pane.canvas, &PlotCanvas::brushed, this,
+          [this, index](const std::vector<draw::PlotSample>& samples) { brush(panes_[std::size_t(index)], samples); });
   connect(pane.canvas, &PlotCanvas::touched, this, [this, index] { current_ = index; });
 }
 
@@ -166,7 +173,11 @@ void PlotsPanel::showOptions() {
     const int at = pane.selector->findData(toQString(kind(i)));
     pane.selector->setToolTip(pane.selector->itemData(at, Qt::ToolTipRole).toString());
     if (at != pane.selector->currentIndex()) pane.selector->setCurrentIndex(at);
-    if (pane.canvas->plot().id != kind(i)) pane.dirty = true;
+    const bool scatter = kind(i) == "scatter";
+    pane.bar->setVisible(scatter);
+    pane.bar->showOptions();
+    pane.canvas->setBrushing(scatter);
+    if (pane.canvas->plot().id != kind(i) || scatter) pane.dirty = true;
   }
   wantSamples();
   refresh();
@@ -190,14 +201,14 @@ void PlotsPanel::refresh() {
     Pane& pane = panes_[std::size_t(i)];
     if (!pane.dirty || !pane.canvas->isVisible()) continue;
     pane.dirty = false;
-    draw::PlotData plot = data(kind(i));
+    draw::PlotData plot = data(kind(i), pane);
     plot.id = kind(i);  // also where there is nothing to show
     pane.canvas->show(plot);
     pane.canvas->setSelection(document_.selection());
   }
 }
 
-draw::PlotData PlotsPanel::data(const std::string& id) {
+draw::PlotData PlotsPanel::data(const std::string& id, Pane& pane) {
   draw::PlotData empty;
   const std::shared_ptr<const Inspection> inspection = document_.inspection();
   const draw::Selection& s = document_.selection();
@@ -217,6 +228,7 @@ draw::PlotData PlotsPanel::data(const std::string& id) {
     return empty;
   }
   if (id == "error") return draw::errorPlot(*inspection);
+  if (id == "scatter") return (pane.scatter = draw::scatterPlot(*inspection, *document_.rows(), pane.bar->options())).plot;
   if (id == "axes") return draw::semiAxesPlot(*inspection);
   if (id == "singular") return draw::singularValuePlot(conditioningOf(*inspection));
   if (id == "dial") return draw::residualDial(*inspection, s.frame, s.highlight);
@@ -263,6 +275,15 @@ void PlotsPanel::clicked(const draw::PlotTarget& target) {
     return document_.load(point, tr("Load %1").arg(toQString(describe(*t, point))));
   }
   document_.select(draw::selectionOf(target, document_.selection()));
+}
+
+void PlotsPanel::brush(const Pane& pane, const std::vector<draw::PlotSample>& samples) {
+  const RowsPtr rows = document_.rows();
+  std::set<RowKey> chosen;
+  for (const draw::PlotSample& sample : samples)
+    if (const int row = pane.scatter.rowOf(sample); row >= 0 && row < int(rows->size()))
+      chosen.insert(keyOf((*rows)[std::size_t(row)]));
+  document_.brush(std::move(chosen));
 }
 
 void PlotsPanel::askForInfluence() {

@@ -5,6 +5,7 @@
 #include <QWidget>
 #include <array>
 
+#include "core/draw/scatter_plot.h"
 #include "gui/base/actions.h"
 #include "gui/document/document.h"
 #include "gui/plots/samples_loader.h"
@@ -17,6 +18,7 @@ class QToolButton;
 namespace glint::gui {
 
 class PlotCanvas;
+class ScatterBar;
 
 /// One or two plots side by side, each chosen from a list; linked with everything else by the document's selection. Which plots
 /// are shown is part of the view's options ("plots/first", "plots/second", "plots/two").
@@ -28,6 +30,7 @@ class PlotsPanel : public QWidget {
 
   /// Adds "plots.show-ID", "plots.two", "plots.show-all", "plots.copy-*", "plots.save-*" and "plots.influence".
   void addActions(Actions& actions, QMenu* menu);
+  ScatterBar* scatterBar(int pane) const { return panes_[std::size_t(pane)].bar; }
   PlotCanvas* canvas(int pane) const { return panes_[std::size_t(pane)].canvas; }
   QComboBox* selector(int pane) const { return panes_[std::size_t(pane)].selector; }
   /// Nothing is being read for the plots on screen.
@@ -54,6 +57,8 @@ class PlotsPanel : public QWidget {
     QWidget* widget = nullptr;
     QComboBox* selector = nullptr;
     PlotCanvas* canvas = nullptr;
+    ScatterBar* bar = nullptr;
+    draw::ScatterPlot scatter;  ///< what the canvas shows where it is one
     bool dirty = true;
   };
   void buildPane(int index);
@@ -63,7 +68,9 @@ class PlotsPanel : public QWidget {
   void setDirty(std::initializer_list<const char*> kinds);   ///< none = all
   void markDirty(std::initializer_list<const char*> kinds);  ///< those plots are drawn again; none named = all
   void refresh();
-  draw::PlotData data(const std::string& id);
+  draw::PlotData data(const std::string& id, Pane& pane);
+  /// The highlights of these samples.
+  void brush(const Pane& pane, const std::vector<draw::PlotSample>& samples);
   void wantSamples();
   void followSelection();
   void clicked(const draw::PlotTarget& target);

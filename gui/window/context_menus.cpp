@@ -31,7 +31,7 @@ void offerMenus(const Actions& actions, FramePanel& frame, PlotsPanel& plots, Er
   for (PlotCanvas* plot : plots.findChildren<PlotCanvas*>())
     offer(plot, {"plots.show-all", "", "plots.copy-png", "plots.copy-svg", "plots.copy-csv", "", "plots.save-svg",
                  "plots.save-png", "plots.save-csv"});
-  offer(errors.view(), {"edit.copy-error-rows", "", "export.csv", "export.json", "export.html"});
+  offer(errors.view(), {"edit.copy-error-rows", "edit.copy-error-rows-csv", "", "export.csv", "export.json", "export.html"});
 }
 
 }  // namespace glint::gui

@@ -300,7 +300,7 @@ void FileActions::rememberFoldersOf(const QString& session) {
 
 bool FileActions::saveTo(const QString& path) {
   if (savingScene_) return false;  // one after the other
-  const InspectionPtr results = document_.stale() ? nullptr : document_.inspection();
+  const InspectionPtr results = document_.stale() ? nullptr : document_.computed();
   auto opened = std::make_shared<Opened>(document_.toSave());
   if (addView_) addView_(*opened);
   savingScene_ = document_.sharedScene();

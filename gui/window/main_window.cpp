@@ -61,6 +61,7 @@
 #include "gui/window/own_layouts.h"
 #include "gui/window/palette.h"
 #include "gui/window/palette_items.h"
+#include "gui/window/pinned_results.h"
 #include "gui/window/recovery.h"
 #include "gui/window/scripted_actions.h"
 #include "gui/window/shortcut_dialog.h"
@@ -234,7 +235,7 @@ void MainWindow::buildDocks() {
   setup_ = new SetupPanel(document_);
   connect(setup_, &SetupPanel::autoRequested, this, [this](double goodEnoughPct) {
     if (document_.scene() && engine_.choose)
-      runner_.choose(document_.sharedScene(), document_.request(), goodEnoughPct, document_.inspection());
+      runner_.choose(document_.sharedScene(), document_.request(), goodEnoughPct, document_.computed());
   });
   connect(&runner_, &Runner::chosen, this, [this](const SelectionPtr& selection, const OpenedPtr& computedFor) {
     if (computedFor->scene != document_.sharedScene() || computedFor->request != document_.request()) return;  // too late
@@ -354,7 +355,8 @@ void MainWindow::buildMenus() {
   actions_.adopt("edit.redo", edit, stack->createRedoAction(this, tr("&Redo")), {{QKeySequence::Redo}, "redo"});
   edit->addSeparator();
   actions_.add("edit.copy-numbers", edit, tr("Copy &numbers"), [this] { numbers_->copy(); }, {{}, "copy"});
-  actions_.add("edit.copy-error-rows", edit, tr("Copy &error rows"), [this] { errors_->copySelection(); });
+  errors_->addActions(actions_, edit);
+  connect(errors_, &ErrorTable::shown, this, [this] { docks_.bring(QStringLiteral("errors")); });
   actions_.add("edit.stop", edit, tr("&Stop computation"),
                [this] {
                  runner_.cancel();
@@ -423,6 +425,10 @@ void MainWindow::buildMenus() {
   view->addSeparator();
   actions_.add("view.theme", view, tr("Switch light/dark &theme"),
                [this] { setTheme(currentTheme() == Theme::Dark ? Theme::Light : Theme::Dark); }, {{}, "theme"});
+
+  auto* pinned = new PinnedResults(document_, {scene_, frame_}, this);
+  pinned->addActions(actions_, view);
+  connect(pinned, &PinnedResults::message, this, &MainWindow::tell);
 
   explain_->addActions(actions_, menuBar()->addMenu(tr("E&xplain")));
   teaching_->addActions(actions_, menuBar()->addMenu(tr("&Help")), view);
@@ -513,7 +519,7 @@ QPixmap MainWindow::picture() {
 
 void MainWindow::recompute() {
   if (document_.scene() && engine_.inspect)
-    runner_.inspect(document_.sharedScene(), document_.request(), document_.inspection(), document_.selection().frame);
+    runner_.inspect(document_.sharedScene(), document_.request(), document_.computed(), document_.selection().frame);
 }
 
 void MainWindow::showProblem(const QString& oneLine) {

@@ -51,6 +51,38 @@ class DiagnosisTest : public QObject {
   }
 
  private slots:
+  /// 5 of 25 highlights are missed, all of them cut by the border; the others are off by 1 %.
+  void whatWrongHighlightsHaveInCommonIsOneClick() {
+    const Fixture fixture(25);
+    Document document(parseTrainSpec);
+    DiagnosisPanel panel(document);
+    panel.resize(600, 400);
+    panel.show();
+    QVERIFY(QTest::qWaitForWindowExposed(&panel));
+    Opened opened = fixture.opened();
+    opened.request.models = {"dual"};
+    document.open(opened);
+    auto inspection = std::make_shared<Inspection>(drawnCircles(fixture.scene(), document.request()));
+    for (FrameComparison& c : inspection->models.at("dual").frames) {
+      FrameComparison::Row& row = c.rows.front();
+      if (!row.metrics) row.metrics.emplace(), c.prediction = inspection->models.at("dual").frames.front().prediction;
+      row.failure.reset();
+      row.metrics->contourErrorPct = 1;
+      if (c.frame % 5 != 2) continue;
+      inspection->evidence[std::size_t(c.frame)].highlights.front().touchesBorder = true;
+      row.metrics.reset();
+      row.predicted = -1;
+    }
+    document.setInspection(inspection, document.request());
+    const QList<QTreeWidgetItem*> found =
+        panel.list()->findItems(QStringLiteral("in common"), Qt::MatchStartsWith | Qt::MatchRecursive);
+    QCOMPARE(found.size(), 1);
+    QCOMPARE(found[0]->text(0), QStringLiteral("in common: 5 of 5 are cut by the image's border; 0 of 20 others"));
+    QTest::mouseClick(panel.list()->viewport(), Qt::LeftButton, {}, panel.list()->visualItemRect(found[0]).center());
+    QCOMPARE(int(document.brushed().size()), 5);
+    QCOMPARE(document.brushed().begin()->frame, 2);
+  }
+
   void aFaultIsNamedAndItsRemedyIsOneStepOfUndo() {
     Document document(parseTrainSpec);
     DiagnosisPanel panel(document);

@@ -74,6 +74,7 @@ QObject* makeExplainTest();
 QObject* makeLessonsTest();
 QObject* makeRecoveryTest();
 int runUntilKilled();  ///< see recovery_test.cpp
+QObject* makeTableTest();
 QObject* makeTradeoffTest();
 QObject* makeTurnsTest();
 QObject* makeUnreadableTest();

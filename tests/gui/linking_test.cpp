@@ -72,7 +72,7 @@ class LinkingTest : public QObject {
     view->sortByColumn(ErrorModel::ErrorPct, Qt::DescendingOrder);
     // Failures have no number and come first in descending order; the first number is the largest error.
     int row = 0;
-    while (view->model()->index(row, ErrorModel::Status).data().toString() != QStringLiteral("ok")) ++row;
+    while (view->model()->index(row, ErrorModel::Status).data().toString() == QStringLiteral("refused")) ++row;
     const QModelIndex worst = view->model()->index(row, ErrorModel::Frame);
     for (int r = row + 1; r < view->model()->rowCount(); ++r)
       QVERIFY(view->model()->index(r, ErrorModel::ErrorPct).data(ErrorModel::kSortRole).toDouble() <=
@@ -206,7 +206,7 @@ class LinkingTest : public QObject {
     const QStringList lines = QApplication::clipboard()->text().split('\n');
     QCOMPARE(lines.size(), 3);  // header, row, end
     QVERIFY(lines[0].startsWith(QStringLiteral("Frame\tRole\tModel")));
-    QCOMPARE(lines[1].split('\t').size(), int(ErrorModel::ColumnCount));
+    QCOMPARE(lines[1].split('\t').size(), lines[0].split('\t').size());
     QCOMPARE(lines[1].section('\t', 0, 0), QStringLiteral("0000"));
   }
 

@@ -37,6 +37,7 @@ int main(int argc, char** argv) {
       {"export", makeExportTest},
       {"plots", makePlotsTest},
       {"diagnosis", makeDiagnosisTest},
+      {"table", makeTableTest},
       {"tradeoff", makeTradeoffTest},
       {"parameters", makeParametersTest},
       {"picking", makePickingTest},

@@ -264,7 +264,7 @@ TEST(Plots, SamplesOfAFrameOnTheSphere) {
 }
 
 TEST(Plots, EveryKindHasAName) {
-  EXPECT_EQ(plotKinds().size(), 8u);
+  EXPECT_EQ(plotKinds().size(), 9u);
   for (const PlotKind& k : plotKinds()) EXPECT_GT(std::string(k.help).size(), 20u) << k.id;
 }
 
