@@ -14,6 +14,7 @@
 #include <functional>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <set>
 
 #include "core/geometry/light.h"
@@ -197,9 +198,11 @@ std::optional<Framing> highlightFraming(const LayerInput& in, int highlight, Hig
     if (across.dot(toCamera) < 0) across = -across;
     place.back = (0.42 * p.normal + 0.75 * across + 0.5 * side).normalized();
   }
-  // A vase stands: where the highlight is on its side, upwards is the world's.
-  if (look != HighlightLook::Camera && !in.frames.empty())
-    if (const Eigen::Vector3d world = upwards(in, in.frames);
+  // A vase stands: where the highlight is on its side, upwards is the world's. All cameras together tell it, also where one alone is shown.
+  std::vector<int> cameras(in.inspection->scene->frames.size());
+  std::iota(cameras.begin(), cameras.end(), 0);
+  if (look != HighlightLook::Camera)
+    if (const Eigen::Vector3d world = upwards(in, cameras);
         world.dot(p.normal) < kLeansUp && std::abs(world.dot(place.back)) < kAlongUp)
       up = world;
   place.up = (up - up.dot(place.back) * place.back).normalized();

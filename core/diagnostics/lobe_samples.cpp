@@ -121,7 +121,6 @@ Outcome<LobeSamples> lobeSamples(const Image& linear, const Image* mask, const H
         continue;
       }
       const double above = cut.at(x, y) - background.at(x, y);
-      if (!(above > 0)) continue;
       const Pixel stored(x0 + x, y0 + y);
       const Pixel ideal = camera.hasDistortion() ? camera.undistorted(stored) : stored;
       if (!ideal.allFinite()) continue;
@@ -132,10 +131,15 @@ Outcome<LobeSamples> lobeSamples(const Image& linear, const Image* mask, const H
       if (!(p.normal.dot(toLight) > 0)) continue;
       LobeSample s;
       s.at = ideal;
-      s.alpha = incidentAngle(p.normal, toLight, (eye - p.position).normalized());
+      const Eigen::Vector3d toCamera = (eye - p.position).normalized();
+      s.alpha = incidentAngle(p.normal, toLight, toCamera);
+      if (!std::isfinite(s.alpha) || !std::isfinite(above)) continue;
+      const double distance = light.atInfinity() ? 1 : (light.position() - p.position).norm();
+      result.pixels.push_back({s.alpha, above, p.normal, toLight, toCamera, distance});
+      if (!(above > 0)) continue;
       s.logI = std::log(above);
       s.direction = std::atan2(ideal.y() - middle.y(), ideal.x() - middle.x());
-      if (!std::isfinite(s.alpha) || !std::isfinite(s.logI)) continue;
+      if (!std::isfinite(s.logI)) continue;
       brightest = std::max(brightest, above);
       result.samples.push_back(s);
     }

@@ -31,7 +31,16 @@ struct LobeFit {
   double alphaAt(double fraction) const;
 };
 
+/// One pixel of the lit surface around a highlight, bright or not, for lobes that need more than alpha.
+struct LobePixel {
+  double alpha = 0;                           ///< rad
+  double radiance = 0;                        ///< above the background; negative where noise is
+  Eigen::Vector3d normal, toLight, toCamera;  ///< unit, at the surface point
+  double distance = 1;                        ///< m, to the light; 1 for one at infinity
+};
+
 struct LobeSamples {
+  std::vector<LobePixel> pixels;  ///< also what lies at or below the background
   std::vector<LobeSample> samples;
   std::optional<LobeFit> fit;
   std::optional<Failure> fitFailure;  ///< TooFewPoints; NotConverged when the radiance does not fall with alpha

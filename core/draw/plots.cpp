@@ -37,6 +37,12 @@ const std::vector<PlotKind>& plotKinds() {
        "Two numbers of every highlight, one dot each. Click selects, dragging a rectangle brushes: the table of errors can show "
        "what is "
        "brushed. A highlight without a value is counted in words and not drawn; rings have no error."},
+      {"lobes", "Every lobe",
+       "Radiance of one highlight over its peak against alpha, means of the pixels with their spread, and every lobe fitted to "
+       "them: "
+       "roughness m and the residual in % of the peak. Clipped pixels are left out. \"As good\" is what the pixels cannot tell "
+       "from the "
+       "best. For a point light."},
       {"axes", "Semi-axes", "Semi-axes of each model's ellipsoid, longest first, with one standard deviation where it is known."},
       {"singular", "Singular values",
        "Of the linear system for Q*. A small last value beside a large second-last value means a well-determined ellipsoid."},
@@ -47,6 +53,21 @@ const std::vector<PlotKind>& plotKinds() {
        "Error against time per frame of every measured setting. Click a point to load its setting."}};
   return all;
 }
+
+namespace {
+void storeSamples(FrameSamples::Lobe& lobe, Outcome<LobeSamples> samples) {
+  if (!samples) {
+    lobe.failure = samples.failure();
+    return;
+  }
+  lobe.samples = std::move(*samples);
+  Outcome<LobeComparison> comparison = compareLobes(*lobe.samples);
+  if (comparison)
+    lobe.comparison = std::move(*comparison);
+  else
+    lobe.comparisonFailure = comparison.failure();
+}
+}  // namespace
 
 FrameSamples frameSamples(const Inspection& inspection, int frame, const std::string& model) {
   FrameSamples result;
@@ -94,12 +115,8 @@ FrameSamples frameSamples(const Inspection& inspection, int frame, const std::st
       } else if (!mask) {
         lobe.failure = mask.failure();
       } else {
-        Outcome<LobeSamples> samples =
-            lobeSamples(*linear, mask->has_value() ? &**mask : nullptr, h, source.camera, **surface, *light, options);
-        if (samples)
-          lobe.samples = std::move(*samples);
-        else
-          lobe.failure = samples.failure();
+        storeSamples(lobe,
+                     lobeSamples(*linear, mask->has_value() ? &**mask : nullptr, h, source.camera, **surface, *light, options));
       }
       if (const auto it = inspection.models.find(model); it != inspection.models.end())
         for (const ModelResult::Fit& f : it->second.fits)
@@ -112,6 +129,13 @@ FrameSamples frameSamples(const Inspection& inspection, int frame, const std::st
   return result;
 }
 
+const FrameSamples::Lobe* lobeOfHighlight(const FrameSamples& samples, int highlight) {
+  const FrameSamples::Lobe* lobe = nullptr;
+  for (const FrameSamples::Lobe& l : samples.lobes)
+    if (l.observed == highlight || (highlight < 0 && !lobe)) lobe = &l;
+  return lobe;
+}
+
 PlotData lobePlot(const FrameSamples& samples, int highlight) {
   PlotData plot;
   plot.id = "lobe";
@@ -119,9 +143,7 @@ PlotData lobePlot(const FrameSamples& samples, int highlight) {
   plot.x.title = "alpha (\u00b0)";
   plot.y.title = "log I/K'";
   if (!samples.failure.empty()) return nothing(plot, samples.failure);
-  const FrameSamples::Lobe* lobe = nullptr;
-  for (const FrameSamples::Lobe& l : samples.lobes)
-    if (l.observed == highlight || (highlight < 0 && !lobe)) lobe = &l;
+  const FrameSamples::Lobe* const lobe = lobeOfHighlight(samples, highlight);
   if (!lobe) return nothing(plot, "No highlight in this frame");
   if (!lobe->samples)
     return nothing(plot, "No lobe: " + (lobe->failure ? lobe->failure->message() : std::string("nothing sampled")));

@@ -7,6 +7,7 @@
 
 #include "core/diagnostics/conditioning.h"
 #include "core/diagnostics/influence.h"
+#include "core/diagnostics/lobe_comparison.h"
 #include "core/diagnostics/lobe_samples.h"
 #include "core/diagnostics/polar_residual.h"
 #include "core/draw/plot_data.h"
@@ -34,7 +35,9 @@ struct FrameSamples {
     double level = 0;                    ///< contour level, fraction of the peak
     std::optional<LobeSamples> samples;  ///< exactly one of samples and failure
     std::optional<Failure> failure;
-    std::optional<double> roughness;  ///< m of the model, where it has one
+    std::optional<double> roughness;             ///< m of the model, where it has one
+    std::optional<LobeComparison> comparison{};  ///< of samples; none where `comparisonFailure` or `failure` says why
+    std::optional<Failure> comparisonFailure{};
   };
   std::vector<Lobe> lobes;
   std::string failure;  ///< why there is nothing; "" when there is
@@ -54,6 +57,11 @@ PlotData errorPlot(const Inspection& inspection, const ErrorPlotOptions& options
 /// log(I/K') against alpha of one highlight's pixels, the lobe fitted to them and the model's own. @param highlight  -1 = the
 /// first.
 PlotData lobePlot(const FrameSamples& samples, int highlight);
+/// Radiance over its peak against alpha: means and spread of the pixels of one highlight, and every lobe fitted to them, with roughness
+/// and residual. @param highlight  -1 = the first.
+PlotData lobesPlot(const FrameSamples& samples, int highlight);
+/// The samples of one highlight; -1 = the first; null where there are none.
+const FrameSamples::Lobe* lobeOfHighlight(const FrameSamples& samples, int highlight);
 /// Semi-axes of every model's ellipsoid, longest first, with one standard deviation where the fit tells one.
 PlotData semiAxesPlot(const Inspection& inspection);
 /// Signed distance predicted minus observed by direction, every model of the frame. @param highlight  -1 = the first matched one.

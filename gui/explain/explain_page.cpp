@@ -170,6 +170,9 @@ QString ExplainPage::stepPage() const {
     html += box(warningColour(), said("No walk to show: %1").arg(walkProblem.toHtmlEscaped()));
   if (!walkEnds.isEmpty() && text.layers.contains(QStringLiteral("walk")))
     html += QStringLiteral("<p><b>%1</b> %2</p>").arg(said("This walk ends on"), walkEnds.toHtmlEscaped());
+  if (text.id == QLatin1String("ellipsoid") && !s.failure)
+    html += QStringLiteral("<p><a href='action:explain.duality'>%1</a></p>")
+                .arg(said("Why is this linear? Primal and dual side by side"));
   return html + (s.broken.empty() && !s.failure ? QString() : QStringLiteral("<br>")) + numbersTable(s.numbers) + end;
 }
 

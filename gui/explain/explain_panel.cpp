@@ -23,6 +23,7 @@
 #include "gui/base/flow_layout.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
+#include "gui/explain/duality_window.h"
 #include "gui/explain/explain_page.h"
 #include "gui/explain/explain_texts.h"
 #include "gui/explain/lessons.h"
@@ -178,6 +179,11 @@ void ExplainPanel::openLesson(const QString& id) {
   const QString file = lessonFile(id);
   if (file.isEmpty()) return emit problem(tr("Cannot find the session of lesson %1 beside the program").arg(id));
   emit lessonRequested(file);
+}
+
+void ExplainPanel::openDuality() {
+  if (!duality_) duality_ = new DualityWindow(document_, window());
+  duality_->open();
 }
 
 void ExplainPanel::follow(const QUrl& link) {
@@ -358,6 +364,8 @@ void ExplainPanel::addActions(Actions& actions, QMenu* menu) {
   actions.add("explain.walk-back", menu, tr("Walk one step bac&k"), [this] { walk_->setStep(walk_->step() - 1); },
               {{Qt::Key_Comma}});
   menu->addSeparator();
+  actions.add("explain.duality", menu, tr("Primal and &dual side by side"), [this] { openDuality(); },
+              {{}, {}, tr("The planes that touch the cones of the selected model, and their dual points")});
   QMenu* taught = menu->addMenu(tr("Less&ons"));
   for (const Lesson& lesson : lessons())
     actions.add("lesson." + lesson.id, taught, numberedTitle(lesson), [this, id = lesson.id] { openLesson(id); });

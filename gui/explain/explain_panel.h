@@ -24,6 +24,7 @@ class QUrl;
 
 namespace glint::gui {
 
+class DualityWindow;
 class WalkPlayer;
 class WalkView;
 
@@ -73,6 +74,7 @@ class ExplainPanel : public QWidget {
   int neighbour(int by) const;
   QString subject() const;
   void openLesson(const QString& id);
+  void openDuality();
   void follow(const QUrl& link);
 
   Document& document_;
@@ -97,6 +99,7 @@ class ExplainPanel : public QWidget {
   QStringList rows_;            ///< of the list
   QSet<int> unfolded_;          ///< questions of the lesson whose answers are shown
   QLabel* place_;
+  DualityWindow* duality_ = nullptr;  ///< made when it is first asked for
   QToolButton *back_, *next_, *leave_;
 };
 

@@ -12,15 +12,10 @@
 
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
+#include "gui/explain/paint_picture.h"
 #include "viz/walk_picture.h"
 
 namespace glint::gui {
-
-namespace {
-Qt::PenStyle penStyle(draw::Dash dash) {
-  return dash == draw::Dash::Solid ? Qt::SolidLine : dash == draw::Dash::Dashed ? Qt::DashLine : Qt::DotLine;
-}
-}  // namespace
 
 /// Paints what viz says.
 class WalkView::Picture : public QWidget {
@@ -30,47 +25,16 @@ class WalkView::Picture : public QWidget {
  protected:
   void paintEvent(QPaintEvent*) override {
     QPainter painter(this);
-    painter.setRenderHint(QPainter::Antialiasing);
     painter.fillRect(rect(), palette().color(QPalette::Base));
-    QFont plain = font(), strong = font();
-    strong.setBold(true);
     if (!player_.story()) {
       painter.setPen(palette().color(QPalette::PlaceholderText));
       painter.drawText(rect().adjusted(12, 8, -12, -8), Qt::AlignCenter | Qt::TextWordWrap,
                        player_.problem().isEmpty() ? QString() : tr("No walk here: %1").arg(player_.problem()));
       return;
     }
-    const QFontMetricsF metrics(plain);
-    const viz::WalkPicture picture =
-        viz::walkPicture(*player_.story(), player_.step(), width(), height(), metrics.height(), currentTheme() == Theme::Dark);
-    for (const auto& line : picture.lines) {
-      QPolygonF points;
-      for (const Eigen::Vector2d& p : line.points) points << QPointF(p.x(), p.y());
-      QColor colour = toQColor(line.colour);
-      if (line.filled) {
-        colour.setAlphaF(0.45);
-        painter.setPen(Qt::NoPen);
-        painter.setBrush(colour);
-        painter.drawPolygon(points);
-        continue;
-      }
-      painter.setBrush(Qt::NoBrush);
-      painter.setPen(QPen(colour, line.width, penStyle(line.dash), Qt::RoundCap, Qt::RoundJoin));
-      painter.drawPolyline(points);
-    }
-    for (const auto& dot : picture.dots) {
-      painter.setPen(Qt::NoPen);
-      painter.setBrush(toQColor(dot.colour));
-      painter.drawEllipse(QPointF(dot.at.x(), dot.at.y()), dot.radius, dot.radius);
-    }
-    for (const auto& text : picture.texts) {
-      painter.setFont(text.strong ? strong : plain);
-      painter.setPen(toQColor(text.colour));
-      const QString s = toQString(text.text);
-      const double w = QFontMetricsF(painter.font()).horizontalAdvance(s);
-      const double x = text.at.x() - (text.align == draw::Align::Left ? 0 : text.align == draw::Align::Centre ? w / 2 : w);
-      painter.drawText(QPointF(x, text.at.y()), s);
-    }
+    const viz::WalkPicture picture = viz::walkPicture(*player_.story(), player_.step(), width(), height(),
+                                                      QFontMetricsF(font()).height(), currentTheme() == Theme::Dark);
+    paintPicture(painter, picture, font());
   }
 
  private:

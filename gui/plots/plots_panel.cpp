@@ -55,7 +55,7 @@ PlotsPanel::PlotsPanel(Document& document, QWidget* parent) : QWidget(parent), d
   connect(&document_, &Document::staleChanged, new StaleBadge(this, Qt::BottomRightCorner), &StaleBadge::setStale);
   connect(&loader_, &SamplesLoader::loaded, this, [this](const FrameSamplesPtr& samples) {
     samples_ = samples;
-    markDirty({"lobe", "limit-angle"});
+    markDirty({"lobe", "lobes", "limit-angle"});
   });
   connect(&document_, &Document::sceneOpened, this, [this] {
     samples_.reset();
@@ -246,12 +246,13 @@ draw::PlotData PlotsPanel::data(const std::string& id, Pane& pane) {
     empty.empty = tr("Reading frame…").toStdString();
     return empty;
   }
+  if (id == "lobes") return draw::lobesPlot(*samples_, s.highlight);
   return id == "lobe" ? draw::lobePlot(*samples_, s.highlight) : draw::limitAnglePlot(*samples_, s.highlight);
 }
 
 void PlotsPanel::wantSamples() {
   for (int i = 0; i < 2; ++i) {
-    if (kind(i) != "lobe" && kind(i) != "limit-angle") continue;
+    if (kind(i) != "lobe" && kind(i) != "lobes" && kind(i) != "limit-angle") continue;
     if (!panes_[std::size_t(i)].canvas->isVisible() || !document_.inspection()) continue;
     return loader_.want(document_.inspection(), document_.selection().frame, document_.plottedModel());
   }
@@ -260,8 +261,8 @@ void PlotsPanel::wantSamples() {
 void PlotsPanel::followSelection() {
   const draw::Selection& s = document_.selection();
   if (s.frame != shown_.frame || s.model != shown_.model) wantSamples();
-  if (s.frame != shown_.frame || s.highlight != shown_.highlight) markDirty({"dial", "lobe", "limit-angle"});
-  if (s.model != shown_.model) markDirty({"influence", "lobe", "limit-angle"});
+  if (s.frame != shown_.frame || s.highlight != shown_.highlight) markDirty({"dial", "lobe", "lobes", "limit-angle"});
+  if (s.model != shown_.model) markDirty({"influence", "lobe", "lobes", "limit-angle"});
   shown_ = s;
   for (Pane& pane : panes_)
     if (pane.canvas->isVisible() && !pane.dirty) pane.canvas->setSelection(s);

@@ -40,6 +40,7 @@ QString synonymsOf(const QString& id) {
       {QStringLiteral("frame.radiance"), QStringLiteral("hdr float linear")},
       {QStringLiteral("plots.show-dial"), QStringLiteral("polar residuals")},
       {QStringLiteral("plots.show-lobe"), QStringLiteral("log radiance specular profile")},
+      {QStringLiteral("plots.show-lobes"), QStringLiteral("phong blinn beckmann torrance sparrow ggx brdf profile")},
       {QStringLiteral("view.colour-influence"), QStringLiteral("leave one out influence")},
       {QStringLiteral("view.frame-all"), QStringLiteral("zoom fit reset view")},
       {QStringLiteral("view.look-through"), QStringLiteral("first person")},

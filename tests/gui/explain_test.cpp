@@ -5,6 +5,7 @@
 #include <QAction>
 #include <QComboBox>
 #include <QDockWidget>
+#include <QLabel>
 #include <QListWidget>
 #include <QTextBrowser>
 #include <QToolButton>
@@ -13,6 +14,7 @@
 
 #include "gui/base/text.h"
 #include "gui/base/vtk_canvas.h"
+#include "gui/explain/duality_window.h"
 #include "gui/explain/explain_panel.h"
 #include "gui/explain/explain_texts.h"
 #include "gui/explain/walk_view.h"
@@ -63,6 +65,42 @@ class ExplainTest : public QObject {
       QVERIFY2(t.words(QStringLiteral("canonical")).text == t.text, qPrintable(t.id));
       QVERIFY2((t.words(QStringLiteral("a new model")).text == t.text) == t.ofModels.isEmpty(), qPrintable(t.id));
     }
+  }
+
+  /// A window of its own, in which plane and point are lit together by pointer and keys.
+  void primalAndDualAreSideBySide() {
+    window_->actions().find("explain.duality")->trigger();
+    auto* shown = window_->findChild<DualityWindow*>("duality");
+    QVERIFY(shown && shown->isVisible());
+    QVERIFY2(shown->duality(), qPrintable(window_->document().option("explain/step", std::string()).c_str()));
+    auto* words = shown->findChild<QLabel*>("duality.words");
+    const QString plain = words->text();
+    QVERIFY(plain.contains("linear"));
+    const viz::DualityPicture before = shown->picture();
+    for (const auto* places : {&before.planes, &before.points}) {
+      const Eigen::Vector2d at = (*places)[places->size() / 2].at;
+      QTest::mouseMove(shown->canvas(), QPoint(2, 2));
+      QTest::mouseMove(shown->canvas(), QPoint(int(at.x()), int(at.y())));
+      QTRY_VERIFY(shown->lit().view >= 0);
+      QVERIFY(words->text() != plain);
+    }
+    QTest::mouseMove(shown->canvas(), QPoint(2, 2));
+    QTRY_VERIFY(shown->lit().view < 0);
+    QCOMPARE(words->text(), plain);
+    QTest::keyClick(shown->canvas(), Qt::Key_Right);
+    QCOMPARE(shown->lit().plane, 0);
+    QTest::keyClick(shown->canvas(), Qt::Key_Left);
+    QCOMPARE(shown->lit().plane, int(shown->duality()->views.front().planes.size()) - 1);
+    const int view = shown->lit().view;
+    QTest::keyClick(shown->canvas(), Qt::Key_Down);
+    QVERIFY(shown->lit().view != view);
+    // It follows the selection.
+    draw::Selection selection = window_->document().selection();
+    selection.model = shown->duality()->model == "primal" ? "canonical" : "primal";
+    window_->document().select(selection);
+    QCOMPARE(QString::fromStdString(shown->duality() ? shown->duality()->model : selection.model),
+             QString::fromStdString(selection.model));
+    shown->close();
   }
 
   void everyStepIsReachedForwardsAndBackAndIsOneStepOfUndo() {

@@ -47,6 +47,7 @@ const std::map<QString, const char*>& leftOut() {
                                                   {"frame.retexture-choose-", "asks for a file"},
                                                   {"frame.play", "goes on by the clock"},
                                                   {"explain.play-walk", "goes on by the clock"},
+                                                  {"explain.duality", "opens a window"},
                                                   {"lesson.", "opens another session"},
                                                   {"edit.stop", "leaves results out of date"},
                                                   {"plots.influence", "fits once per training frame"},

@@ -484,6 +484,34 @@ TEST(TangentPlanes, AloneTheyReachTheCanonicalContour) {
   EXPECT_LT(widest(), 0.8 * alone);
 }
 
+/// A step about one frame shows that frame alone, and its camera alone may look down so steeply that the image's upwards is nearly
+/// level: what is up must not follow from how many cameras are shown.
+TEST(Framing, WhatIsUpDoesNotDependOnHowManyCamerasAreShown) {
+  const TemporaryFolder folder;
+  const auto inspection = smallInspection(folder.path());
+  LayerInput input = heldOutInput(*inspection);
+  const std::optional<Framing> all = highlightFraming(input, 0, HighlightLook::Section, {});
+  input.frames = {input.selection.frame};
+  input.solo = true;
+  const std::optional<Framing> alone = highlightFraming(input, 0, HighlightLook::Section, {});
+  ASSERT_TRUE(all && alone);
+  EXPECT_LT((all->up - alone->up).norm(), 1e-12);
+}
+
+TEST(Layers, TheSelectedModelLiesOnTopOfTheOthers) {
+  const TemporaryFolder folder;
+  const auto inspection = smallInspection(folder.path());
+  LayerInput input = heldOutInput(*inspection);
+  ASSERT_GE(input.models.size(), 2u);
+  for (const std::string& model : input.models) {
+    input.selection.model = model;
+    double own = 0, others = 0;
+    for (const Drawn& d : predictedContoursLayer(input).drawn)
+      if (d.nearerPx > 0) (d.info.model == model ? own : others) = std::max(d.info.model == model ? own : others, d.nearerPx);
+    if (own > 0) EXPECT_GT(own, others) << model;
+  }
+}
+
 TEST(Framing, HoldsTheWholeTangentPlaneThatIsDrawn) {
   const TemporaryFolder folder;
   const auto inspection = smallInspection(folder.path());

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <fstream>
 #include <numbers>
+#include <set>
 #include <sstream>
 
 #include "core/base/atomic_file.h"
@@ -247,6 +248,56 @@ TEST(Plots, LobeAndItsFit) {
   EXPECT_FALSE(lobePlot(samples, 4).empty.empty());
   samples.failure = "No surface.";
   EXPECT_EQ(lobePlot(samples, -1).empty, "No surface.");
+}
+
+TEST(Plots, EveryLobeOverTheMeasuredProfile) {
+  FrameSamples samples;
+  samples.frame = 3;
+  samples.frameId = "0003";
+  FrameSamples::Lobe lobe;
+  lobe.observed = 0;
+  lobe.level = 0.5;
+  LobeComparison c;
+  c.measured = {{0, 1, 0.01, 5}, {0.1, 0.4, 0.02, 9}};
+  c.matches.resize(4);
+  const Lobe order[] = {Lobe::Phong, Lobe::BlinnPhong, Lobe::TorranceSparrow, Lobe::Ggx};
+  for (std::size_t k = 0; k < 4; ++k) {
+    c.matches[k].lobe = order[k];
+    c.matches[k].m = 0.1;
+    c.matches[k].rmsPct = 4 - double(k);
+    c.matches[k].profile = {1, 0.37};
+  }
+  c.matches[0].failure = Failure{Reason::NotConverged, "the pixels do not tell the lobe's width"};
+  c.matches[0].profile.clear();
+  c.matches[2].asGood = c.matches[3].asGood = true;
+  c.best = 3;
+  c.pixels = 14;
+  c.clipped = 17;
+  lobe.comparison = c;
+  samples.lobes = {lobe};
+  const PlotData plot = lobesPlot(samples, -1);
+  ASSERT_EQ(plot.series.size(), 6u);  // four lobes, the pixels, the level
+  EXPECT_NE(plot.title.find("17 clipped pixels left out"), std::string::npos);
+  EXPECT_NE(plot.title.find("0003"), std::string::npos);
+  EXPECT_NE(plot.series[0].name.find("do not tell"), std::string::npos);
+  EXPECT_EQ(plot.series[1].name.find("as good"), std::string::npos);
+  EXPECT_NE(plot.series[1].name.find("rms 3 %"), std::string::npos);
+  EXPECT_NE(plot.series[2].name.find("as good"), std::string::npos);
+  EXPECT_NE(plot.series[3].name.find("best"), std::string::npos);
+  EXPECT_NEAR(plot.series[3].points[1].x, 0.1 * 180 / std::numbers::pi, 1e-12);
+  EXPECT_NEAR(plot.series[3].points[1].y, 0.37, 1e-12);
+  const PlotPoint& measured = plot.series[4].points[1];
+  EXPECT_NEAR(measured.y, 0.4, 1e-12);
+  EXPECT_NEAR(measured.band->first, 0.38, 1e-12);
+  EXPECT_NEAR(measured.band->second, 0.42, 1e-12);
+  EXPECT_NEAR(plot.series[5].points[0].y, 0.5, 1e-12);
+  std::set<std::pair<Colour, Dash>> styles;
+  for (int k = 0; k < 4; ++k) styles.insert({plot.series[std::size_t(k)].colour, plot.series[std::size_t(k)].dash});
+  EXPECT_EQ(styles.size(), 4u);
+  EXPECT_FALSE(lobesPlot(samples, 4).empty.empty());
+  samples.lobes[0].comparison.reset();
+  samples.lobes[0].comparisonFailure = Failure{Reason::TooFewPoints, "20 pixels"};
+  EXPECT_NE(lobesPlot(samples, -1).empty.find("20 pixels"), std::string::npos);
 }
 
 TEST(Plots, SamplesOfAFrameOnTheSphere) {

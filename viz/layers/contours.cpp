@@ -105,8 +105,10 @@ LayerContent predictedContoursLayer(const LayerInput& in) {
   LayerContent content;
   if (!in.surface) return content;
   const Camera& camera = in.frame(in.selection.frame).camera;
-  double nearerPx = kPredictedPx;  // each model a little more, so that equal contours do not flicker
-  for (const std::string& model : in.models) {
+  double nearerPx = kPredictedPx;               // each model a little more, so that equal contours do not flicker
+  std::vector<std::string> models = in.models;  // the selected one last, on top of the others
+  std::stable_partition(models.begin(), models.end(), [&](const std::string& m) { return m != in.selection.model; });
+  for (const std::string& model : models) {
     for (const FrameComparison* comparison : in.comparisons(model)) {
       for (std::size_t i = 0; i < comparison->prediction.highlights().size(); ++i) {
         const PredictedHighlight& h = comparison->prediction.highlights()[i];

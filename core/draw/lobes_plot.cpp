@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/base/angle.h"
+#include "core/base/number_text.h"
+#include "core/draw/plot_text.h"
+#include "core/draw/plots.h"
+
+namespace glint::draw {
+namespace {
+
+constexpr double kFloor = 2e-3;  // of the peak: below, 8 bits show nothing
+
+/// Of the lobes in their order; no model's, and told apart by their dashes as well.
+struct LobeStyle {
+  Colour colour;
+  Dash dash;
+};
+constexpr std::array<LobeStyle, 4> kLobeStyles{{{{0.55, 0.42, 0.85}, Dash::Dotted},
+                                                {{0.80, 0.55, 0.10}, Dash::Dashed},
+                                                {{0.25, 0.56, 0.86}, Dash::Solid},
+                                                {{0.20, 0.62, 0.35}, Dash::Solid}}};
+
+PlotSeries measuredSeries(const FrameSamples& samples, const FrameSamples::Lobe& lobe, const LobeComparison& comparison) {
+  PlotSeries measured;
+  measured.name = formatted("measured, %d pixels, with their spread", comparison.pixels);
+  measured.colour = kObserved;
+  measured.halo = true;
+  measured.shape = PlotShape::Points;
+  measured.pointSize = 6;
+  for (const LobeComparison::Bin& bin : comparison.measured) {
+    PlotPoint p;
+    p.x = degrees(bin.alpha);
+    p.y = bin.mean;
+    p.band = {{std::max(kFloor, bin.mean - bin.spread), bin.mean + bin.spread}};
+    p.target = {samples.frame, samples.model, lobe.light, lobe.observed, std::nullopt, -1};
+    p.label = formatted("alpha %.3g°: %.3g of the peak\nspread %.2g over %d pixels", p.x, p.y, bin.spread, bin.pixels);
+    measured.points.push_back(std::move(p));
+  }
+  return measured;
+}
+
+PlotSeries curveOf(const LobeMatch& match, const LobeComparison& comparison, const LobeStyle& style, bool best) {
+  PlotSeries curve;
+  curve.name = std::string(nameOf(match.lobe)) +
+               (match.failure ? ": " + match.failure->message()
+                              : formatted(", m = %.4g, rms %.2g %%", match.m, match.rmsPct) + (best           ? ", best"
+                                                                                               : match.asGood ? ", as good"
+                                                                                                              : ""));
+  curve.colour = style.colour;
+  curve.dash = style.dash;
+  curve.width = best ? 2.2 : 1.5;
+  for (std::size_t i = 0; i < match.profile.size(); ++i) {
+    PlotPoint p;
+    p.x = degrees(comparison.measured[i].alpha);
+    p.y = match.profile[i];
+    p.label = curve.name + formatted("\nalpha %.3g°: %.3g of the peak", p.x, p.y);
+    curve.points.push_back(std::move(p));
+  }
+  return curve;
+}
+
+}  // namespace
+
+PlotData lobesPlot(const FrameSamples& samples, int highlight) {
+  PlotData plot;
+  plot.id = "lobes";
+  plot.title = "One highlight under every lobe" + (samples.frameId.empty() ? "" : ", frame " + samples.frameId);
+  plot.x.title = "alpha (°)";
+  plot.y.title = "radiance / peak";
+  if (!samples.failure.empty()) return nothing(plot, samples.failure);
+  const FrameSamples::Lobe* const lobe = lobeOfHighlight(samples, highlight);
+  if (!lobe) return nothing(plot, "No highlight in this frame");
+  if (!lobe->comparison)
+    return nothing(plot, "No lobe: " + (lobe->failure             ? lobe->failure->message()
+                                        : lobe->comparisonFailure ? lobe->comparisonFailure->message()
+                                                                  : std::string("nothing sampled")));
+  const LobeComparison& comparison = *lobe->comparison;
+  plot.x.from = 0;
+  plot.y.log = true;
+  plot.y.floor = kFloor;
+  std::size_t style = 0;
+  for (std::size_t k = 0; k < comparison.matches.size(); ++k, ++style)
+    plot.series.push_back(
+        curveOf(comparison.matches[k], comparison, kLobeStyles[style % kLobeStyles.size()], int(k) == comparison.best));
+  plot.series.push_back(measuredSeries(samples, *lobe, comparison));
+  if (lobe->level > 0 && lobe->level < 1 && !comparison.measured.empty()) {
+    PlotSeries level;
+    level.name = formatted("level %.3g", lobe->level);
+    level.colour = kHeldOut;
+    level.dash = Dash::Dotted;
+    level.width = 1.5;
+    for (const double x : {0.0, degrees(comparison.measured.back().alpha)}) {
+      PlotPoint p;
+      p.x = x;
+      p.y = lobe->level;
+      p.label = formatted("contour level %.3g of the peak", lobe->level);
+      level.points.push_back(p);
+    }
+    plot.series.push_back(std::move(level));
+  }
+  if (comparison.clipped > 0) plot.title += formatted("   %d clipped pixels left out", comparison.clipped);
+  return plot;
+}
+
+}  // namespace glint::draw

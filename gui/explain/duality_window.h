@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <QDialog>
+#include <optional>
+
+#include "core/explain/duality.h"
+#include "gui/document/document.h"
+#include "viz/duality_picture.h"
+
+class QLabel;
+
+namespace glint::gui {
+
+/// Primal and dual side by side, of what is selected: the planes that touch a model's cones, and their dual points. A plane under the
+/// pointer lights its point and the other way round; the arrow keys go from plane to plane and from view to view; dragging turns both.
+class DualityWindow : public QDialog {
+  Q_OBJECT
+ public:
+  explicit DualityWindow(Document& document, QWidget* parent = nullptr);
+  void open() override;  ///< shows it, in front
+  const Duality* duality() const { return duality_ ? &*duality_ : nullptr; }
+  viz::DualityPlane lit() const { return lit_; }
+  /// As painted now.
+  viz::DualityPicture picture() const;
+  QWidget* canvas() const;
+
+ protected:
+  void showEvent(QShowEvent* e) override;
+  void keyPressEvent(QKeyEvent* e) override;
+
+ private:
+  class Picture;
+  void refresh();
+  void showWords();
+  void light(const viz::DualityPlane& plane);
+  int strongView() const;
+
+  Document& document_;
+  std::optional<Duality> duality_;
+  QString why_;  ///< there is none
+  viz::DualityPlane lit_;
+  double turn_ = 0, tilt_ = 0;
+  Picture* picture_;
+  QLabel *subject_, *words_;
+};
+
+}  // namespace glint::gui
