@@ -16,6 +16,10 @@ QString roleName(FrameRole role) {
   return {};
 }
 
+const std::vector<int>& shownExcluded(const Document& document) {
+  return document.pinnedShown() ? document.pinned()->request.excluded : document.request().excluded;
+}
+
 void addRoles(QMenu& menu, Document& document, int frame) {
   for (const auto& [role, title] : {std::pair(FrameRole::Training, QObject::tr("&Train on this frame")),
                                     std::pair(FrameRole::HeldOut, QObject::tr("Hol&d out this frame")),

@@ -118,7 +118,8 @@ void FramePanel::connectDocument() {
     const bool what = !document_.request().whatIf.none();
     if (std::exchange(whatIf_, what) && !what) fewerLines_ = true;
   });
-  connect(&document_, &Document::requestChanged, this, &FramePanel::showFrame);
+  for (const auto signal : {&Document::requestChanged, &Document::pinnedChanged})  // the roles of frames
+    connect(&document_, signal, this, &FramePanel::showFrame);
   for (const auto signal : {&Document::inspectionChanged, &Document::frameInspectionChanged})
     connect(&document_, signal, this, [this] {
       canvas_->setStale(document_.frameStale());

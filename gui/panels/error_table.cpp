@@ -37,17 +37,18 @@
 namespace glint::gui {
 
 namespace {
-constexpr int kSearchWidth = 130, kChangeWidth = 110;  // px
-constexpr int kColumnGapPx = 12;                       // of the summary
-constexpr double kWorstPct = 1000;                     // ten times the highlight's size: how far astray beyond that says nothing
-constexpr int kIou = 4, kMissed = 6, kSpurious = 7;    // columns of its values
+constexpr int kSearchWidth = 90, kChangeWidth = 110;  // px
+constexpr int kLeastLetters = 6;                      // of a choice of rows; its list shows the rest
+constexpr int kColumnGapPx = 12;                      // of the summary
+constexpr double kWorstPct = 1000;                    // ten times the highlight's size: how far astray beyond that says nothing
+constexpr int kIou = 4, kMissed = 6, kSpurious = 7;   // columns of its values
 }  // namespace
 
 ErrorTable::ErrorTable(Document& document, QWidget* parent) : QWidget(parent), document_(document) {
   auto* column = new QVBoxLayout(this);
   column->setContentsMargins(0, 0, 0, 0);
   column->setSpacing(0);
-  auto* head = new FlowLayout(10);  // a narrow dock puts the choice of rows below the summary
+  auto* head = new FlowLayout(6);  // a narrow dock puts the choice of rows below the summary
   head->setContentsMargins(8, 4, 6, 4);
   summary_ = new QLabel;
   summary_->setObjectName(QStringLiteral("errorSummary"));
@@ -61,13 +62,7 @@ ErrorTable::ErrorTable(Document& document, QWidget* parent) : QWidget(parent), d
   filter_->setAccessibleName(tr("Rows by frame"));
   filter_->setToolTip(
       tr("Which rows are shown. Problems have no error; brushed is what a rectangle in the plot \"Any two columns\" chose"));
-  auto* choices = new QWidget;
-  auto* choice = new QHBoxLayout(choices);
-  choice->setContentsMargins(0, 0, 0, 0);
-  choice->setSpacing(6);
-  choice->addWidget(new QLabel(tr("Show")));
-  choice->addWidget(filter_);
-  head->addWidget(choices);
+  head->addWidget(filter_);
   buildFilters(*head);
   count_ = new QLabel;
   count_->setObjectName(QStringLiteral("errorCount"));
@@ -159,7 +154,6 @@ void ErrorTable::buildFilters(QLayout& row) {
   models_->setAccessibleName(tr("Rows by model"));
   models_->setToolTip(tr("Rows of one model alone"));
   models_->addItem(tr("all models"));
-  models_->setSizeAdjustPolicy(QComboBox::AdjustToContents);
   statuses_ = new QComboBox;
   statuses_->setObjectName(QStringLiteral("errorStatusFilter"));
   statuses_->setAccessibleName(tr("Rows by status"));
@@ -176,10 +170,15 @@ void ErrorTable::buildFilters(QLayout& row) {
   search_->installEventFilter(this);
   columnsButton_ = new QToolButton;
   columnsButton_->setObjectName(QStringLiteral("errorColumnsButton"));
-  columnsButton_->setText(tr("Columns"));
+  columnsButton_->setIcon(icon(QStringLiteral("more")));
+  columnsButton_->setAccessibleName(tr("Columns of the table"));
   columnsButton_->setToolTip(tr("Which columns are shown; a right click on a heading opens the same list"));
   columnsButton_->setAutoRaise(true);
   columnsButton_->setPopupMode(QToolButton::InstantPopup);
+  for (QComboBox* box : {filter_, models_, statuses_}) {  // one line of a dock that shares the window's width
+    box->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+    box->setMinimumContentsLength(kLeastLetters);
+  }
   for (QWidget* widget : {static_cast<QWidget*>(models_), static_cast<QWidget*>(statuses_), static_cast<QWidget*>(search_),
                           static_cast<QWidget*>(columnsButton_)})
     row.addWidget(widget);
@@ -447,6 +446,12 @@ void ErrorTable::addActions(Actions& actions, QMenu* menu) {
                 search_->selectAll();
               },
               {{QKeySequence::Find}, {}, tr("Shows only the rows of the error table that have all typed words")});
+  actions.add("edit.error-columns", menu, tr("Choose error c&olumns"),
+              [this] {
+                emit shown();
+                columnsButton_->showMenu();
+              },
+              {{}, {}, tr("Which columns the error table shows")});
   actions.add("edit.brush-clear", menu, tr("Clear &brush"), [this] { document_.brush({}); },
               {{}, {}, tr("No highlight is brushed in the plot \"Any two columns\" any more")});
 }

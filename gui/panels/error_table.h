@@ -29,7 +29,7 @@ class ErrorTable : public QWidget {
   QTableView* view() const { return view_; }
   ErrorColumns* columns() const { return columns_; }
   void copySelection(QChar separator = QLatin1Char('\t')) const;
-  /// Adds "edit.copy-error-rows", "edit.copy-error-rows-csv", "edit.search-errors" and "edit.brush-clear".
+  /// Adds "edit.copy-error-rows", "edit.copy-error-rows-csv", "edit.search-errors", "edit.error-columns" and "edit.brush-clear".
   void addActions(Actions& actions, QMenu* menu);
 
  signals:

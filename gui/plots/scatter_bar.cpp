@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "gui/plots/scatter_bar.h"
 
+#include <QAction>
+#include <QActionGroup>
 #include <QComboBox>
-#include <QLabel>
+#include <QHBoxLayout>
+#include <QMenu>
 #include <QToolButton>
 
-#include "gui/base/flow_layout.h"
 #include "gui/base/text.h"
 
 namespace glint::gui {
@@ -16,25 +18,32 @@ constexpr RowValue kX = RowValue::IncidentDeg, kY = RowValue::ErrorPct;
 
 ScatterBar::ScatterBar(Document& document, const char* prefix, QWidget* parent)
     : QWidget(parent), document_(document), prefix_(prefix) {
-  auto* row = new FlowLayout(6);
-  setLayout(row);
+  auto* row = new QHBoxLayout(this);
   row->setContentsMargins(4, 0, 4, 2);
-  row->addWidget(y_ = column("y", tr("Vertical"), kY));
-  row->addWidget(logY_ = logarithm("log-y", tr("vertical axis")));
-  row->addWidget(new QLabel(tr("against")));
-  row->addWidget(x_ = column("x", tr("Horizontal"), kX));
-  row->addWidget(logX_ = logarithm("log-x", tr("horizontal axis")));
-  row->addWidget(new QLabel(tr("colour")));
-  colour_ = new QComboBox;
-  colour_->setObjectName(QStringLiteral("scatterColour"));
-  colour_->setAccessibleName(tr("What the colours mean"));
-  colour_->setToolTip(tr("What the colours mean"));
-  for (const draw::ScatterColourKind& k : draw::scatterColours()) colour_->addItem(tr(k.title), QString::fromLatin1(k.id));
-  connect(colour_, QOverload<int>::of(&QComboBox::activated), this, [this](int at) {
-    document_.setOption(key("colour"), colour_->itemData(at).toString().toStdString(),
-                        tr("Colours by %1").arg(colour_->itemText(at)));
-  });
-  row->addWidget(colour_);
+  row->setSpacing(4);
+  row->addWidget(y_ = column("y", tr("Vertical"), kY), 1);
+  row->addWidget(x_ = column("x", tr("Horizontal"), kX), 1);
+  auto* more = new QToolButton;
+  more->setObjectName(QStringLiteral("scatterOptions"));
+  more->setText(tr("Options"));
+  more->setToolTip(tr("Logarithmic axes, and what the colours mean"));
+  more->setAutoRaise(true);
+  more->setPopupMode(QToolButton::InstantPopup);
+  auto* menu = new QMenu(more);
+  menu->setToolTipsVisible(true);
+  logY_ = logarithm(menu, "log-y", tr("vertical axis"));
+  logX_ = logarithm(menu, "log-x", tr("horizontal axis"));
+  menu->addSeparator();
+  auto* group = new QActionGroup(menu);
+  for (const draw::ScatterColourKind& k : draw::scatterColours()) {
+    QAction* const action = menu->addAction(tr("Colours by %1").arg(tr(k.title)));
+    action->setCheckable(true);
+    group->addAction(action);
+    colours_ << action;
+    connect(action, &QAction::triggered, this, [this, k, action] { document_.setOption(key("colour"), k.id, action->text()); });
+  }
+  more->setMenu(menu);
+  row->addWidget(more);
   showOptions();
 }
 
@@ -43,7 +52,7 @@ QComboBox* ScatterBar::column(const char* name, const QString& title, RowValue o
   box->setObjectName(QStringLiteral("scatter-") + QLatin1String(name));
   box->setAccessibleName(tr("%1 axis").arg(title));
   box->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
-  box->setMinimumContentsLength(9);
+  box->setMinimumContentsLength(6);
   for (const RowColumn& c : highlightColumns()) {
     box->addItem(tr(c.title), QString::fromLatin1(c.id));
     box->setItemData(box->count() - 1, tr(c.help), Qt::ToolTipRole);
@@ -55,18 +64,14 @@ QComboBox* ScatterBar::column(const char* name, const QString& title, RowValue o
   return box;
 }
 
-QToolButton* ScatterBar::logarithm(const char* name, const QString& title) {
-  auto* button = new QToolButton;
-  button->setObjectName(QStringLiteral("scatter-") + QLatin1String(name));
-  button->setText(tr("log"));
-  button->setCheckable(true);
-  button->setAutoRaise(true);
-  button->setAccessibleName(tr("Logarithmic %1").arg(title));
-  button->setToolTip(tr("Logarithmic %1; what is not above 0 is counted and not shown").arg(title));
-  connect(button, &QToolButton::clicked, this, [this, name, title](bool on) {
+QAction* ScatterBar::logarithm(QMenu* menu, const char* name, const QString& title) {
+  QAction* const action = menu->addAction(tr("Logarithmic %1").arg(title));
+  action->setToolTip(tr("What is not above 0 is counted and not shown"));
+  action->setCheckable(true);
+  connect(action, &QAction::triggered, this, [this, name, title](bool on) {
     document_.setOption(key(name), on ? "on" : "off", (on ? tr("Logarithmic %1") : tr("Linear %1")).arg(title));
   });
-  return button;
+  return action;
 }
 
 RowValue ScatterBar::value(const char* name, RowValue otherwise) const {
@@ -93,7 +98,7 @@ void ScatterBar::showOptions() {
     box->setCurrentIndex(int(which));
     box->setToolTip(box->itemData(int(which), Qt::ToolTipRole).toString());
   }
-  colour_->setCurrentIndex(int(o.colour));
+  colours_[int(o.colour)]->setChecked(true);
   logX_->setChecked(o.logX);
   logY_->setChecked(o.logY);
 }

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <QList>
 #include <QWidget>
 
 #include "core/draw/scatter_plot.h"
 #include "gui/document/document.h"
 
+class QAction;
 class QComboBox;
-class QToolButton;
+class QMenu;
 
 namespace glint::gui {
 
@@ -24,15 +26,16 @@ class ScatterBar : public QWidget {
 
  private:
   QComboBox* column(const char* name, const QString& title, RowValue otherwise);
-  QToolButton* logarithm(const char* name, const QString& title);
+  QAction* logarithm(QMenu* menu, const char* name, const QString& title);
   std::string key(const char* name) const { return prefix_ + name; }
   RowValue value(const char* name, RowValue otherwise) const;
   bool isLog(const char* name) const { return document_.option(key(name), std::string("off")) == "on"; }
 
   Document& document_;
   std::string prefix_;
-  QComboBox *x_, *y_, *colour_;
-  QToolButton *logX_, *logY_;
+  QComboBox *x_, *y_;
+  QAction *logX_, *logY_;
+  QList<QAction*> colours_;  ///< in the order of scatterColours()
 };
 
 }  // namespace glint::gui

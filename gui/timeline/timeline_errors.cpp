@@ -7,6 +7,7 @@
 
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
+#include "gui/document/frame_roles.h"
 #include "gui/timeline/timeline_strip.h"
 #include "viz/style.h"
 
@@ -49,7 +50,7 @@ void TimelineStrip::paintMissed(QPainter& painter) {
     if (document_.stale()) colour.setAlpha(90);
     painter.setPen(QPen(colour, 1.5));
     std::vector<char> shown = marked[k]->missed;
-    for (const int frame : document_.request().excluded)
+    for (const int frame : shownExcluded(document_))
       if (frame >= 0 && frame < int(shown.size())) shown[std::size_t(frame)] = 0;
     if (!perFrame) shown = viz::columnMarks(shown, first_, first_ + inView_, columns);
     for (int i = 0; i < int(shown.size()); ++i) {
@@ -99,7 +100,7 @@ void TimelineStrip::paintErrors(QPainter& painter) {
   painter.setClipRect(c.adjusted(0, -2, 0, 1));
   QColor excluded = toQColor(draw::kExcluded);
   excluded.setAlpha(70);
-  for (const int frame : document_.request().excluded)
+  for (const int frame : shownExcluded(document_))
     painter.fillRect(QRectF(frameX(frame), c.top(), std::max(1.0, frameX(frame + 1) - frameX(frame)), c.height()), excluded);
   painter.setRenderHint(QPainter::Antialiasing);
   const int columns = int(std::min(inView_, c.width()));
@@ -109,7 +110,7 @@ void TimelineStrip::paintErrors(QPainter& painter) {
     QColor colour = toQColor(draw::modelColour(series.model));
     if (document_.stale()) colour.setAlpha(90);
     std::vector<std::optional<double>> shown = series.errorPct;
-    for (const int frame : document_.request().excluded)
+    for (const int frame : shownExcluded(document_))
       if (frame >= 0 && frame < int(shown.size())) shown[std::size_t(frame)].reset();
     const auto yOf = [&](double pct) { return c.bottom() - std::max(1.0, c.height() * axis_.place(pct)); };
     // Per frame where there is room, else the largest error of each screen column.

@@ -71,7 +71,7 @@ void TimelineStrip::readView() {
   thumbnailsOn_ = document_.option("timeline/thumbnails", std::string("on")) == "on";
   plotted_ = document_.plottedModel();
   drawn_ = {document_.request().train, document_.request().excluded, document_.request().whatIf};
-  axis_ = viz::errorAxis(data_, bars_ ? plotted_ : std::string(), document_.request().excluded);
+  axis_ = viz::errorAxis(data_, bars_ ? plotted_ : std::string(), shownExcluded(document_));
   repaintAll();
 }
 

@@ -15,7 +15,7 @@ namespace {
 // Those that show results.
 const char* const kDocks[] = {"errors", "plots", "timeline", "numbers", "conditioning", "ladder"};
 
-/// In the middle of a view's upper edge; takes no clicks.
+/// In the middle of a view's lower edge, where no view has its legend; takes no clicks.
 class PinnedBadge : public QLabel {
  public:
   explicit PinnedBadge(QWidget* view) : QLabel(QObject::tr("Pinned state"), view) {
@@ -39,21 +39,21 @@ class PinnedBadge : public QLabel {
 
  private:
   void place() {
-    constexpr int kMargin = 4;  // px
+    constexpr int kMargin = 6;  // px
     adjustSize();
-    move((parentWidget()->width() - width()) / 2, kMargin);
+    move((parentWidget()->width() - width()) / 2, parentWidget()->height() - height() - kMargin);
   }
 };
 }  // namespace
 
 PinnedResults::PinnedResults(Document& document, const QList<QWidget*>& views, QMainWindow* window)
     : QObject(window), document_(document), window_(window), state_(new QLabel) {
-  for (QWidget* view : views) badges_ << new PinnedBadge(view);
-  for (const char* name : kDocks)
-    if (auto* dock = window_->findChild<QDockWidget*>(QLatin1String(name))) {
-      titles_[dock] = dock->windowTitle();
-      badges_ << new PinnedBadge(dock->widget());
-    }
+  for (QWidget* view : views) {
+    auto* const canvas = view->findChild<QWidget*>(QStringLiteral("frameCanvas"));  // below it are numbers
+    badges_ << new PinnedBadge(canvas ? canvas : view);
+  }
+  for (const char* name : kDocks)  // a badge would cover their numbers: their titles say it
+    if (auto* dock = window_->findChild<QDockWidget*>(QLatin1String(name))) titles_[dock] = dock->windowTitle();
   state_->setObjectName(QStringLiteral("pinnedState"));
   window_->statusBar()->addPermanentWidget(state_);
   connect(&document_, &Document::pinnedChanged, this, &PinnedResults::refresh);
@@ -92,7 +92,7 @@ void PinnedResults::refresh() {
             : tr("The error table compares with the pinned results"));
   for (QLabel* badge : std::as_const(badges_)) badge->setVisible(shown);
   for (auto it = titles_.cbegin(); it != titles_.cend(); ++it)
-    it.key()->setWindowTitle(shown ? tr("%1 – pinned").arg(it.value()) : it.value());
+    it.key()->setWindowTitle(shown ? tr("%1 – pinned state").arg(it.value()) : it.value());
   if (!flip_) return;
   flip_->setChecked(shown);
   flip_->setEnabled(pinned);

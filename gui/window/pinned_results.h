@@ -20,7 +20,7 @@ namespace glint::gui {
 class PinnedResults : public QObject {
   Q_OBJECT
  public:
-  /// Badges are put on the panels of these names that the window has, and on these views; the status line says that results are pinned.
+  /// @param views  get a badge; docks of results say it in their titles, and the status line says that results are pinned.
   PinnedResults(Document& document, const QList<QWidget*>& views, QMainWindow* window);
   /// Adds "view.pin", "view.pinned" and "view.unpin".
   void addActions(Actions& actions, QMenu* menu);

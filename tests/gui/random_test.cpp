@@ -36,6 +36,7 @@ const std::map<QString, const char*>& leftOut() {
                                                   {"export.", "ask for a file, or change the clipboard only"},
                                                   {"edit.palette", "takes the keyboard"},
                                                   {"edit.search-errors", "takes the keyboard"},
+                                                  {"edit.error-columns", "opens a menu that waits for the user"},
                                                   {"edit.shortcuts", "opens a dialog that waits for the user"},
                                                   {"help.", "open a page or a dialog"},
                                                   {"view.pin", "keeps results beside the history of undo, and shows them"},
