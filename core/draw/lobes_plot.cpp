@@ -23,19 +23,19 @@ constexpr std::array<LobeStyle, 4> kLobeStyles{{{{0.55, 0.42, 0.85}, Dash::Dotte
                                                 {{0.25, 0.56, 0.86}, Dash::Solid},
                                                 {{0.20, 0.62, 0.35}, Dash::Solid}}};
 
-PlotSeries measuredSeries(const FrameSamples& samples, const FrameSamples::Lobe& lobe, const LobeComparison& comparison) {
+PlotSeries measuredSeries(const LobeComparison& comparison) {
   PlotSeries measured;
-  measured.name = formatted("measured, %d pixels, with their spread", comparison.pixels);
+  measured.name = formatted("measured, %d pixels", comparison.pixels);
   measured.colour = kObserved;
   measured.halo = true;
   measured.shape = PlotShape::Points;
-  measured.pointSize = 6;
+  measured.pointSize = 5;
   for (const LobeComparison::Bin& bin : comparison.measured) {
     PlotPoint p;
     p.x = degrees(bin.alpha);
     p.y = bin.mean;
     p.band = {{std::max(kFloor, bin.mean - bin.spread), bin.mean + bin.spread}};
-    p.target = {samples.frame, samples.model, lobe.light, lobe.observed, std::nullopt, -1};
+    // No target: all of them are of the selected highlight, and a ring around each would hide the curves.
     p.label = formatted("alpha %.3g°: %.3g of the peak\nspread %.2g over %d pixels", p.x, p.y, bin.spread, bin.pixels);
     measured.points.push_back(std::move(p));
   }
@@ -67,7 +67,7 @@ PlotSeries curveOf(const LobeMatch& match, const LobeComparison& comparison, con
 PlotData lobesPlot(const FrameSamples& samples, int highlight) {
   PlotData plot;
   plot.id = "lobes";
-  plot.title = "One highlight under every lobe" + (samples.frameId.empty() ? "" : ", frame " + samples.frameId);
+  plot.title = "Every lobe" + (samples.frameId.empty() ? "" : ", frame " + samples.frameId);
   plot.x.title = "alpha (°)";
   plot.y.title = "radiance / peak";
   if (!samples.failure.empty()) return nothing(plot, samples.failure);
@@ -81,17 +81,18 @@ PlotData lobesPlot(const FrameSamples& samples, int highlight) {
   plot.x.from = 0;
   plot.y.log = true;
   plot.y.floor = kFloor;
+  plot.series.push_back(measuredSeries(comparison));  // below the curves, which it would hide
   std::size_t style = 0;
   for (std::size_t k = 0; k < comparison.matches.size(); ++k, ++style)
     plot.series.push_back(
         curveOf(comparison.matches[k], comparison, kLobeStyles[style % kLobeStyles.size()], int(k) == comparison.best));
-  plot.series.push_back(measuredSeries(samples, *lobe, comparison));
   if (lobe->level > 0 && lobe->level < 1 && !comparison.measured.empty()) {
     PlotSeries level;
     level.name = formatted("level %.3g", lobe->level);
     level.colour = kHeldOut;
     level.dash = Dash::Dotted;
     level.width = 1.5;
+    level.inLegend = false;  // its tip says what it is; a narrow plot has no room
     for (const double x : {0.0, degrees(comparison.measured.back().alpha)}) {
       PlotPoint p;
       p.x = x;
@@ -101,7 +102,7 @@ PlotData lobesPlot(const FrameSamples& samples, int highlight) {
     }
     plot.series.push_back(std::move(level));
   }
-  if (comparison.clipped > 0) plot.title += formatted("   %d clipped pixels left out", comparison.clipped);
+  if (comparison.clipped > 0) plot.title += formatted(", %d clipped pixels left out", comparison.clipped);
   return plot;
 }
 

@@ -508,7 +508,9 @@ TEST(Layers, TheSelectedModelLiesOnTopOfTheOthers) {
     double own = 0, others = 0;
     for (const Drawn& d : predictedContoursLayer(input).drawn)
       if (d.nearerPx > 0) (d.info.model == model ? own : others) = std::max(d.info.model == model ? own : others, d.nearerPx);
-    if (own > 0) EXPECT_GT(own, others) << model;
+    if (own > 0) {
+      EXPECT_GT(own, others) << model;
+    }
   }
 }
 

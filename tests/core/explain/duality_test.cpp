@@ -129,6 +129,7 @@ TEST(Duality, TheGapIsWhatAnOutlineThatIsTooLargeLeaves) {
     const double expected = distance * std::pow(cosine, 3) * wider / 800;
     EXPECT_NEAR(v.rmsGap, expected, 0.002 * expected);
     // A plane that is farther has a nearer point: relatively the same, to first order.
+    for (const Duality::Touch& t : v.planes) EXPECT_GT(t.gap, 0) << "beside the ball, not within it";
     for (const Duality::Touch& t : v.planes)
       EXPECT_NEAR(t.dual->norm(), d->chart.radius * d->chart.radius / (r + expected), 1e-6);
   }
