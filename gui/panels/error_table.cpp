@@ -78,6 +78,7 @@ ErrorTable::ErrorTable(Document& document, QWidget* parent) : QWidget(parent), d
   head->addWidget(summary_);
   filter_ = new QComboBox;
   filter_->setObjectName(QStringLiteral("errorFilter"));
+  filter_->setAccessibleName(tr("Rows to show"));
   filter_->addItems({tr("all frames"), tr("held-out frames"), tr("training frames"), tr("problems only")});
   auto* choices = new QWidget;
   auto* choice = new QHBoxLayout(choices);
@@ -118,6 +119,7 @@ ErrorTable::ErrorTable(Document& document, QWidget* parent) : QWidget(parent), d
   proxy_->setSortRole(ErrorModel::kSortRole);
   view_ = new QTableView;
   view_->setObjectName(QStringLiteral("errorTable"));
+  view_->setAccessibleName(tr("Errors of every highlight"));
   view_->setTabKeyNavigation(false);  // arrows go about in it, Tab leaves it
   view_->setModel(proxy_);
   view_->setSortingEnabled(true);
