@@ -22,13 +22,16 @@
 #include <utility>
 
 #include "core/base/number_text.h"
+#include "core/draw/contrast.h"
 #include "viz/label_places.h"
+#include "viz/legend_panel.h"
 #include "viz/text_lock.h"
 
 namespace glint::viz {
 namespace {
 
 constexpr double kLeastLegend = 9;      // width of a view, in heights of the text, that has room for a legend
+constexpr double kClearSwatch = 2;      // contrast from which a swatch is told from the ground without an edge
 constexpr double kColourBarRows = 7.8;  // lines of text from the lower edge to above the title of the colour bar
 
 /// A set of lines in display pixels.
@@ -84,16 +87,8 @@ vtkSmartPointer<vtkTextActor> textActor(const std::string& text, const Colour& c
   return actor;
 }
 
-double luminance(const Colour& c) { return 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2]; }
-
-/// A colour of the palette made readable as text on the background, keeping its hue.
-Colour asText(const Colour& colour, bool dark) {
-  Colour c = colour;
-  for (int i = 0; i < 12 && (dark ? luminance(c) < 0.30 : luminance(c) > 0.42); ++i) {
-    for (double& v : c) v = dark ? v + 0.15 * (1 - v) : 0.85 * v;
-  }
-  return c;
-}
+/// A colour of the palette made readable as text on the background.
+Colour asText(const Colour& colour, bool dark) { return draw::readableOn(dark ? kDarkBackground : kLightBackground, colour); }
 
 }  // namespace
 
@@ -160,6 +155,8 @@ struct Annotations::Impl {
   Border borderKind = Border::None;
   vtkSmartPointer<vtkTextActor> name = textActor("", kTextOnDark), badge = textActor("", kTextOnDark);
   bool legendVisible = true, titleVisible = true;
+  LegendPanel panel;
+  bool onPicture = false;
 
   std::vector<Rectangle> taken;  // by what stands still: labels keep off it
   std::vector<Points> glyphs;    // corners of each drawn camera: labels keep off those where they can
@@ -210,6 +207,7 @@ struct Annotations::Impl {
     const double row = 1.5 * font, left = 0.9 * font;
     const bool room = width > kLeastLegend * font;              // one that is a row of "…" says nothing
     double y = height - 1.9 * font - (titleVisible ? 0 : row);  // the view's name stands beside where the title would
+    const std::size_t before = taken.size();
     for (std::size_t i = 0; i < legend.size(); ++i) {
       auto& [actor, colour] = legend[i];
       const bool entry = i >= 1 && i <= entries;
@@ -223,7 +221,7 @@ struct Annotations::Impl {
       actor->GetTextProperty()->SetFontSize(size);
       fitLegendText(i, width - x - left, size);
       setColour(actor, entry || i == 0 ? ink() : asText(colour, dark));
-      background(actor, 0.55);
+      background(actor, onPicture ? 0 : 0.55);
       move(actor, x, y);
       taken.push_back({0, y - 0.3 * font, x + sizeOf(actor).x(), row});
       if (entry) {
@@ -237,12 +235,21 @@ struct Annotations::Impl {
         Strokes& outline = *outlines[i - 1];
         outline.clear();
         outline.origin = origin;
-        const bool faint = std::abs(luminance(colour) - luminance(dark ? kDarkBackground : kLightBackground)) < 0.25;
+        const bool faint = draw::contrast(colour, dark ? kDarkBackground : kLightBackground) < kClearSwatch;
         if (faint) outline.add(left - 1, y + 0.42 * font, left + 1.8 * font + 1, y + 0.42 * font);
         outline.finish(ink(), stroke + 2);
       }
       y -= row;
     }
+    panel.hide();
+    if (!onPicture || taken.size() == before) return;
+    Eigen::AlignedBox2d box;
+    for (std::size_t i = before; i < taken.size(); ++i) {
+      const Rectangle& r = taken[i];
+      box.extend(Eigen::Vector2d(r.x, r.y)).extend(Eigen::Vector2d(r.x + r.width, r.y + r.height));
+    }
+    panel.show(origin.x() + 0.4 * font, origin.y() + box.min().y() - 0.3 * font, origin.x() + box.max().x() + 0.5 * font,
+               origin.y() + box.max().y() + 0.3 * font, dark ? kDarkBackground : kLightBackground);
   }
   void placeLabels(int width, int height, int points, double font) {
     vtkCamera* camera = renderer->GetActiveCamera();
@@ -455,6 +462,7 @@ struct Annotations::Impl {
 
 Annotations::Annotations(vtkRenderer* renderer) : impl_(std::make_unique<Impl>()) {
   impl_->renderer = renderer;
+  renderer->AddActor2D(impl_->panel.actor());  // beneath all that follows
   renderer->AddActor2D(impl_->bar.actor);
   renderer->AddActor2D(impl_->barText);
   const std::array<const char*, 3> names{"x", "y", "z"};
@@ -557,6 +565,8 @@ double Annotations::colourBarHeight() {
   const double pixels = impl_->pixelsPerPoint(), font = pixels * fontSizeFor(static_cast<int>(height / pixels));
   return kColourBarRows * font;
 }
+
+void Annotations::setOnPicture(bool on) { impl_->onPicture = on; }
 
 void Annotations::setDark(bool dark) { impl_->dark = dark; }
 

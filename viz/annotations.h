@@ -54,6 +54,8 @@ class Annotations {
   Eigen::Vector2d legendSize();
   /// Height of what stands with the colour bar at the lower right, window px; 0 where there is none.
   double colourBarHeight();
+  /// The legend lies over a photograph: it stands on a panel, which keeps it readable.
+  void setOnPicture(bool on);
   void setDark(bool dark);
   /// @param reference  world point at whose depth the scale bar is measured.
   void place(const Eigen::Vector3d& reference);

@@ -7,6 +7,7 @@
 
 #include "core/base/error_text.h"
 #include "core/base/number_text.h"
+#include "core/draw/contrast.h"
 #include "core/draw/overlay_painter.h"
 #include "core/draw/plots.h"
 #include "core/inspect/frame_score.h"
@@ -20,10 +21,13 @@ namespace {
 
 struct Theme {
   Colour background, panel, ink, faint;
+  Colour problem;  ///< what failed, as text
 };
 Theme themeOf(bool dark) {
-  if (dark) return {kDarkBackground, {0.15, 0.16, 0.18}, kTextOnDark, {0.35, 0.36, 0.38}};
-  return {{1, 1, 1}, {0.95, 0.95, 0.95}, kTextOnLight, {0.80, 0.80, 0.80}};
+  const Colour panel = dark ? Colour{0.15, 0.16, 0.18} : Colour{0.95, 0.95, 0.95};
+  const Colour problem = draw::readableOn(panel, kFailed);
+  if (dark) return {kDarkBackground, panel, kTextOnDark, {0.35, 0.36, 0.38}, problem};
+  return {{1, 1, 1}, panel, kTextOnLight, {0.80, 0.80, 0.80}, problem};
 }
 
 /// The largest box of an aspect ratio inside another, centred.
@@ -69,7 +73,7 @@ void drawPhotograph(Canvas& canvas, const Outcome<Image>& photograph, bool given
   } else {
     canvas.fill(box, theme.panel);
     canvas.text({box.x + 0.5 * box.width, box.y + 0.5 * box.height},
-                canvas.fitted(photograph.failure().message(), font, box.width - font), font, kFailed, Align::Centre);
+                canvas.fitted(photograph.failure().message(), font, box.width - font), font, theme.problem, Align::Centre);
   }
 }
 
@@ -196,7 +200,8 @@ Image framePicture(const Inspection& inspection, int frame, const Outcome<Image>
   double y = height - foot + 1.3 * font;
   for (const OverlayCaption& caption : overlay.captions) {
     canvas.fill({0.8 * font, y - 0.75 * font, 1.6 * font, 0.6 * font}, caption.colour);
-    canvas.text({3 * font, y}, canvas.fitted(caption.text, font, width - 4 * font), font, caption.problem ? kFailed : theme.ink);
+    canvas.text({3 * font, y}, canvas.fitted(caption.text, font, width - 4 * font), font,
+                caption.problem ? theme.problem : theme.ink);
     y += 1.45 * font;
   }
   return canvas.image();
@@ -213,7 +218,7 @@ Image ladderPicture(const Inspection& inspection, int frame, const Outcome<Image
               1.1 * font, theme.ink);
   const std::vector<std::string> models = modelsInOrder(inspection, options.models);
   if (models.empty()) {
-    canvas.text({0.8 * font, 4 * font}, "no models computed", font, kFailed);
+    canvas.text({0.8 * font, 4 * font}, "no models computed", font, theme.problem);
     return canvas.image();
   }
   // What stands below a tile: the numbers in one line, or the whole reason why there are none.
@@ -284,7 +289,8 @@ Image ladderPicture(const Inspection& inspection, int frame, const Outcome<Image
     for (int k = 0; k < std::min(lines, int(reason.size())); ++k) {
       const bool more = k + 1 == lines && int(reason.size()) > lines;
       canvas.text({middle, top + (k + 1) * line},
-                  canvas.fitted(reason[std::size_t(k)] + (more ? "\u2026" : ""), font, tile.width), font, kFailed, Align::Centre);
+                  canvas.fitted(reason[std::size_t(k)] + (more ? "\u2026" : ""), font, tile.width), font, theme.problem,
+                  Align::Centre);
     }
   }
   return canvas.image();

@@ -264,6 +264,7 @@ struct SceneView::Impl {
   void updateAnnotations() {
     annotationsStale = false;
     annotations->setBadge(eyeText());
+    annotations->setOnPicture(valid() && input.eye != Eye::Outside);
     annotations->setBorder(!border                      ? Border::None
                            : photograph->partOfWindow() ? Border::Wipe
                            : active                     ? Border::Active

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "gui/base/input_rules.h"
 
+#include <QAbstractButton>
 #include <QAbstractSlider>
 #include <QAbstractSpinBox>
 #include <QApplication>
 #include <QComboBox>
 #include <QEvent>
 #include <QLabel>
+#include <QRegularExpression>
 #include <QScrollBar>
 #include <QTextDocument>
+#include <QTextDocumentFragment>
 
 #include "gui/base/tips.h"
 
@@ -20,6 +23,23 @@ bool holdsAValue(const QObject* o) {
          (qobject_cast<const QAbstractSlider*>(o) && !qobject_cast<const QScrollBar*>(o));
 }
 
+/// What a tip says first: "Play walk" of "Play walk (W)".
+QString nameIn(const QString& tip) {
+  const QString text = Qt::mightBeRichText(tip) ? QTextDocumentFragment::fromHtml(tip).toPlainText() : tip;
+  static const QRegularExpression end(QStringLiteral("\n|: |; |\\. | \\("));
+  return text.section(end, 0, 0).trimmed();
+}
+
+/// What has no words of its own is called by its tip, also when that changes. A name that somebody gave it stays.
+void nameByTip(QWidget* widget) {
+  const auto* button = qobject_cast<const QAbstractButton*>(widget);
+  const bool wordless = button ? button->text().isEmpty() : holdsAValue(widget) && !qobject_cast<const QAbstractSpinBox*>(widget);
+  constexpr const char* kOwn = "nameByTip";
+  if (!wordless || (!widget->accessibleName().isEmpty() && widget->accessibleName() != widget->property(kOwn).toString())) return;
+  widget->setAccessibleName(nameIn(widget->toolTip()));
+  widget->setProperty(kOwn, widget->accessibleName());
+}
+
 class InputRules : public QObject {
  public:
   using QObject::QObject;
@@ -29,9 +49,10 @@ class InputRules : public QObject {
     switch (event->type()) {
       case QEvent::Polish: polish(watched); break;
       case QEvent::ToolTipChange:
-        if (auto* widget = qobject_cast<QWidget*>(watched);
-            widget && !hasRichTip(widget) && Qt::mightBeRichText(widget->toolTip()))
-          setRichTip(widget, plainTip(widget->toolTip()));
+        if (auto* widget = qobject_cast<QWidget*>(watched)) {
+          nameByTip(widget);
+          if (!hasRichTip(widget) && Qt::mightBeRichText(widget->toolTip())) setRichTip(widget, plainTip(widget->toolTip()));
+        }
         break;
       case QEvent::Wheel:
         if (holdsAValue(watched) && !static_cast<QWidget*>(watched)->hasFocus()) {

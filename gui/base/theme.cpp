@@ -9,6 +9,7 @@
 #include <QPixmap>
 #include <QSvgRenderer>
 
+#include "core/draw/contrast.h"
 #include "gui/base/clear_style.h"
 
 // The icons are compiled into a static library: without this call the linker leaves them out. Must stand outside of namespaces.
@@ -118,9 +119,10 @@ void applyTheme(QApplication& app, Theme theme) {
 
 Theme currentTheme() { return theTheme; }
 QIcon icon(const QString& name) { return QIcon(new SvgIconEngine(name)); }
-QColor accentColour() { return toQColor(draw::kActiveView); }
+/// White stands on it, where a row or a box is selected.
+QColor accentColour() { return toQColor(draw::readableOn({1, 1, 1}, draw::kActiveView)); }
 QColor focusColour() { return theTheme == Theme::Dark ? QColor(0x8c, 0xc4, 0xff) : QColor(0x0b, 0x57, 0xa4); }
-QColor warningColour() { return theTheme == Theme::Dark ? QColor(0xe0, 0xa8, 0x30) : QColor(0xa0, 0x6a, 0x00); }
+QColor warningColour() { return theTheme == Theme::Dark ? QColor(0xe0, 0xa8, 0x30) : QColor(0x8f, 0x5e, 0x00); }
 QColor errorColour() { return theTheme == Theme::Dark ? QColor(0xf0, 0x7a, 0x6a) : QColor(0xb3, 0x2a, 0x1a); }
 QColor toQColor(const draw::Colour& c) { return QColor::fromRgbF(c[0], c[1], c[2]); }
 

@@ -3,6 +3,7 @@
 
 #include <QBuffer>
 #include <QImageWriter>
+#include <cmath>
 
 #include "core/base/atomic_file.h"
 #include "core/base/outcome.h"
@@ -18,6 +19,12 @@ void writePng(const QImage& picture, const QString& file, const QString& key, co
   if (!writer.write(picture))
     throw InputError(file.toStdString(), "", "cannot be written: " + writer.errorString().toStdString());
   atomicWrite(file.toStdString(), std::string_view(bytes.data().constData(), std::size_t(bytes.size())));
+}
+
+void setDpi(QImage& picture, int dpi) {
+  const int perMetre = static_cast<int>(std::lround(dpi / 0.0254));
+  picture.setDotsPerMeterX(perMetre);
+  picture.setDotsPerMeterY(perMetre);
 }
 
 }  // namespace glint::gui

@@ -8,6 +8,7 @@
 #include "core/explain/explain.h"
 #include "core/scene/frame_spec.h"
 #include "gui/base/text.h"
+#include "gui/document/selection_words.h"
 #include "gui/document/state_command.h"
 #include "gui/scene/scene_options.h"
 
@@ -298,8 +299,8 @@ void Document::select(const draw::Selection& selection, int gesture) {
   ViewState after = state_;
   after.selection = selection;
   after.selection.frame = std::clamp(selection.frame, 0, std::max(0, frameCount() - 1));
-  const QString frame = nameText(scene_->frames[std::size_t(after.selection.frame)].id);
-  push(std::move(after), tr("Select frame %1").arg(frame), gesture > 0 ? QStringLiteral("select#%1").arg(gesture) : QString());
+  const QString text = selectionWords(state_.selection, after.selection, *scene_);
+  push(std::move(after), text, gesture > 0 ? QStringLiteral("select#%1").arg(gesture) : QString());
 }
 
 void Document::selectFrame(int frame, int gesture) {

@@ -10,6 +10,7 @@
 #include <QToolButton>
 #include <QVBoxLayout>
 
+#include "gui/base/picture_access.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
 #include "gui/explain/paint_picture.h"
@@ -53,11 +54,16 @@ WalkView::WalkView(Document& document, WalkPlayer& player, QWidget* parent)
   column->setContentsMargins(0, 0, 0, 0);
   column->setSpacing(4);
   column->addWidget(picture_, 1);
+  describePicture(picture_, tr("Walk of the limit angle in section"), [this] {
+    if (!player_.story()) return player_.problem().isEmpty() ? tr("No walk") : tr("No walk here: %1").arg(player_.problem());
+    return tr("Step %1: on the surface S and, beside it, on the tangent plane T").arg(where_->text());
+  });
   auto* row = new QHBoxLayout;
   row->setSpacing(6);
   play_->setObjectName(QStringLiteral("explain.play"));
   play_->setIconSize({14, 14});
   slider_->setObjectName(QStringLiteral("explain.walk-step"));
+  slider_->setAccessibleName(tr("Progress of the walk"));
   slider_->setToolTip(tr("Progress of the walk: on S to the limit angle, on T to the same angle"));
   row->addWidget(play_);
   row->addWidget(slider_, 1);

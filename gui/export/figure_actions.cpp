@@ -23,6 +23,7 @@
 #include "gui/base/theme.h"
 #include "gui/base/to_qimage.h"
 #include "gui/base/vtk_canvas.h"
+#include "gui/base/write_png.h"
 #include "gui/document/figure.h"
 #include "gui/document/own_files.h"
 #include "gui/export/long_job.h"
@@ -156,6 +157,7 @@ void FigureActions::writeScene(const FigureLook& look, const QString& file) {
   QImage picture;
   try {
     picture = sceneFigure(look);
+    setDpi(picture, look.dpi);
   } catch (const InputError& e) {
     return void(emit problem(toQString(e.what())));
   }
@@ -248,6 +250,7 @@ void FigureActions::writeFrame(const FigureLook& look, const QString& file) {
       paintFrames(painter, look);
     }
     if (!look.transparent) picture = picture.convertToFormat(QImage::Format_RGB32);
+    setDpi(picture, look.dpi);
     return write(file, [this, picture, state = snapshot_(), file] { writeFigure(picture, state, engine_, file); });
   }
   QBuffer bytes;

@@ -17,18 +17,21 @@ namespace glint::gui {
 
 namespace {
 constexpr int kLeastPx = 64, kMostPx = 16384;
+constexpr int kScreenDpi = 96;  // of web pages and office programs where a picture says nothing
+constexpr double kMmPerInch = 25.4;
 constexpr double kSameShape = 0.01;  // of width over height: as much as a splitter moves by itself between two openings
 
 struct Preset {
   const char* title;
   int width, height;  // px; width 0 = as on screen, `height` times; -1 = whatever is typed
+  int dpi;
 };
-const Preset kPresets[] = {{QT_TRANSLATE_NOOP("glint::gui::FigureDialog", "As on screen"), 0, 1},
-                           {QT_TRANSLATE_NOOP("glint::gui::FigureDialog", "Twice the screen size"), 0, 2},
-                           {QT_TRANSLATE_NOOP("glint::gui::FigureDialog", "Slide, 1920 × 1080"), 1920, 1080},
-                           {QT_TRANSLATE_NOOP("glint::gui::FigureDialog", "Screen, 3840 × 2160"), 3840, 2160},
-                           {QT_TRANSLATE_NOOP("glint::gui::FigureDialog", "Paper column, 85 mm at 600 dpi"), 2008, 1506},
-                           {QT_TRANSLATE_NOOP("glint::gui::FigureDialog", "Custom"), -1, 0}};
+const Preset kPresets[] = {{QT_TRANSLATE_NOOP("glint::gui::FigureDialog", "As on screen"), 0, 1, kScreenDpi},
+                           {QT_TRANSLATE_NOOP("glint::gui::FigureDialog", "Twice the screen size"), 0, 2, 2 * kScreenDpi},
+                           {QT_TRANSLATE_NOOP("glint::gui::FigureDialog", "Slide, 1920 × 1080"), 1920, 1080, kScreenDpi},
+                           {QT_TRANSLATE_NOOP("glint::gui::FigureDialog", "Screen, 3840 × 2160"), 3840, 2160, 2 * kScreenDpi},
+                           {QT_TRANSLATE_NOOP("glint::gui::FigureDialog", "Paper column, 85 mm at 600 dpi"), 2008, 1506, 600},
+                           {QT_TRANSLATE_NOOP("glint::gui::FigureDialog", "Custom"), -1, 0, 0}};
 constexpr int kOther = 5;
 }  // namespace
 
@@ -54,6 +57,7 @@ FigureDialog::FigureDialog(const QString& title, const QString& kind, const QSiz
   keepShape_->setChecked(true);
   form->addRow(tr("&Width"), width_);
   form->addRow(tr("&Height"), height_);
+  addPrinted(form);
   form->addRow(QString(), keepShape_);
   colours_ = new QComboBox;
   colours_->setObjectName(QStringLiteral("figureColours"));
@@ -72,6 +76,7 @@ FigureDialog::FigureDialog(const QString& title, const QString& kind, const QSiz
   transparent_->setChecked(settings.value(kind_ + QStringLiteral("transparent"), false).toBool());
   followBackground();
   connect(transparent_, &QCheckBox::toggled, this, &FigureDialog::followBackground);
+  dpi_->setValue(settings.value(kind_ + QStringLiteral("dpi"), kScreenDpi).toInt());
   const int preset = std::clamp(settings.value(kind_ + QStringLiteral("preset"), 0).toInt(), 0, kOther);
   if (preset == kOther) setSize(typedSizeFor(onScreen));
   preset_->setCurrentIndex(preset);
@@ -79,6 +84,34 @@ FigureDialog::FigureDialog(const QString& title, const QString& kind, const QSiz
   connect(preset_, QOverload<int>::of(&QComboBox::activated), this, &FigureDialog::choose);
   connect(width_, QOverload<double>::of(&NumberBox::valueChanged), this, &FigureDialog::followWidth);
   connect(height_, QOverload<double>::of(&NumberBox::valueChanged), this, &FigureDialog::followHeight);
+}
+
+void FigureDialog::addPrinted(QFormLayout* form) {
+  printed_ = new NumberBox(numberRange(1, 5000, 1));
+  printed_->setObjectName(QStringLiteral("figurePrinted"));
+  printed_->setDecimals(1);
+  printed_->setSuffix(tr(" mm"));
+  printed_->setToolTip(tr("How wide it is on paper, at the resolution below"));
+  dpi_ = new NumberBox(wholeRange(36, 2400));
+  dpi_->setObjectName(QStringLiteral("figureDpi"));
+  dpi_->setSuffix(tr(" dpi"));
+  dpi_->setToolTip(tr("Pixels per inch of paper; written into PNG files. Journals ask for 300 to 600"));
+  form->addRow(tr("&Printed width"), printed_);
+  form->addRow(tr("&Resolution"), dpi_);
+  connect(printed_, QOverload<double>::of(&NumberBox::valueChanged), this,
+          [this](double mm) { width_->setValue(std::lround(mm / kMmPerInch * dpi_->whole())); });
+  connect(dpi_, QOverload<double>::of(&NumberBox::valueChanged), this, &FigureDialog::showPrinted);
+}
+
+void FigureDialog::setOpaque() {
+  transparent_->setChecked(false);
+  transparent_->hide();
+}
+
+/// The same pixels on paper.
+void FigureDialog::showPrinted() {
+  const QSignalBlocker quiet(printed_);
+  printed_->setValue(width_->whole() * kMmPerInch / dpi_->whole());
 }
 
 /// The size that was typed last; for a picture of another shape as wide as that and of the picture's own shape.
@@ -93,6 +126,7 @@ QSize FigureDialog::typedSizeFor(const QSize& picture) const {
 
 void FigureDialog::choose(int preset) {
   const Preset& p = kPresets[preset];
+  if (p.dpi > 0) dpi_->setValue(p.dpi);
   if (p.width == 0) setSize(onScreen_ * p.height);
   if (p.width > 0) setSize({p.width, p.height});
 }
@@ -102,6 +136,7 @@ void FigureDialog::setSize(const QSize& size) {
   width_->setValue(size.width());
   height_->setValue(size.height());
   aspect_ = double(width_->whole()) / height_->whole();
+  showPrinted();
 }
 
 void FigureDialog::followWidth() {
@@ -111,6 +146,7 @@ void FigureDialog::followWidth() {
     height_->setValue(int(std::lround(width_->whole() / aspect_)));
   else
     aspect_ = double(width_->whole()) / height_->whole();
+  showPrinted();
 }
 
 void FigureDialog::followHeight() {
@@ -120,6 +156,7 @@ void FigureDialog::followHeight() {
     width_->setValue(int(std::lround(height_->whole() * aspect_)));
   else
     aspect_ = double(width_->whole()) / height_->whole();
+  showPrinted();
 }
 
 /// What is transparent stands on a page that the program does not see: lines and texts are for that, not for the window's theme.
@@ -134,7 +171,7 @@ void FigureDialog::followBackground() {
 }
 
 FigureLook FigureDialog::look() const {
-  return {{width_->whole(), height_->whole()}, transparent_->isChecked(), colours_->currentIndex() == 0};
+  return {{width_->whole(), height_->whole()}, transparent_->isChecked(), colours_->currentIndex() == 0, dpi_->whole()};
 }
 
 void FigureDialog::accept() {
@@ -144,6 +181,7 @@ void FigureDialog::accept() {
   settings.setValue(kind_ + QStringLiteral("preset"), preset_->currentIndex());
   settings.setValue(kind_ + QStringLiteral("size"), look().size);
   settings.setValue(kind_ + QStringLiteral("size-of"), onScreen_);
+  settings.setValue(kind_ + QStringLiteral("dpi"), look().dpi);
   QDialog::accept();
 }
 

@@ -6,6 +6,7 @@
 
 class QCheckBox;
 class QComboBox;
+class QFormLayout;
 
 namespace glint::gui {
 
@@ -16,9 +17,10 @@ struct FigureLook {
   QSize size{1600, 1000};  ///< px
   bool transparent = false;
   bool dark = true;  ///< bright lines and texts, for a dark background or page
+  int dpi = 96;      ///< px per inch of paper
 };
 
-/// Asks for the size and the background of a picture. Remembers the last answer of each kind, a typed size in the shape of what
+/// Asks for the size, in px or in mm at a resolution, and the background of a picture or plot. Remembers the last answer of each kind, a typed size in the shape of what
 /// is shown now; colours start as the window's, or,
 /// where the background is transparent, for the page that was chosen last (at first a light one).
 class FigureDialog : public QDialog {
@@ -28,6 +30,8 @@ class FigureDialog : public QDialog {
   /// @param onScreen  device px of what is shown.
   FigureDialog(const QString& title, const QString& kind, const QSize& onScreen, bool dark, QWidget* parent);
   FigureLook look() const;
+  /// For what cannot have a transparent background.
+  void setOpaque();
   void accept() override;
 
  private:
@@ -37,13 +41,15 @@ class FigureDialog : public QDialog {
   void followWidth();
   void followHeight();
   void followBackground();
+  void addPrinted(QFormLayout* form);
+  void showPrinted();
 
   QString kind_;
   QSize onScreen_;
   bool dark_;  ///< the window
   double aspect_ = 1.6;
   QComboBox *preset_, *colours_;
-  NumberBox *width_, *height_;
+  NumberBox *width_, *height_, *printed_, *dpi_;
   QCheckBox *keepShape_, *transparent_;
 };
 

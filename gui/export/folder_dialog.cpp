@@ -33,6 +33,7 @@ FolderRow::FolderRow(const QString& suggested, QWidget* parent)
   auto* grid = new QGridLayout(this);
   grid->setContentsMargins(0, 0, 0, 0);
   line_->setObjectName(QStringLiteral("newFolder"));
+  line_->setAccessibleName(tr("New folder"));
   line_->setMinimumWidth(360);
   grid->addWidget(line_, 0, 0);
   auto* choose = new QPushButton(tr("Browse…"));

@@ -80,6 +80,7 @@ QSlider* DevelopBar::addSlider(const char* option, const QString& title, const Q
   slider->setPageStep(4);
   slider->setFixedWidth(60);
   slider->setFocusPolicy(Qt::NoFocus);
+  slider->setAccessibleName(title);
   slider->setToolTip(tip + tr("; double-click to reset"));
   slider->installEventFilter(this);
   layout()->addWidget(slider);

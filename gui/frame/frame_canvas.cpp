@@ -14,6 +14,7 @@
 
 #include "core/draw/overlay_painter.h"
 #include "gui/base/focus_frame.h"
+#include "gui/base/picture_access.h"
 #include "gui/base/qt_painter.h"
 #include "gui/base/stale_badge.h"
 #include "gui/base/text.h"
@@ -49,6 +50,13 @@ FrameCanvas::FrameCanvas(QWidget* parent) : QWidget(parent) {
   awaiting_.setSingleShot(true);
   awaiting_.setInterval(StaleBadge::kAfterMs);
   connect(&awaiting_, &QTimer::timeout, this, [this] { update(); });
+  describePicture(this, tr("Photograph with contours"), [this] {
+    QStringList words;
+    for (const QString& text : {message_, caption_, awaited_})
+      if (!text.isEmpty()) words << text;
+    for (const draw::OverlayCaption& c : overlay_.captions) words << toQString(c.text);
+    return words.isEmpty() ? tr("Nothing is shown yet") : words.join(QStringLiteral("; "));
+  });
 }
 
 void FrameCanvas::setAwaited(const QString& words) {

@@ -62,6 +62,7 @@ FramePanel::FramePanel(Document& document, QWidget* parent) : QWidget(parent), d
   captions_->setWordWrap(true);
   connect(captions_, &QLabel::linkActivated, this, &FramePanel::followLink);
   captionsScroll_ = new PanelScroll(captions_, {150, 40}, PanelScroll::Height::Hugs);
+  captionsScroll_->setAccessibleName(tr("Errors of this frame"));
   column->addWidget(captionsScroll_);
 
   connect(canvas_, &FrameCanvas::zoomChanged, this,
@@ -229,6 +230,7 @@ void FramePanel::buildToolbar(QVBoxLayout* column) {
   }
   rows->addWidget(legend);
   switches_ = new PanelScroll(content, {150, 30}, PanelScroll::Height::Hugs);
+  switches_->setAccessibleName(tr("Overlays"));
   column->addWidget(switches_);
   // Not in what scrolls: in a low panel its row would be cut, and with it what the lines are.
   pair_ = new PairBar(document_);

@@ -66,6 +66,7 @@ RetextureBar::RetextureBar(Document& document, FrameCanvas& canvas, PhotoLoader&
   words_->setMargin(4);
   connect(words_, &QLabel::linkActivated, this, &RetextureBar::allow);
   scroll_ = new PanelScroll(words_, {150, 20}, PanelScroll::Height::Hugs);
+  scroll_->setAccessibleName(tr("What makes the picture doubtful"));
   refresh_.setSingleShot(true);
   refresh_.setInterval(0);
   connect(&refresh_, &QTimer::timeout, this, &RetextureBar::refresh);
@@ -126,6 +127,7 @@ NumberBox* RetextureBar::number(const char* option, const QString& title, const 
   layout()->addWidget(label);
   auto* box = new NumberBox(range);
   box->setObjectName(QLatin1String(option));
+  box->setAccessibleName(title);
   box->setToolTip(tip);
   box->setValue(usual);
   layout()->addWidget(box);
@@ -158,6 +160,7 @@ void RetextureBar::buildRow() {
   compare_->setValue(int(kUsualCompare * kCompareSteps));
   compare_->setFixedWidth(90);
   compare_->setFocusPolicy(Qt::NoFocus);
+  compare_->setAccessibleName(tr("Compare with the photograph"));
   compare_->setToolTip(tr(
       "How much of the photograph stays, from the left; the line in the picture can be dragged, too. Double-click for one half"));
   compare_->installEventFilter(this);

@@ -42,9 +42,10 @@ RowsModel::Cell number(const std::optional<double>& v, int digits = 4) {
   return cell;
 }
 
-QTableView* table(RowsModel* model, const char* name) {
+QTableView* table(RowsModel* model, const char* name, const QString& what) {
   auto* view = new QTableView;
   view->setObjectName(QLatin1String(name));
+  view->setAccessibleName(what);
   view->setTabKeyNavigation(false);  // arrows go about in it, Tab leaves it
   auto* sorted = new QSortFilterProxyModel(view);
   sorted->setSourceModel(model);
@@ -113,9 +114,9 @@ ComparisonPanel::ComparisonPanel(const Engine& engine, Document& document, LongJ
   models_ = new RowsModel(
       {tr("Held out in both"), tr("Answers"), tr("A, mean %"), tr("B, mean %"), tr("B / A"), tr("A better"), tr("B better")},
       this);
-  valueTable_ = table(values_, "comparedValues");
-  errorTable_ = table(errors_, "comparedErrors");
-  modelTable_ = table(models_, "comparedModels");
+  valueTable_ = table(values_, "comparedValues", tr("Changed settings"));
+  errorTable_ = table(errors_, "comparedErrors", tr("Changed errors"));
+  modelTable_ = table(models_, "comparedModels", tr("Compared models"));
   auto* tabs = new QTabWidget;
   tabs->setDocumentMode(true);
   tabs->addTab(valueTable_, tr("Changes"));

@@ -94,6 +94,7 @@ ErrorTable::ErrorTable(Document& document, QWidget* parent) : QWidget(parent), d
   proxy_ = new RowFilter(*model_, this);
   view_ = new QTableView;
   view_->setObjectName(QStringLiteral("errorTable"));
+  view_->setAccessibleName(tr("Errors of every highlight"));
   view_->setTabKeyNavigation(false);  // arrows go about in it, Tab leaves it
   view_->setModel(proxy_);
   view_->setSortingEnabled(true);

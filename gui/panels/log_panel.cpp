@@ -19,6 +19,7 @@ LogPanel::LogPanel(QWidget* parent) : QWidget(parent), lines_(new QPlainTextEdit
   column->setContentsMargins(0, 0, 0, 0);
   column->setSpacing(2);
   lines_->setReadOnly(true);
+  lines_->setAccessibleName(tr("Log"));
   lines_->setMaximumBlockCount(kMostLines);
   column->addWidget(lines_, 1);
 }

@@ -8,6 +8,7 @@
 #include <QKeyEvent>
 
 #include "core/draw/frame_overlay.h"
+#include "gui/base/number_delegate.h"
 #include "gui/base/stale_badge.h"
 #include "gui/base/text.h"
 #include "gui/base/tips.h"
@@ -26,6 +27,8 @@ NumbersPanel::NumbersPanel(Document& document, QWidget* parent) : QTreeWidget(pa
   setFrameShape(QFrame::NoFrame);
   setSelectionMode(QAbstractItemView::ExtendedSelection);
   header()->setSectionResizeMode(0, QHeaderView::ResizeToContents);
+  setItemDelegateForColumn(1, new NumberDelegate(this));
+  setAccessibleName(tr("Numbers of what is selected"));
   connect(&document_, &Document::staleChanged, new StaleBadge(this), &StaleBadge::setStale);
   setContextMenuPolicy(Qt::ActionsContextMenu);
   auto* copyAction = new QAction(tr("Copy"), this);

@@ -95,9 +95,11 @@ void ParameterPanel::addNumber(const ParamSpec& spec, QGridLayout* grid, int row
   slider->setRange(0, SliderScale::kPositions);
   slider->setPageStep(SliderScale::kPositions / 20);
   slider->setMinimumWidth(24);
+  slider->setAccessibleName(toQString(spec.title));
   setRichTip(slider, toolTipOf(spec));
   auto* box = new NumberBox(spec);
   box->setObjectName(nameFor("value", spec));
+  box->setAccessibleName(toQString(spec.title));
   setRichTip(box, toolTipOf(spec));
   box->setMinimumWidth(70);
   box->setMaximumWidth(92);
@@ -128,6 +130,7 @@ void ParameterPanel::addNumber(const ParamSpec& spec, QGridLayout* grid, int row
 void ParameterPanel::addChoice(const ParamSpec& spec, QGridLayout* grid, int row) {
   auto* combo = new QComboBox;
   combo->setObjectName(nameFor("value", spec));
+  combo->setAccessibleName(toQString(spec.title));
   setRichTip(combo, toolTipOf(spec));
   combo->setFocusPolicy(Qt::StrongFocus);
   for (const std::string& choice : spec.choices) combo->addItem(toQString(choice));
@@ -142,6 +145,7 @@ void ParameterPanel::addChoice(const ParamSpec& spec, QGridLayout* grid, int row
 void ParameterPanel::addFlag(const ParamSpec& spec, QGridLayout* grid, int row) {
   auto* check = new QCheckBox;
   check->setObjectName(nameFor("value", spec));
+  check->setAccessibleName(toQString(spec.title));
   setRichTip(check, toolTipOf(spec));
   grid->addWidget(check, row, 1, 1, 2);
   connect(check, &QCheckBox::clicked, this, [this, key = spec.key](bool on) { document_.setSetting(key, on); });
@@ -157,6 +161,7 @@ void ParameterPanel::addRow(const ParamSpec& spec, QGridLayout* grid, int row, s
   reset->setIcon(icon(QStringLiteral("reset")));
   reset->setIconSize({13, 13});
   reset->setAutoRaise(true);
+  reset->setAccessibleName(tr("Reset %1").arg(toQString(spec.title)));
   reset->setToolTip(tr("Reset to %1").arg(valueText(spec.defaultValue, spec)));
   grid->addWidget(reset, row, 3);
   connect(reset, &QToolButton::clicked, this, [this, key = spec.key] { document_.resetSetting(key); });

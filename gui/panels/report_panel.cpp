@@ -28,6 +28,7 @@ ReportPanel::ReportPanel(QWidget* parent)
   column->addLayout(findings_);
   text_->setObjectName(QStringLiteral("reportText"));
   text_->setReadOnly(true);
+  text_->setAccessibleName(tr("Input report"));
   text_->setLineWrapMode(QPlainTextEdit::NoWrap);
   text_->setFont(QFontDatabase::systemFont(QFontDatabase::FixedFont));
   text_->setMinimumHeight(kTextLines * text_->fontMetrics().lineSpacing());

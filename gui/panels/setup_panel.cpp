@@ -31,8 +31,9 @@ SetupPanel::SetupPanel(Document& document, QWidget* parent) : QWidget(parent), d
     l->setProperty("role", "group");
     return l;
   };
-  grid->addWidget(label(tr("Models")), 0, 0, 1, 2);
+  grid->addWidget(label(tr("Models")), 2, 0, 1, 2);
   models_ = new QListWidget;
+  models_->setAccessibleName(tr("Models"));
   models_->setObjectName(QStringLiteral("models"));
   models_->setIconSize({11, 11});
   models_->setSelectionMode(QAbstractItemView::NoSelection);
@@ -46,7 +47,7 @@ SetupPanel::SetupPanel(Document& document, QWidget* parent) : QWidget(parent), d
   }
   models_->setVerticalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
   models_->setFixedHeight(models_->sizeHintForRow(0) * models_->count() + 8);
-  grid->addWidget(models_, 1, 0, 1, 2);
+  grid->addWidget(models_, 3, 0, 1, 2);
 
   auto* choose = new QPushButton(tr("Auto"));
   choose->setObjectName(QStringLiteral("autoModel"));
@@ -59,46 +60,52 @@ SetupPanel::SetupPanel(Document& document, QWidget* parent) : QWidget(parent), d
   goodEnough->setSuffix(tr(" % or less"));
   goodEnough->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Fixed);  // the panel is narrow
   goodEnough->setSpecialValueText(tr("best accuracy"));
+  goodEnough->setAccessibleName(tr("Error that is good enough"));
   goodEnough->setToolTip(
       tr("Stop at the first model below this contour error; richer models are not tried. 0 = as accurate as the best model"));
   auto* row = new QHBoxLayout;
   row->setSpacing(4);
   row->addWidget(choose);
   row->addWidget(goodEnough, 1);
-  grid->addLayout(row, 2, 0, 1, 2);
+  grid->addLayout(row, 4, 0, 1, 2);
   choice_ = new QLabel;
   choice_->setObjectName(QStringLiteral("choice"));
   choice_->setProperty("role", "faded");
   choice_->setWordWrap(true);
   choice_->setTextInteractionFlags(Qt::TextSelectableByMouse);
   choice_->hide();
-  grid->addWidget(choice_, 3, 0, 1, 2);
+  grid->addWidget(choice_, 5, 0, 1, 2);
   connect(choose, &QPushButton::clicked, this, [this, goodEnough] { emit autoRequested(goodEnough->value()); });
 
-  grid->addWidget(label(tr("Training")), 4, 0, 1, 2);
   train_ = new QComboBox;
   train_->setObjectName(QStringLiteral("train"));
   train_->setEditable(true);
   train_->setInsertPolicy(QComboBox::NoInsert);
   train_->addItems({QStringLiteral("first:6"), QStringLiteral("spread:6"), QStringLiteral("per-surface")});
+  train_->setAccessibleName(tr("Frames to train on"));
   train_->setToolTip(
       tr("Frame numbers or ranges (0-5, or 0,14,28), first:N, spread:N, or per-surface: a separate model for each surface, "
          "trained on all of its frames"));
-  grid->addWidget(new QLabel(tr("Frames")), 5, 0);
-  grid->addWidget(train_, 5, 1);
+  auto* trainLabel = label(tr("Train on"));
+  trainLabel->setBuddy(train_);
+  grid->addWidget(trainLabel, 0, 0);  // what trains is in sight in a low dock, too
+  grid->addWidget(train_, 0, 1);
   source_ = new QComboBox;
   source_->setObjectName(QStringLiteral("source"));
   source_->addItems({tr("radiance (float)"), tr("photographs")});
+  source_->setAccessibleName(tr("Detect in"));
   source_->setToolTip(tr("Images in which highlights are detected, where a frame has both"));
-  grid->addWidget(new QLabel(tr("Detect in")), 6, 0);
+  auto* sourceLabel = new QLabel(tr("Detect in"));
+  sourceLabel->setBuddy(source_);
+  grid->addWidget(sourceLabel, 6, 0);
   grid->addWidget(source_, 6, 1);
   counts_ = new QLabel;
   counts_->setProperty("role", "faded");
   counts_->setWordWrap(true);
-  counts_->setMinimumHeight(2 * fontMetrics().lineSpacing());
+  counts_->setObjectName(QStringLiteral("trainingCounts"));
   counts_->setAlignment(Qt::AlignTop | Qt::AlignLeft);
-  grid->addWidget(counts_, 7, 0, 1, 2);
-  grid->setRowStretch(8, 1);
+  grid->addWidget(counts_, 1, 0, 1, 2);
+  grid->setRowStretch(7, 1);
 
   connect(models_, &QListWidget::itemChanged, this, [this] {
     std::vector<std::string> chosen;

@@ -166,7 +166,7 @@ void Chip::paintEvent(QPaintEvent*) {
   QPainter painter(this);
   painter.setRenderHint(QPainter::Antialiasing);
   painter.setPen(hasFocus() ? QPen(palette().color(QPalette::Text), 1.5) : QPen(Qt::NoPen));
-  painter.setBrush(underMouse() ? colourOf(verdict_).lighter(115) : colourOf(verdict_));
+  painter.setBrush(underMouse() ? colourOf(verdict_).darker(115) : colourOf(verdict_));
   painter.drawRoundedRect(QRectF(rect()).adjusted(0.75, 0.75, -0.75, -0.75), 4, 4);
   painter.setPen(Qt::white);
   painter.drawText(rect(), Qt::AlignCenter, shown());

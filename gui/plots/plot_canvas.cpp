@@ -5,9 +5,12 @@
 #include <QPainter>
 #include <QToolTip>
 #include <QWheelEvent>
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "gui/base/draw_turns.h"
+#include "gui/base/picture_access.h"
 #include "gui/base/qt_painter.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
@@ -21,11 +24,27 @@ constexpr double kDragPx = 4;       // a press that moves further is a drag
 constexpr double kWheelStep = 1.2;  // zoom of one notch
 
 Eigen::Vector2d placeOf(const QPointF& at) { return {at.x(), at.y()}; }
+
+/// Each series with the range of its values.
+QString plotWords(const draw::PlotData& plot) {
+  if (!plot.empty.empty()) return toQString(plot.title + ": " + plot.empty);
+  QStringList words{toQString(plot.title)};
+  for (const draw::PlotSeries& series : plot.series) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const draw::PlotPoint& p : series.points)
+      if (std::isfinite(p.y)) low = std::min(low, p.y), high = std::max(high, p.y);
+    if (series.name.empty() || !(low <= high)) continue;
+    words << QObject::tr("%1: %2 from %3 to %4")
+                 .arg(toQString(series.name), toQString(plot.y.title), numberText(low), numberText(high));
+  }
+  return words.join(QStringLiteral("; "));
+}
 }  // namespace
 
 PlotCanvas::PlotCanvas(QWidget* parent) : QWidget(parent) {
   setMouseTracking(true);
   setAttribute(Qt::WA_OpaquePaintEvent);
+  describePicture(this, tr("Plot"), [this] { return plotWords(view_.plot()); });
 }
 
 const draw::PlotData& PlotCanvas::plot() const { return view_.plot(); }

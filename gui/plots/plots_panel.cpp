@@ -14,6 +14,7 @@
 #include <QToolButton>
 #include <QVBoxLayout>
 #include <algorithm>
+#include <cmath>
 #include <exception>
 
 #include "core/base/atomic_file.h"
@@ -22,6 +23,7 @@
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
 #include "gui/base/to_qimage.h"
+#include "gui/base/write_png.h"
 #include "gui/export/figure_actions.h"
 #include "gui/plots/plot_canvas.h"
 #include "gui/plots/scatter_bar.h"
@@ -93,6 +95,7 @@ void PlotsPanel::buildPane(int index) {
   row->setContentsMargins(4, 2, 4, 2);
   pane.selector = new QComboBox;
   pane.selector->setObjectName(QStringLiteral("plot%1").arg(index));
+  pane.selector->setAccessibleName(index == 0 ? tr("First plot") : tr("Second plot"));
   for (const draw::PlotKind& k : draw::plotKinds()) {
     pane.selector->addItem(tr(k.title), QString::fromLatin1(k.id));
     pane.selector->setItemData(pane.selector->count() - 1, tr(k.help), Qt::ToolTipRole);
@@ -307,20 +310,25 @@ void PlotsPanel::renderNow() {
     if (pane.canvas->isVisible()) pane.canvas->renderNow();
 }
 
-bool PlotsPanel::saveTo(const QString& file, QString* problem) {
+bool PlotsPanel::saveTo(const QString& file, QString* problem, const std::optional<FigureLook>& look) {
   const PlotCanvas* canvas = panes_[std::size_t(current_)].canvas;
   const QString ending = QFileInfo(file).suffix().toLower();
   const int w = std::max(320, canvas->width()), h = std::max(200, canvas->height());
-  draw::PlotStyle style{canvas->style().dark, 1};
+  draw::PlotStyle style{look ? look->dark : canvas->style().dark, 1};
+  // Texts and strokes grow with the picture, so that it looks as on screen at any size.
+  const double scale = look ? double(look->size.width()) / w : kPictureScale;
+  const QSize size = look ? look->size : QSize(int(w * scale), int(h * scale));
   try {
     if (ending == QStringLiteral("csv")) {
       viz::writePlotCsv(canvas->plot(), file.toStdString());
     } else if (ending == QStringLiteral("svg")) {
-      viz::writePlotSvg(canvas->plot(), style, document_.selection(), w, h, file.toStdString());
+      viz::writePlotSvg(canvas->plot(), style, document_.selection(), int(std::lround(size.width() / scale)),
+                        int(std::lround(size.height() / scale)), file.toStdString());
     } else if (ending == QStringLiteral("png")) {
-      style.scale = kPictureScale;
-      viz::writePng(viz::plotImage(canvas->plot(), style, document_.selection(), int(w * kPictureScale), int(h * kPictureScale)),
-                    file.toStdString());
+      style.scale = scale;
+      QImage picture = toQImage(viz::plotImage(canvas->plot(), style, document_.selection(), size.width(), size.height()));
+      if (look) setDpi(picture, look->dpi);
+      writePng(picture, file);
     } else {
       throw InputError(file.toStdString(), "", "a plot can only be saved as .svg, .png or .csv");
     }
@@ -333,12 +341,21 @@ bool PlotsPanel::saveTo(const QString& file, QString* problem) {
 
 void PlotsPanel::saveAs(const char* ending) {
   const QString type = QString::fromLatin1(ending);
+  std::optional<FigureLook> look;
+  if (type != QLatin1String("csv")) {  // numbers have no size; pictures go to light pages unless somebody asks for something else
+    const PlotCanvas* canvas = panes_[std::size_t(current_)].canvas;
+    const QSize shown = QSize(std::max(320, canvas->width()), std::max(200, canvas->height())) * devicePixelRatioF();
+    FigureDialog dialog(tr("Plot as picture"), QStringLiteral("plot"), shown, false, this);
+    dialog.setOpaque();
+    if (dialog.exec() != QDialog::Accepted) return;
+    look = dialog.look();
+  }
   const QString file =
       askForFile(this, document_, tr("Save plot"), suggestedFile(document_, toQString(kind(current_)), QLatin1Char('.') + type),
                  QStringLiteral("%1 (*.%2)").arg(type.toUpper(), type));
   if (file.isEmpty()) return;
   QString line;
-  if (!saveTo(file, &line)) emit problem(line);
+  if (!saveTo(file, &line, look)) emit problem(line);
 }
 
 void PlotsPanel::copyPicture() {

@@ -4,10 +4,12 @@
 #include <QString>
 #include <QWidget>
 #include <array>
+#include <optional>
 
 #include "core/draw/scatter_plot.h"
 #include "gui/base/actions.h"
 #include "gui/document/document.h"
+#include "gui/export/figure_dialog.h"
 #include "gui/plots/samples_loader.h"
 
 class QComboBox;
@@ -38,8 +40,8 @@ class PlotsPanel : public QWidget {
   /// Draws what is on screen now, for a picture of the window.
   void renderNow();
   /// Writes the current plot, by the file's ending: .svg, .png or .csv. False, with one line in `problem`, when it cannot be
-  /// written.
-  bool saveTo(const QString& file, QString* problem = nullptr);
+  /// written. @param look  none: as on screen, a PNG twice as fine
+  bool saveTo(const QString& file, QString* problem = nullptr, const std::optional<FigureLook>& look = std::nullopt);
   void copyPicture();
   void copyNumbers();
   void copySvg();

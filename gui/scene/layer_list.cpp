@@ -26,6 +26,7 @@ const std::pair<const char*, draw::Colour> kColours[] = {{"virtual-cameras", dra
 
 LayerList::LayerList(Document& document, QWidget* parent) : QListWidget(parent), document_(document) {
   setObjectName(QStringLiteral("layers"));
+  setAccessibleName(tr("Layers"));
   setSelectionMode(QAbstractItemView::NoSelection);
   setIconSize({10, 10});
   setItemDelegate(new ElidingDelegate(this));

@@ -53,6 +53,8 @@ SceneTree::SceneTree(Document& document, QWidget* parent)
   column->setSpacing(2);
   search_->setObjectName(QStringLiteral("treeSearch"));
   search_->setPlaceholderText(tr("Find object…"));
+  search_->setAccessibleName(tr("Find object"));
+  tree_->setAccessibleName(tr("Scene tree"));
   search_->setClearButtonEnabled(true);
   column->addWidget(search_);
   shown_->setSourceModel(model_);

@@ -16,7 +16,9 @@
 #include <numbers>
 #include <utility>
 
+#include "core/inspect/frame_score.h"
 #include "gui/base/draw_turns.h"
+#include "gui/base/picture_access.h"
 #include "gui/base/stale_badge.h"
 #include "gui/base/text.h"
 #include "gui/base/vtk_canvas.h"
@@ -46,6 +48,20 @@ std::array<double, 4> viewport(const SceneOptions& o, int view) {
   }
   return {0, 0, 1, 1};
 }
+
+/// What is drawn, for who does not see it.
+QString sceneWords(const Inspection* inspection, const draw::Selection& selection, int views) {
+  if (!inspection || !inspection->scene || inspection->scene->frames.empty()) return QObject::tr("No results are drawn yet");
+  const Scene& scene = *inspection->scene;
+  const auto frame = std::size_t(std::clamp(selection.frame, 0, int(scene.frames.size()) - 1));
+  QString words = QObject::tr("%1: %2 cameras, models %3; frame %4 is selected")
+                      .arg(nameText(scene.name))
+                      .arg(scene.frames.size())
+                      .arg(joined(modelsInOrder(*inspection)), nameText(scene.frames[frame].id));
+  if (!selection.model.empty()) words += QObject::tr(", model %1").arg(toQString(selection.model));
+  if (views > 1) words += QObject::tr("; %1 views side by side").arg(views);
+  return words;
+}
 }  // namespace
 
 SceneViews::SceneViews(QWidget* parent)
@@ -54,6 +70,7 @@ SceneViews::SceneViews(QWidget* parent)
   column->setContentsMargins(0, 0, 0, 0);
   widget_ = new VtkCanvas;
   widget_->setObjectName(QStringLiteral("sceneView"));
+  describePicture(widget_, tr("3D view of the scene"), [this] { return sceneWords(inspection_.get(), selection_, shown_); });
   widget_->setMinimumSize(140, 110);
   vtkGenericOpenGLRenderWindow* window = widget_->renderWindow();
   viz::prepareWindow(window);

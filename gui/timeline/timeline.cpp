@@ -48,6 +48,7 @@ Timeline::Timeline(Document& document, QWidget* parent) : QWidget(parent), docum
   speed_ = new QComboBox;
   speed_->setObjectName(QStringLiteral("playSpeed"));
   speed_->setToolTip(tr("Playback speed, frames per second"));
+  speed_->setAccessibleName(tr("Playback speed"));
   for (const int s : kSpeeds) speed_->addItem(tr("%1/s").arg(s), s);
   buttons->addWidget(speed_, 1);
   auto* plotted = new QHBoxLayout;

@@ -12,6 +12,7 @@
 #include <cmath>
 
 #include "gui/base/focus_frame.h"
+#include "gui/base/picture_access.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
 #include "gui/base/tips.h"
@@ -57,6 +58,7 @@ TimelineStrip::TimelineStrip(Document& document, QWidget* parent) : QWidget(pare
   connect(&document_, &Document::staleChanged, this, &TimelineStrip::readView);
   connect(&document_, &Document::selectionChanged, this, &TimelineStrip::showSelection);
   connect(&thumbnails_, &Thumbnails::arrived, this, &TimelineStrip::repaintAll);
+  describe();
 }
 
 void TimelineStrip::readData() {
@@ -81,7 +83,19 @@ void TimelineStrip::setUnreadable(const QMap<int, QString>& reasons) {
   repaintAll();
 }
 
+void TimelineStrip::describe() {
+  const auto words = [this] {
+    if (!document_.scene()) return tr("No frames");
+    return tr("%1 frames. Selected: %2").arg(document_.frameCount()).arg(toolTip(document_.selection().frame));
+  };
+  describePicture(this, tr("Frames of the sequence"), words,
+                  {[this] { return document_.frameCount(); }, [this](int frame) { return toolTip(frame); },
+                   [this](int frame) { return cell(frame).toAlignedRect().intersected(rect()); },
+                   [this] { return document_.selection().frame; }, [this](int frame) { document_.selectFrame(frame); }});
+}
+
 void TimelineStrip::showSelection() {
+  announceSelection(this);
   const double frame = document_.selection().frame;
   if (frame < first_ || frame + 1 > first_ + inView_) setView(frame < first_ ? frame : frame + 1 - inView_, inView_);
   if (document_.plottedModel() != plotted_) readView();

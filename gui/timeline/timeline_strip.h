@@ -63,6 +63,7 @@ class TimelineStrip : public QWidget {
   bool event(QEvent*) override;
 
  private:
+  void describe();  ///< for screen readers
   void readData();
   void readView();  ///< what of the document changes the background
   void showSelection();

@@ -199,6 +199,8 @@ void WhatIfPanel::addRow(const WhatIfKnob& knob, QGridLayout* grid, int row) {
   reset->setIcon(icon(QStringLiteral("reset")));
   reset->setIconSize({13, 13});
   reset->setAutoRaise(true);
+  for (QWidget* w : std::initializer_list<QWidget*>{slider, box}) w->setAccessibleName(toQString(spec.title));
+  reset->setAccessibleName(tr("Reset %1").arg(toQString(spec.title)));
   reset->setToolTip(tr("Reset to %1").arg(valueText(spec.defaultValue, spec)));
   for (QWidget* w : std::initializer_list<QWidget*>{title, slider, box}) w->setToolTip(tip);
   grid->addWidget(title, row, 0);

@@ -33,6 +33,7 @@ void showAbout(QWidget* parent) {
   auto* text = new QPlainTextEdit(aboutText());
   text->setObjectName(QStringLiteral("about.text"));
   text->setReadOnly(true);
+  text->setAccessibleName(QObject::tr("About Glint"));
   text->setMinimumSize(560, 220);
   column->addWidget(text);
   auto* buttons = new QDialogButtonBox(QDialogButtonBox::Close);

@@ -27,6 +27,7 @@ QDockWidget* Docks::add(const char* name, const QString& title, QWidget* content
   dock->setObjectName(QLatin1String(name));
   const bool scrolls = qobject_cast<QAbstractScrollArea*>(content) != nullptr;
   dock->setWidget(scrolls ? content : new PanelScroll(content, kLeastContent));
+  if (dock->widget()->accessibleName().isEmpty()) dock->widget()->setAccessibleName(title);  // the keyboard stops at it, too
   // A field in a tab that goes behind another one would go on taking the keys, unseen.
   QObject::connect(dock, &QDockWidget::visibilityChanged, window_, [this, dock](bool visible) {
     if (const QWidget* focus = window_->focusWidget(); !visible && focus && dock->isAncestorOf(focus)) window_->setFocus();
@@ -133,8 +134,9 @@ void Docks::apply(const Layout& layout) {
                                 {timelineAlone ? kTimeline : height * 3 / 10}, Qt::Vertical);
   }
   window_->resizeDocks({at("timeline"), at("errors")}, {kTimeline, height * 3 / 10}, Qt::Vertical);
-  if (!room_->narrow) window_->resizeDocks({at("setup"), at("layers")}, {250, 290}, Qt::Vertical);
-  window_->resizeDocks({at("parameters"), at("conditioning"), at("numbers")}, {400, 290, 210}, Qt::Vertical);
+  if (!room_->narrow) window_->resizeDocks({at("setup"), at("layers")}, {300, 240}, Qt::Vertical);
+  // The reason below the verdicts is in sight, with two lights, too.
+  window_->resizeDocks({at("parameters"), at("conditioning"), at("numbers")}, {350, 350, 200}, Qt::Vertical);
   if (!room_->narrow) window_->resizeDocks({at("errors"), at("plots")}, {1, 1}, Qt::Horizontal);
 }
 

@@ -28,6 +28,7 @@ JobStatus::JobStatus(Document& document, Runner& runner, QWidget* parent)
   bar_ = new QProgressBar;
   bar_->setFixedSize(140, 12);
   bar_->setTextVisible(false);
+  bar_->setAccessibleName(tr("Progress"));
   row->addWidget(bar_);
   stop_ = new QToolButton;
   stop_->setObjectName(QStringLiteral("stop"));

@@ -70,6 +70,7 @@
 #include "gui/window/undecided.h"
 #include "gui/window/unreadable_files.h"
 #include "gui/window/window_layout.h"
+#include "gui/window/window_title.h"
 
 namespace glint::gui {
 
@@ -207,8 +208,10 @@ void MainWindow::buildCentre() {
   connect(start_, &StartPage::openFolder, files_, &FileActions::openFolderDialog);
   connect(start_, &StartPage::openRecent, files_, &FileActions::open);
   fillStartPage(*start_);
-  centre_->addWidget(
-      new PanelScroll(start_, kLeastStart));  // hidden pages of a stack count for its least height, and this one is long
+  auto* startScroll =
+      new PanelScroll(start_, kLeastStart);  // hidden pages of a stack count for its least height, and this one is long
+  startScroll->setAccessibleName(tr("Start page"));
+  centre_->addWidget(startScroll);
   views_ = new QSplitter(Qt::Horizontal);
   frame_ = new FramePanel(document_);  // first: it shows new results before the others take their time
   scene_ = new ScenePanel(document_);
@@ -258,6 +261,7 @@ void MainWindow::buildDocks() {
   connect(tree_, &SceneTree::lookThroughRequested, scene_, [this] { scene_->setEye(viz::Eye::Camera); });
   auto* history = new QUndoView(document_.undoStack());
   history->setObjectName(QStringLiteral("historyList"));
+  history->setAccessibleName(tr("History"));
   history->setEmptyLabel(tr("As opened"));
   history->setItemDelegate(new ElidingDelegate(history));
   docks_.add("history", tr("History"), history, Qt::LeftDockWidgetArea, "layers");
@@ -382,7 +386,8 @@ void MainWindow::buildMenus() {
         };
         return paletteItems(typed, actions_, document_,
                             {leadTo("parameters", [this](const std::string& key) { parameters_->showParameter(key); }),
-                             leadTo("what-if", [this](const std::string& key) { whatIf_->showKnob(key); })});
+                             leadTo("what-if", [this](const std::string& key) { whatIf_->showKnob(key); }),
+                             [this] { return scene_->views().activeView(); }});
       },
       this);
   palette_->setOpener(actions_.add("edit.palette", edit, tr("&Find action, setting or frame…"), [this] { palette_->popUp(); },
@@ -560,9 +565,8 @@ void MainWindow::tell(const QString& line) {
 
 void MainWindow::showTitle() {
   if (!document_.scene()) return setWindowTitle(tr("Glint inspector"));
-  const QString& file = document_.sessionFile().isEmpty() ? document_.inputFile() : document_.sessionFile();
   // "[*]" is where Qt puts the mark of unsaved changes; twice it stands for itself.
-  const QString name = shownText(QFileInfo(file).fileName()).replace(QStringLiteral("[*]"), QStringLiteral("[*][*]"));
+  const QString name = titleOf(document_).replace(QStringLiteral("[*]"), QStringLiteral("[*][*]"));
   setWindowTitle(QStringLiteral("%1[*] – %2").arg(name, tr("Glint inspector")));
   setWindowModified(document_.hasUnsavedChanges() && !isOpenLesson(document_));
 }

@@ -119,6 +119,8 @@ Palette::Palette(std::function<QList<PaletteItem>(const QString&)> items, QWidge
   column->addWidget(line_);
   list_->setColumnCount(3);
   list_->setHeaderHidden(true);
+  line_->setAccessibleName(tr("Find action, setting or frame"));
+  list_->setAccessibleName(tr("What was found"));
   list_->setRootIsDecorated(false);
   list_->setUniformRowHeights(true);
   list_->setFocusPolicy(Qt::NoFocus);

@@ -8,6 +8,7 @@
 #include <variant>
 
 #include "gui/base/text.h"
+#include "gui/scene/scene_options.h"
 #include "gui/timeline/light_switches.h"
 #include "gui/whatif/what_if_panel.h"
 
@@ -148,6 +149,18 @@ void addLightSwitches(QList<PaletteItem>& items, Document& document) {
   }
 }
 
+/// Layers of the 3D view; those of the photograph are actions.
+void addLayers(QList<PaletteItem>& items, Document& document, int view) {
+  if (!document.scene()) return;
+  for (const viz::Layer& layer : viz::sceneLayers()) {
+    const bool visible = layerVisibleIn(document, view, layer.name);
+    items.append({toQString(layer.title), QObject::tr("Layers of the 3D view"), visible ? QObject::tr("on") : QObject::tr("off"),
+                  true,
+                  [&document, view, layer, visible] { setLayerVisibleIn(document, view, layer.name, layer.title, !visible); },
+                  QObject::tr("layer show hide %1").arg(toQString(layer.name))});
+  }
+}
+
 void addKnobAssignments(QList<PaletteItem>& items, const QString& value, Document& document) {
   for (const WhatIfKnob& knob : knobsOf(document)) {
     const ParamSpec& spec = knob.spec;
@@ -189,6 +202,7 @@ QList<PaletteItem> paletteItems(const QString& typed, const Actions& actions, Do
   addParameters(items, document, targets.parameter);
   addKnobs(items, document, targets.whatIf);
   addLightSwitches(items, document);
+  addLayers(items, document, targets.activeView());
   // Not before a number is typed: a thousand frames would bury the rest.
   if (document.scene() && typed.contains(QRegularExpression(QStringLiteral("\\d")))) addFrames(items, document);
   return items;

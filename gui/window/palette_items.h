@@ -10,9 +10,10 @@ namespace glint::gui {
 /// Where the palette leads: brings the row of a key in sight, ready for keys.
 struct PaletteTargets {
   std::function<void(const std::string&key)> parameter, whatIf;
+  std::function<int()> activeView = [] { return 0; };  ///< whose layers are meant
 };
 
-/// What the palette offers for what is typed: every action, every parameter and every knob of the what-if with its value, the
+/// What the palette offers for what is typed: every action, every layer of the active 3D view, every parameter and every knob of the what-if with its value, the
 /// frames once a number is typed, and for "name = value" the parameters and knobs with that value, to be set at once.
 QList<PaletteItem> paletteItems(const QString& typed, const Actions& actions, Document& document, const PaletteTargets& targets);
 

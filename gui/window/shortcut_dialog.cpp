@@ -27,6 +27,8 @@ ShortcutDialog::ShortcutDialog(Actions& actions, QWidget* parent)
   resize(QSize(620, 640).boundedTo(screen->availableSize() - QSize(20, 60)));  // less the window's own frame
   auto* column = new QVBoxLayout(this);
   search_->setPlaceholderText(tr("Find an action"));
+  search_->setAccessibleName(tr("Find an action"));
+  list_->setAccessibleName(tr("Actions and their keys"));
   search_->setClearButtonEnabled(true);
   column->addWidget(search_);
   list_->setObjectName(QStringLiteral("shortcuts"));

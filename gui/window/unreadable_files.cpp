@@ -169,6 +169,7 @@ void UnreadableFiles::showList() {
   list_->setWindowTitle(tr("Unreadable files"));
   auto* column = new QVBoxLayout(list_);
   auto* rows = new QTreeWidget;
+  rows->setAccessibleName(tr("Unreadable files"));
   rows->setHeaderLabels({tr("Frame"), tr("File and reason")});
   rows->setRootIsDecorated(false);
   rows->setAlternatingRowColors(true);

@@ -3,6 +3,7 @@
 
 #include <type_traits>
 
+#include "gui/window/window_title.h"
 #include "tests/gui/fixture.h"
 
 namespace glint::gui {
@@ -128,6 +129,54 @@ class DocumentTest : public QObject {
     document_->selectFrame(1);
     QCOMPARE(document_->undoStack()->text(0), QStringLiteral("Select frame a&b\\nc"));
     QCOMPARE(document_->undoStack()->undoText(), QStringLiteral("Select frame a&&b\\nc"));
+  }
+
+  /// "scene.json" tells nothing; the file of a session does where it is called otherwise.
+  void aWindowIsCalledAfterItsScene() {
+    auto scene = std::make_shared<Scene>(*fixture_.scene());
+    scene->name = "vase";
+    Opened opened = fixture_.opened();
+    opened.scene = scene;
+    document_->open(opened);
+    QCOMPARE(titleOf(*document_), QStringLiteral("vase"));
+    document_->markSaved(QStringLiteral("/some/where/run 2.glint"), document_->state());
+    QCOMPARE(titleOf(*document_), QStringLiteral("vase (run 2.glint)"));
+    document_->markSaved(QStringLiteral("/some/where/vase.glint"), document_->state());
+    QCOMPARE(titleOf(*document_), QStringLiteral("vase"));
+    scene->name.clear();
+    QCOMPARE(titleOf(*document_), QStringLiteral("vase.glint"));
+  }
+
+  /// The history says what was meant, not where it happened to be.
+  void aSelectionsNameIsWhatWasChosen() {
+    draw::Selection s;
+    const auto after = [this, &s] {
+      document_->select(s);
+      return document_->undoStack()->undoText();
+    };
+    s.model = "limit-angle";
+    QCOMPARE(after(), QStringLiteral("Select limit-angle"));
+    s.frame = 3;
+    QCOMPARE(after(), QStringLiteral("Select frame 0003"));
+    s.highlight = 1;
+    s.light = "lamp";
+    QCOMPARE(after(), QStringLiteral("Select highlight 2 in frame 0003"));
+    s.direction = 0.5;  // 28.6 degrees
+    QCOMPARE(after(), QStringLiteral("Select contour point at 29° in frame 0003"));
+    s.direction.reset();
+    QCOMPARE(after(), QStringLiteral("Deselect the contour point"));
+    s.highlight = -1;
+    QCOMPARE(after(), QStringLiteral("Deselect the highlight"));
+    s.light.clear();
+    QCOMPARE(after(), QStringLiteral("Select all lights"));
+    s.model.clear();
+    QCOMPARE(after(), QStringLiteral("Select all models"));
+    s.light = "lamp";
+    QCOMPARE(after(), QStringLiteral("Select light lamp"));
+    s = {5, "dual", 0, "lamp", {}};
+    QCOMPARE(after(), QStringLiteral("Select dual, highlight 1 in frame 0005"));
+    s = {6, "canonical", -1, "other", {}};
+    QCOMPARE(after(), QStringLiteral("Select canonical, light other in frame 0006"));
   }
 
   void aViewOptionIsOneStepAndAGestureIsOne() {

@@ -417,6 +417,26 @@ class FigureTest : public QObject {
     QVERIFY(!asked->look().dark);
   }
 
+  /// 25.4 mm are an inch.
+  void aFigureIsAskedForInMillimetres() {
+    FigureDialog dialog("figure", "printed", QSize(800, 600), true, nullptr);
+    auto* mm = dialog.findChild<NumberBox*>("figurePrinted");
+    auto* dpi = dialog.findChild<NumberBox*>("figureDpi");
+    QVERIFY(mm && dpi);
+    dpi->setValue(254);
+    QCOMPARE(dialog.look().size, QSize(800, 600));  // the same pixels, smaller on paper
+    QCOMPARE(mm->value(), 80.0);
+    mm->setValue(120);
+    QCOMPARE(dialog.look().size, QSize(1200, 900));
+    QCOMPARE(dialog.look().dpi, 254);
+    auto* column = dialog.findChild<QComboBox*>();
+    column->setCurrentIndex(4);
+    emit column->activated(4);
+    QVERIFY2(std::abs(mm->value() - 85) < 0.1 && dialog.look().dpi == 600, qPrintable(mm->text()));
+    dialog.setOpaque();
+    QVERIFY(!dialog.look().transparent);
+  }
+
   void aMovieOfTheTimeline() {
     const int frames = window_->document().frameCount();
     for (const MovieOf of : {MovieOf::FrameView, MovieOf::LookThrough}) {

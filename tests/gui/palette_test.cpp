@@ -21,6 +21,7 @@
 #include "gui/window/palette_items.h"
 #include "gui/window/shortcut_dialog.h"
 #include "tests/gui/fixture.h"
+#include "viz/scene_view.h"
 
 namespace glint::gui {
 
@@ -328,6 +329,23 @@ class PaletteTest : public QObject {
         if (detail.size() < 20)
           QVERIFY2(list->columnWidth(2) >= list->fontMetrics().horizontalAdvance(detail), qPrintable(detail));
       }
+    }
+  }
+
+  void layersOfThe3dViewAreFoundAndSwitched() {
+    for (const viz::Layer& layer : viz::sceneLayers()) {
+      const QString title = toQString(layer.title);
+      const auto row = [&] {
+        for (const PaletteItem& item : paletteItems(title, window_->actions(), window_->document(), {}))
+          if (item.title == title && item.place == QLatin1String("Layers of the 3D view")) return item;
+        return PaletteItem{};
+      };
+      QVERIFY2(row().enabled && row().run, qPrintable(title));
+      const bool before = window_->document().layerVisible(layer.name);
+      QCOMPARE(row().detail, before ? QStringLiteral("on") : QStringLiteral("off"));
+      row().run();
+      QCOMPARE(window_->document().layerVisible(layer.name), !before);
+      QCOMPARE(row().detail, before ? QStringLiteral("off") : QStringLiteral("on"));
     }
   }
 

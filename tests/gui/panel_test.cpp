@@ -7,8 +7,10 @@
 #include <QStyle>
 #include <QStyleOptionSlider>
 #include <QToolButton>
+#include <QTreeWidget>
 
 #include "gui/base/number_box.h"
+#include "gui/base/number_delegate.h"
 #include "gui/base/text.h"
 #include "gui/document/document.h"
 #include "gui/panels/parameter_panel.h"
@@ -144,6 +146,30 @@ class PanelTest : public QObject {
     for (const NumberGroup& group : describeSelection(inspection, {0, "canonical"}, "canonical")) all += group.lines;
     QVERIFY2(all.contains("unreadable: 0000.png: cannot be read"), qPrintable(all));
     QVERIFY(!all.contains(toQString(folder)));
+  }
+
+  void numbersGiveDigitsAwayBeforeTheyAreCut() {
+    QCOMPARE(withDigits(QStringLiteral("-0.0157631  -0.307979  12 m"), 3), QStringLiteral("-0.0158  -0.308  12 m"));
+    QCOMPARE(withDigits(QStringLiteral("frame 0003: 1.5e-05"), 1), QStringLiteral("frame 0003: 2e-05"));
+    QTreeWidget tree;
+    tree.setColumnCount(1);
+    tree.setItemDelegate(new NumberDelegate(&tree));
+    const QString all = QStringLiteral("-0.0157631  -0.307979  0.218591 m");
+    tree.addTopLevelItem(new QTreeWidgetItem({all}));
+    struct Delegate : NumberDelegate {
+      using NumberDelegate::initStyleOption;
+    } delegate;
+    QStyleOptionViewItem option;
+    option.fontMetrics = tree.fontMetrics();
+    const QModelIndex index = tree.model()->index(0, 0);
+    option.rect = QRect(0, 0, 1000, 20);
+    delegate.initStyleOption(&option, index);
+    QCOMPARE(option.text, all);
+    option.rect.setWidth(option.fontMetrics.horizontalAdvance(all) - 20);
+    delegate.initStyleOption(&option, index);
+    QVERIFY2(option.text.size() < all.size() && option.fontMetrics.horizontalAdvance(option.text) <= option.rect.width(),
+             qPrintable(option.text));
+    QVERIFY2(option.text.endsWith(" m"), "the unit stays");
   }
 
  private:

@@ -135,6 +135,18 @@ class PlotsTest : public QObject {
     const QImage picture(png);
     QCOMPARE(picture.width(), 2 * panel_->canvas(0)->width());
     QVERIFY2(panel_->saveTo(csv, &problem), qPrintable(problem));
+    // As a dialog asks for it: 85 mm at 600 dpi, on a light page.
+    const QString paper = folder.filePath(QStringLiteral("paper.png")), slide = folder.filePath(QStringLiteral("slide.svg"));
+    const FigureLook look{{2008, 1506}, false, false, 600};
+    QVERIFY2(panel_->saveTo(paper, &problem, look), qPrintable(problem));
+    const QImage printed(paper);
+    QCOMPARE(printed.size(), QSize(2008, 1506));
+    QVERIFY2(std::abs(printed.dotsPerMeterX() - 600 / 0.0254) < 1, "what a text program makes of it");
+    QVERIFY2(printed.pixelColor(2, 2).lightness() > 230, "a light page");
+    QVERIFY2(panel_->saveTo(slide, &problem, look), qPrintable(problem));
+    QFile text(slide);
+    QVERIFY(text.open(QIODevice::ReadOnly));
+    QVERIFY2(text.readAll().contains("</text>"), "texts stay texts");
     QFile file(csv);
     QVERIFY(file.open(QIODevice::ReadOnly));
     const QList<QByteArray> lines = file.readAll().trimmed().split('\n');

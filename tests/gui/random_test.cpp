@@ -113,6 +113,7 @@ class RandomTest : public QObject {
     QVERIFY(lastResults != firstResults);
 
     const int steps = document.undoStack()->count();
+    for (int i = 0; i < steps; ++i) QVERIFY2(!document.undoStack()->text(i).trimmed().isEmpty(), qPrintable(QString::number(i)));
     QAction* undo = window.actions().find("edit.undo");
     QAction* redo = window.actions().find("edit.redo");
     QVERIFY(undo && redo);

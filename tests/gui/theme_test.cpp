@@ -6,6 +6,7 @@
 #include <QComboBox>
 #include <QHelpEvent>
 #include <QImage>
+#include <QLabel>
 #include <QLineEdit>
 #include <QListWidget>
 #include <QPainter>
@@ -19,8 +20,12 @@
 #include <cmath>
 #include <memory>
 
+#include "core/draw/plot_painter.h"
+#include "core/draw/plots.h"
 #include "gui/base/elided_label.h"
 #include "gui/base/panel_scroll.h"
+#include "gui/base/text.h"
+#include "gui/plots/conditioning_panel.h"
 #include "tests/gui/fixture.h"
 
 namespace glint::gui {
@@ -122,6 +127,83 @@ class ThemeTest : public QObject {
     const QPalette palette = qApp->palette();
     for (const auto ground : {QPalette::Window, QPalette::Base})
       QVERIFY(contrast(palette.color(QPalette::PlaceholderText), palette.color(ground)) >= 4.5);
+  }
+
+  void everyTextIsReadable_data() { themes(); }
+  void everyTextIsReadable() {
+    QFETCH(int, theme);
+    applyTheme(*qApp, Theme(theme));
+    const QPalette p = qApp->palette();
+    struct Pair {
+      const char* name;
+      QColor text;
+      QList<QPalette::ColorRole> grounds;
+    };
+    const QList<QPalette::ColorRole> pages{QPalette::Window, QPalette::Base, QPalette::AlternateBase};
+    QLabel faded;
+    faded.setProperty("role", "faded");
+    faded.ensurePolished();
+    for (const Pair& pair :
+         std::vector<Pair>{{"text", p.color(QPalette::Text), pages},
+                           {"window text", p.color(QPalette::WindowText), pages},
+                           {"button text", p.color(QPalette::ButtonText), {QPalette::Button, QPalette::Window}},
+                           {"link", p.color(QPalette::Link), pages},
+                           {"placeholder", p.color(QPalette::PlaceholderText), pages},
+                           {"faded", faded.palette().color(QPalette::WindowText), pages},
+                           {"warning", warningColour(), pages},
+                           {"error", errorColour(), pages},
+                           {"selected", p.color(QPalette::HighlightedText), {QPalette::Highlight}},
+                           {"tool tip", p.color(QPalette::ToolTipText), {QPalette::ToolTipBase}}})
+      for (const QPalette::ColorRole ground : pair.grounds) {
+        const double found = contrast(pair.text, p.color(ground));
+        QVERIFY2(found >= 4.5, qPrintable(QStringLiteral("%1 on role %2: %3").arg(pair.name).arg(int(ground)).arg(found)));
+      }
+  }
+
+  /// Every text of a plot, on the ground that it is painted on: on screen, on a page, in a file.
+  void everyTextOfAPlotIsReadable_data() { themes(); }
+  void everyTextOfAPlotIsReadable() {
+    QFETCH(int, theme);
+    struct Texts : draw::Painter {
+      std::optional<draw::Colour> ground;
+      std::vector<std::pair<std::string, draw::Colour>> texts;
+      void fill(const draw::Box& box, const draw::Colour& colour, double opacity) override {
+        if (!ground && box.x == 0 && box.y == 0 && opacity == 1) ground = colour;
+      }
+      void stroke(const std::vector<Eigen::Vector2d>&, bool, const draw::Colour&, double, draw::Dash, const draw::Box&) override {
+      }
+      void disc(const Eigen::Vector2d&, double, const draw::Colour&) override {}
+      void text(const Eigen::Vector2d&, const std::string& text, double, const draw::Colour& colour, draw::Align, bool,
+                bool) override {
+        texts.emplace_back(text, colour);
+      }
+      double textWidth(const std::string& text, double size, bool) const override { return 0.6 * size * double(text.size()); }
+    };
+    const Fixture fixture;
+    InspectionRequest request = fixture.opened().request;
+    const Inspection inspection = drawnCircles(fixture.scene(), request);
+    draw::PlotData nothing;
+    nothing.title = "Nothing";
+    nothing.empty = "No results yet";
+    for (const draw::PlotData& plot : {draw::errorPlot(inspection), draw::residualDial(inspection, 0, -1), nothing}) {
+      Texts painter;
+      draw::paintPlot(painter, plot, {Theme(theme) == Theme::Dark, 1}, draw::rangeOf(plot), {}, 640, 400);
+      QVERIFY(painter.ground && !painter.texts.empty());
+      for (const auto& [text, colour] : painter.texts) {
+        const double found = contrast(toQColor(colour), toQColor(*painter.ground));
+        QVERIFY2(found >= 4.5, qPrintable(QStringLiteral("%1: %2").arg(toQString(text)).arg(found)));
+      }
+    }
+  }
+
+  /// A verdict is white on its colour.
+  void everyVerdictIsReadable() {
+    for (const Verdict verdict : {Verdict::Green, Verdict::Amber, Verdict::Red, Verdict::Unknown}) {
+      Chip chip(verdict, QString());
+      chip.resize(60, 20);
+      const double found = contrast(Qt::white, drawn(chip).pixelColor(6, 4));
+      QVERIFY2(found >= 4.5, qPrintable(QStringLiteral("%1: %2").arg(int(verdict)).arg(found)));
+    }
   }
 
   void theFocusOfTheKeyboardStandsOut_data() { themes(); }

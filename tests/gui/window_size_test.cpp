@@ -3,6 +3,7 @@
 #include <QAction>
 #include <QDockWidget>
 #include <QLabel>
+#include <QListWidget>
 #include <QPushButton>
 #include <QRegularExpression>
 #include <QScreen>
@@ -10,6 +11,7 @@
 #include <QScrollBar>
 #include <QToolButton>
 #include <QVBoxLayout>
+#include <filesystem>
 #include <random>
 
 #include "gui/base/flow_layout.h"
@@ -64,6 +66,29 @@ class WindowSizeTest : public QObject, WindowFixture {
                  qPrintable(name + ": the content of " + a->objectName() + " is cut"));
       }
     }
+  }
+
+  /// On an ordinary screen nothing has to be scrolled to see what trains and why a fit is doubtful.
+  void whatTrainsAndWhatIsDoubtfulIsInSight() {
+    if (screen()->availableSize().width() < 1500 || screen()->availableSize().height() < 940) QSKIP("the screen is smaller");
+    const QTemporaryDir copy;  // what is written beside a session is not to lie in the sources
+    std::filesystem::copy(GLINT_SOURCE_DIR "/sessions/two-lamps", copy.path().toStdString(),
+                          std::filesystem::copy_options::recursive);
+    MainWindow window(coreEngine());
+    window.resize(1500, 940);
+    show(window);
+    window.open(copy.filePath(QStringLiteral("two-lamps.glint")));
+    QTRY_VERIFY(window.idle() && window.document().inspection() && !window.document().stale());
+    window.applyLayout(QStringLiteral("debug"));
+    QTest::qWait(50);
+    for (const char* name : {"train", "trainingCounts", "autoModel", "conditioningReason"}) {
+      const auto* widget = window.findChild<QWidget*>(QLatin1String(name));
+      QVERIFY2(widget && widget->isVisible(), name);
+      QVERIFY2(widget->visibleRegion().boundingRect().size() == widget->size(), name);
+    }
+    const auto* models = window.findChild<QListWidget*>(QStringLiteral("models"));
+    for (int i = 0; i < models->count(); ++i)
+      QVERIFY2(models->viewport()->rect().contains(models->visualItemRect(models->item(i))), qPrintable(models->item(i)->text()));
   }
 
   void aSmallWindowKeepsDocksAsTabsAndALargeOneSpreadsThemAgain() {

@@ -119,6 +119,21 @@ TEST_F(LegendPicture, AColourLikeTheBackgroundHasAnEdge) {
   EXPECT_GT(edge(true, {0.1, 0.1, 0.2}), 20);
 }
 
+/// Bright texts over a bright photograph: 85 % of the dark ground and 15 % of what lies beneath, on which they have 9 : 1.
+TEST_F(LegendPicture, OverAPhotographItStandsOnAPanel) {
+  const auto pixels = [&](bool onPicture) {
+    const Image image = picture(800, false, [&](Annotations& a) {
+      a.setDark(true);
+      a.setOnPicture(onPicture);
+      a.setLegend({{kOrange, "primal"}, {kMagenta, "dual"}}, {}, {}, "a title");
+    });
+    return count(image, {0.2305, 0.239, 0.256}, 0.5, 6);
+  };
+  const double font = fontSizeFor(kHeight);
+  EXPECT_GT(pixels(true), 2 * font * font) << "two rows of texts and what lies between them";
+  EXPECT_LT(pixels(false), font) << "but for the smoothed edges of letters";
+}
+
 TEST_F(LegendPicture, ANarrowPictureKeepsOnlyWhatItHasToShow) {
   const auto fill = [](Annotations& a) { a.setLegend({{kOrange, "primal"}, {kMagenta, "true light", true}}, {}, {}, "title"); };
   for (const int width : {kNarrowPicture + 100, kNarrowPicture - 100}) {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/base/base64.h"
+#include "core/draw/contrast.h"
 #include "core/draw/overlay_painter.h"
 #include "core/draw/plot_notes.h"
 #include "core/draw/plot_view.h"
@@ -169,6 +170,28 @@ TEST(OverlayPainter, MarksOutsideTheirBoxAreNotPainted) {
   EXPECT_EQ(countOf(svg, "<path"), 1);
   EXPECT_THAT(svg, HasSubstr("<circle cx=\"55\" cy=\"55\"")) << "(0, 0) is the middle of the first pixel";
   EXPECT_THAT(svg, Not(HasSubstr("outside")));
+}
+
+/// Figures of the Web Content Accessibility Guidelines: 21 : 1 is the most there is, and #767676 the brightest grey that is text on white.
+TEST(Contrast, IsThatOfTheGuidelines) {
+  EXPECT_NEAR(contrast({0, 0, 0}, {1, 1, 1}), 21, 1e-12);
+  EXPECT_NEAR(contrast({1, 0, 0}, {1, 1, 1}), 3.998, 5e-4);
+  const auto grey = [](int v) { return Colour{v / 255.0, v / 255.0, v / 255.0}; };
+  EXPECT_GE(contrast(grey(0x76), {1, 1, 1}), 4.5);
+  EXPECT_LT(contrast(grey(0x77), {1, 1, 1}), 4.5);
+}
+
+TEST(Contrast, EveryColourBecomesReadableAndWhatIsStays) {
+  for (const Colour& ground : {kDarkBackground, kLightBackground, Colour{1, 1, 1}, Colour{0, 0, 0}})
+    for (double r = 0; r <= 1; r += 0.25)
+      for (double g = 0; g <= 1; g += 0.25)
+        for (double b = 0; b <= 1; b += 0.25) {
+          const Colour made = readableOn(ground, {r, g, b});
+          EXPECT_GE(contrast(made, ground), 4.5) << r << " " << g << " " << b;
+          if (contrast({r, g, b}, ground) >= 4.5) {
+            EXPECT_EQ(made, (Colour{r, g, b}));
+          }
+        }
 }
 
 }  // namespace

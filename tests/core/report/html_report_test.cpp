@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <regex>
+
 #include "core/base/html_text.h"
 #include "core/report/report.h"
 #include "tests/core/inspect/exact_scene.h"
@@ -65,6 +68,29 @@ TEST(HtmlReport, BeginsInWordsAndExplainsTheModels) {
   EXPECT_THAT(html.substr(inShort, doubt - inShort), HasSubstr("<svg")) << "and in pictures";
   EXPECT_THAT(html, HasSubstr(html::escaped(modelByName("dual").assumption())));
   EXPECT_THAT(html, HasSubstr("content=\"light\"")) << "it is printed: a dark page would waste ink";
+}
+
+/// Relative luminance and contrast of the Web Content Accessibility Guidelines 2.1, which ask for 4.5 : 1. The darkest ground of a text on
+/// the page is the box of the summary.
+TEST(HtmlReport, EveryTextIsReadable) {
+  const auto luminance = [](const std::string& hex) {
+    double sum = 0;
+    for (int k = 0; k < 3; ++k) {
+      const std::string digits = hex.size() == 3 ? std::string(2, hex[std::size_t(k)]) : hex.substr(std::size_t(2 * k), 2);
+      const double v = std::stoi(digits, nullptr, 16) / 255.0;
+      sum += (k == 0 ? 0.2126 : k == 1 ? 0.7152 : 0.0722) * (v <= 0.03928 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4));
+    }
+    return sum;
+  };
+  EXPECT_NEAR(1.05 / (luminance("767676") + 0.05), 4.54, 0.005) << "a well-known grey on white";
+  const std::string html = evaluationHtml(sheetRun(), {});
+  const std::string style = html.substr(0, html.find("</style>"));
+  const std::regex colour("[{;]color:#([0-9a-f]+)");
+  int found = 0;
+  for (std::sregex_iterator it(style.begin(), style.end(), colour), end; it != end; ++it, ++found)
+    EXPECT_GE((luminance("f4f6f8") + 0.05) / (luminance((*it)[1]) + 0.05), 4.5) << (*it)[1];
+  EXPECT_GE(found, 4);
+  EXPECT_THAT(style, HasSubstr(".short{background:#f4f6f8"));
 }
 
 TEST(HtmlReport, GroupsTheRowsOfAModelByLight) {

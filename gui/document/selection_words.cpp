@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gui/document/selection_words.h"
+
+#include <QObject>
+#include <QStringList>
+#include <cmath>
+#include <numbers>
+
+#include "gui/base/text.h"
+
+namespace glint::gui {
+
+namespace {
+/// What was given up, where nothing was chosen.
+QString givenUp(const draw::Selection& before, const draw::Selection& after) {
+  if (before.model != after.model) return QObject::tr("Select all models");
+  if (before.highlight != after.highlight) return QObject::tr("Deselect the highlight");
+  if (before.direction != after.direction) return QObject::tr("Deselect the contour point");
+  return QObject::tr("Select all lights");
+}
+}  // namespace
+
+QString selectionWords(const draw::Selection& before, const draw::Selection& after, const Scene& scene) {
+  const QString frame = nameText(scene.frames[std::size_t(after.frame)].id);
+  const bool another = before.frame != after.frame;
+  QStringList chosen;
+  if (!after.model.empty() && after.model != before.model) chosen << toQString(after.model);
+  // A highlight's light follows from it.
+  const bool highlight = after.highlight >= 0 && (another || after.highlight != before.highlight);
+  if (!after.light.empty() && after.light != before.light && !highlight)
+    chosen << QObject::tr("light %1").arg(nameText(after.light));
+  if (highlight) chosen << QObject::tr("highlight %1").arg(after.highlight + 1);
+  const bool point = after.direction && (another || after.direction != before.direction);
+  if (point) chosen << QObject::tr("contour point at %1°").arg(std::lround(*after.direction * 180 / std::numbers::pi));
+  if (chosen.isEmpty()) return another ? QObject::tr("Select frame %1").arg(frame) : givenUp(before, after);
+  const QString what = chosen.join(QStringLiteral(", "));
+  return another || highlight || point ? QObject::tr("Select %1 in frame %2").arg(what, frame)
+                                       : QObject::tr("Select %1").arg(what);
+}
+
+}  // namespace glint::gui
