@@ -82,6 +82,7 @@ void ErrorModel::addComparison(const Inspection& inspection, const std::string& 
   base.model = model;
   base.frameId = nameText(inspection.scene->frames[std::size_t(c.frame)].id);
   base.light = nameText(c.light);
+  base.lightId = c.light;
   std::fill(std::begin(base.values), std::end(base.values), std::numeric_limits<double>::quiet_NaN());
   base.values[Frame] = c.frame;
   if (c.rows.empty()) {
@@ -99,6 +100,7 @@ void ErrorModel::addComparison(const Inspection& inspection, const std::string& 
   for (const FrameComparison::Row& r : c.rows) {
     Row row = base;
     row.highlight = r.observed;
+    row.predicted = r.observed < 0 ? r.predicted : -1;
     // Numbered as everywhere, from 1.
     if (r.observed >= 0 && manyObserved)
       row.light = tr("%1, highlight %2").arg(base.light).arg(r.observed + 1);
@@ -132,6 +134,14 @@ void ErrorModel::addComparison(const Inspection& inspection, const std::string& 
     }
     rows_.push_back(row);
   }
+}
+
+draw::Selection ErrorModel::selectionOf(int index) const {
+  const Row& row = rows_[std::size_t(index)];
+  draw::Selection s{row.frame, row.model, row.highlight};
+  s.predicted = row.predicted;
+  if (row.predicted >= 0 || row.problem) s.light = row.lightId;
+  return s;
 }
 
 QVariant ErrorModel::data(const QModelIndex& index, int role) const {

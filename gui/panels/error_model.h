@@ -46,10 +46,13 @@ class ErrorModel : public QAbstractTableModel {
   int frameOf(int row) const { return rows_[std::size_t(row)].frame; }
   const std::string& modelOf(int row) const { return rows_[std::size_t(row)].model; }
   int highlightOf(int row) const { return rows_[std::size_t(row)].highlight; }
+  /// What a row selects: its highlight; a spurious one with its light.
+  draw::Selection selectionOf(int row) const;
 
  private:
   struct Row {
-    int frame = -1, highlight = -1;
+    int frame = -1, highlight = -1, predicted = -1;  ///< predicted: of a spurious one
+    std::string lightId;
     FrameRole role = FrameRole::HeldOut;
     std::string model;
     QString frameId, light, status, reason;

@@ -76,6 +76,7 @@ QObject* makeRecoveryTest();
 int runUntilKilled();  ///< see recovery_test.cpp
 QObject* makeTradeoffTest();
 QObject* makeTurnsTest();
+QObject* makeUnmatchedTest();
 QObject* makeUnreadableTest();
 QObject* makeCapturesTest();
 QObject* makeInputReportTest();
