@@ -99,13 +99,17 @@ Highlight merged(const Highlight& a, const Highlight& b) {
   h.contour.points.clear();
   for (std::size_t i = 0; i < corners.size(); ++i) addLine(h.contour.points, corners[i], corners[(i + 1) % corners.size()]);
   if (signedArea(h.contour) < 0) std::reverse(h.contour.points.begin(), h.contour.points.end());
-  std::size_t joining = 0;
-  for (const Pixel& p : h.contour.points) joining += std::min(distance(a.contour, p), distance(b.contour, p)) > kJoinStepPx;
+  double joining = 0;
+  const std::size_t n = h.contour.points.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    const Pixel &p = h.contour.points[i], &q = h.contour.points[(i + 1) % n], middle = (p + q) / 2;
+    if (std::min(distance(a.contour, middle), distance(b.contour, middle)) > kJoinStepPx) joining += (q - p).norm();
+  }
   h.clipped = a.clipped || b.clipped;
   h.touchesBorder = a.touchesBorder || b.touchesBorder;
   describe(h);
   h.byHand = formatted("merged by hand: %.0f %% of its contour joins two highlights and was not seen",
-                       100.0 * double(joining) / double(std::max<std::size_t>(1, h.contour.points.size())));
+                       100 * joining / std::max(length(h.contour), 1e-9));
   return h;
 }
 
