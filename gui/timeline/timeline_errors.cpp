@@ -63,7 +63,8 @@ void TimelineStrip::paintMissed(QPainter& painter) {
                        row.top() + (double(k) + 0.5) * line);
       if (spurious[std::size_t(i)]) {
         const double half = r + (shown[std::size_t(i)] ? 1.5 : 0.5);  // around the cross, where there is one
-        painter.drawPolygon(QPolygonF{at + QPointF(-half, half), at + QPointF(half, half), at + QPointF(0, -half)});
+        const QPointF corners[] = {at + QPointF(-half, half), at + QPointF(half, half), at + QPointF(0, -half)};
+        painter.drawPolygon(corners, 3);
       }
       if (!shown[std::size_t(i)]) continue;
       painter.drawLine(at - QPointF(r, r), at + QPointF(r, r));
