@@ -36,26 +36,28 @@ cv::Point fixedPoint(const Eigen::Vector2d& p) {
   return {to(p.x()), to(p.y())};
 }
 
-/// The pieces of a chain that a dash pattern leaves.
-std::vector<std::vector<Eigen::Vector2d>> dashes(const std::vector<Eigen::Vector2d>& points, double on, double off) {
+/// The pieces of a chain that a dash pattern leaves. @param pattern  px that are drawn and left out in turn
+std::vector<std::vector<Eigen::Vector2d>> dashes(const std::vector<Eigen::Vector2d>& points, const std::vector<double>& pattern) {
   std::vector<std::vector<Eigen::Vector2d>> pieces;
-  double left = on;
+  std::size_t at = 0;
+  double left = pattern.front();
   bool drawing = true;
   std::vector<Eigen::Vector2d> piece{points.front()};
   for (std::size_t i = 1; i < points.size(); ++i) {
     Eigen::Vector2d from = points[i - 1];
     double length = (points[i] - from).norm();
     while (length > left) {
-      const Eigen::Vector2d at = from + (points[i] - from) * (left / length);
+      const Eigen::Vector2d end = from + (points[i] - from) * (left / length);
       if (drawing) {
-        piece.push_back(at);
+        piece.push_back(end);
         pieces.push_back(piece);
       }
-      piece = {at};
+      piece = {end};
       length -= left;
-      from = at;
+      from = end;
       drawing = !drawing;
-      left = drawing ? on : off;
+      at = (at + 1) % pattern.size();
+      left = pattern[at];
     }
     left -= length;
     if (drawing) piece.push_back(points[i]);
@@ -229,8 +231,9 @@ void Canvas::stroke(const std::vector<Eigen::Vector2d>& points, bool closed, con
   const cv::Point origin(part.x << kShift, part.y << kShift);
   const int thickness = std::max(1, static_cast<int>(std::lround(widthPx * kFine)));
   std::vector<std::vector<Eigen::Vector2d>> pieces{chain};
-  if (dash == Dash::Dashed) pieces = dashes(chain, kDashPx, 0.7 * kDashPx);
-  if (dash == Dash::Dotted) pieces = dashes(chain, kDotPx, 1.4 * kDotPx);
+  if (dash == Dash::Dashed) pieces = dashes(chain, {kDashPx, 0.7 * kDashPx});
+  if (dash == Dash::Dotted) pieces = dashes(chain, {kDotPx, 1.4 * kDotPx});
+  if (dash == Dash::DashDotted) pieces = dashes(chain, {kDashPx, 0.5 * kDashPx, kDotPx, 0.5 * kDashPx});
   for (const std::vector<Eigen::Vector2d>& piece : pieces) {
     std::vector<cv::Point> fixed;
     for (const Eigen::Vector2d& p : piece) fixed.push_back(fixedPoint(p) - origin);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/draw/frame_details.h"
+#include "core/draw/unmatched.h"
 #include "core/geometry/polyline.h"
 #include "viz/style.h"
 
@@ -17,6 +18,7 @@ const OverlayLine* nearest(const FrameOverlay& shown, const Pixel& at, double ne
   const OverlayLine* best = nullptr;
   double bestPx = nearPx;
   for (const OverlayLine& line : shown.lines) {
+    if (contoursOnly && line.highlight < 0) continue;  // filtered, or ignored by hand
     if (contoursOnly && line.role != OverlayRole::ObservedContour && line.role != OverlayRole::PredictedContour) continue;
     if (!model.empty() && (line.role != OverlayRole::PredictedContour || line.model != model)) continue;
     const double px = distance({line.points, line.closed}, at);
@@ -34,7 +36,7 @@ Selection pickInFrame(const Inspection& inspection, const Selection& now, const 
   require(inspection.scene && now.frame >= 0 && now.frame < static_cast<int>(inspection.scene->frames.size()),
           "pickInFrame: no such frame");
   Selection picked = now;
-  picked.highlight = -1;
+  picked.highlight = picked.predicted = -1;
   picked.direction.reset();
   picked.light.clear();
   const Pixel ideal = inspection.scene->frames[static_cast<std::size_t>(now.frame)].camera.undistorted(clicked);
@@ -49,8 +51,11 @@ Selection pickInFrame(const Inspection& inspection, const Selection& now, const 
     } else {
       picked.model = line->model;
       for (const FrameComparison& comparison : inspection.models.at(line->model).frames)
-        if (comparison.frame == now.frame && comparison.light == line->light)
+        if (comparison.frame == now.frame && comparison.light == line->light) {
           picked.highlight = observedOf(comparison, line->highlight);
+          picked.predicted = picked.highlight < 0 && draw::isSpurious(comparison, line->highlight) ? line->highlight : -1;
+        }
+      if (picked.predicted >= 0) return picked;  // directions are about an observed highlight
     }
     if (const std::optional<Pixel> origin = directionOrigin(inspection, now.frame, picked.highlight); origin && ideal.allFinite())
       picked.direction = std::atan2(ideal.y() - origin->y(), ideal.x() - origin->x());

@@ -37,7 +37,7 @@ std::vector<LayerRecipe>& registered() {
        solverRunsLayer},
       {{"rays", "Reflected rays", false}, kPlace | kOnFrame | kOnSolo | kOnGlyphs | kOnTheme, raysLayer},
       {{"observed-contours", "Observed contours", true},
-       kPlace | kOnFrame | kOnHighlight | kOnPicked | kOnGlyphs | kOnTheme | kOnSolo,
+       kPlace | kOnFrame | kOnModels | kOnHighlight | kOnPicked | kOnGlyphs | kOnTheme | kOnSolo,
        observedContoursLayer},
       {{"predicted-contours", "Predicted contours", true},
        kPlace | kOnFrame | kOnModels | kOnHighlight | kOnPicked | kOnGlyphs | kOnTheme,

@@ -17,6 +17,7 @@
 #include <numeric>
 #include <set>
 
+#include "core/draw/unmatched.h"
 #include "core/geometry/light.h"
 #include "core/surface/brightest_point.h"
 
@@ -41,6 +42,9 @@ std::vector<Eigen::Vector3d> selectedExtent(const LayerInput& in) {
   };
   if (in.selection.highlight >= 0 && in.selection.highlight < static_cast<int>(highlights.size()))
     addContour(highlights[static_cast<std::size_t>(in.selection.highlight)]);
+  if (const PredictedHighlight* const spurious = draw::selectedSpurious(*in.inspection, in.selection); spurious && in.surface)
+    for (const Points& chain : castContour(camera, *in.surface, spurious->contour, in.scale, 0))
+      points.insert(points.end(), chain.begin(), chain.end());
   if (!points.empty()) return points;
   if (!in.selection.model.empty()) {
     for (const ModelFit* fit : in.fits(in.selection.model)) {

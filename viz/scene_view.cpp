@@ -406,7 +406,8 @@ void SceneView::setSelection(const Selection& selection) {
   Selection wanted = selection;
   if (impl_->valid()) wanted.frame = std::clamp(wanted.frame, 0, static_cast<int>(impl_->inspection->scene->frames.size()) - 1);
   const Selection& now = impl_->selection;
-  const bool frame = wanted.frame != now.frame, highlight = wanted.highlight != now.highlight;
+  const bool frame = wanted.frame != now.frame,
+             highlight = wanted.highlight != now.highlight || wanted.predicted != now.predicted;
   const bool picked = wanted.model != now.model || wanted.light != now.light || wanted.direction != now.direction;
   impl_->selection = wanted;
   if (!frame && !highlight && !picked) return;

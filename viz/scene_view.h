@@ -49,6 +49,7 @@ struct Picked {
   std::string light;                  ///< "" = none
   std::optional<double> direction;    ///< see Selection::direction
   Eigen::Vector3d position{0, 0, 0};  ///< world, m
+  int predicted = -1;                 ///< of a spurious highlight, see Selection::predicted
   std::string text;                   ///< lines "name = value unit" for the panel and the clipboard
 };
 

@@ -77,10 +77,12 @@ TimelineData timelineData(const Scene& scene, const Inspection* inspection) {
   data.lights = lightRows(scene, inspection);
   if (!inspection) return data;
   for (const std::string& model : modelsInOrder(*inspection)) {
-    TimelineData::Series series{model, {}, {}, {}};
+    TimelineData::Series series{model, {}, {}, {}, {}, {}};
     for (const FrameScore& score : frameScores(inspection->models.at(model), n)) {
       series.errorPct.push_back(wholeErrorPct(score));
       series.missed.push_back(score.missed > 0);
+      series.spurious.push_back(score.spurious > 0);
+      series.spuriousWords.push_back(spuriousText(score));
       const std::string missed = missedText(score);
       series.reason.push_back(missed + (missed.empty() || score.reason.empty() ? "" : ": ") + score.reason);
     }

@@ -26,6 +26,8 @@ struct TimelineData {
     std::string model;
     std::vector<std::optional<double>> errorPct;  ///< one per frame; none where a highlight was missed
     std::vector<char> missed;                     ///< one per frame: a highlight was missed there
+    std::vector<char> spurious;                   ///< one per frame: one was predicted that is not seen there
+    std::vector<std::string> spuriousWords;       ///< one per frame
     std::vector<std::string> reason;              ///< where there is no error: why
     bool answers() const;                         ///< it has an error somewhere: else missing everything tells nothing new
   };

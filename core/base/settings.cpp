@@ -8,6 +8,7 @@
 
 #include "core/base/added_choice.h"
 #include "core/base/depth_settings.h"
+#include "core/base/filter_settings.h"
 #include "core/base/level_range.h"
 #include "core/base/outcome.h"
 #include "core/base/plugin_hint.h"
@@ -480,7 +481,7 @@ std::vector<ParamSpec>& params() {
        "The same for the focal length of all cameras, as a fraction: f (1 ± t_f). Uniform: σ² = d²/3.",
        "predict"},
   };
-  static std::vector<ParamSpec> all = withDepthParams(others);
+  static std::vector<ParamSpec> all = withFilterParams(withDepthParams(others));
   return all;
 }
 }  // namespace

@@ -8,6 +8,7 @@
 #include "core/base/angle.h"
 #include "core/base/number_text.h"
 #include "core/model/plausible.h"
+#include "core/score/metrics.h"
 #include "core/surface/occlusion.h"
 
 namespace glint {
@@ -84,6 +85,8 @@ std::string whyUnmatched(const Inspection& inspection, const FrameComparison& c,
   if (row.observed < 0 || row.observed >= static_cast<int>(observed.size())) return "";
   if (c.prediction.failure()) return c.prediction.failure()->message();
   const Highlight& missed = observed[std::size_t(row.observed)];
+  for (const FilteredHighlight& f : c.prediction.filtered)
+    if (regionIou({missed.contour}, {f.highlight.contour}) > 0) return "its prediction is filtered: " + f.reason;
   std::string why = nearest(c.prediction.highlights(), centroid(missed.contour), "predicted highlight",
                             [](const PredictedHighlight& p) { return centroid(p.contour); });
   if (missed.touchesBorder) why += "; it is cut by the image's border";

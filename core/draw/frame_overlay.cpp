@@ -9,12 +9,13 @@
 #include "core/base/error_text.h"
 #include "core/base/number_text.h"
 #include "core/draw/frame_details.h"
+#include "core/draw/unmatched.h"
 #include "core/scene/scene_files.h"
 
 namespace glint::draw {
 namespace {
 
-constexpr Colour kObservedEllipse{0.82, 0.82, 0.82};
+constexpr Colour kObservedEllipse{0.82, 0.82, 0.82}, kIgnored{0.7, 0.7, 0.7};
 
 /// Both borders of the 95 % band, where it is known and wide enough to be seen beside the contour.
 void addBand(const PredictedHighlight& highlight, const Camera& camera, const OverlayLine& style,
@@ -96,6 +97,7 @@ class FrameLayers {
   void addEvidence(const FrameEvidence& evidence) {
     const std::vector<Highlight>& observed = evidence.scored();  // what the rows of the comparison refer to
     for (std::size_t i = 0; i < observed.size(); ++i) addObserved(observed[i], static_cast<int>(i));
+    for (const Highlight& h : evidence.ignored) addIgnored(h);
     if (!evidence.failure) return;
     if (evidence.failure->reason == Reason::FrameUnreadable) unreadable_ = evidence.failure;
     overlay_.captions.push_back(
@@ -106,7 +108,13 @@ class FrameLayers {
     OverlayLine line;
     line.light = h.light;
     line.highlight = index;
+    const std::vector<std::string> missing = missedBy(inspection_, frame_, index, [&](const std::string& model) {
+      return drawn_(model) && (!selected_ || selected_->model.empty() || selected_->model == model);
+    });
+    line.unmatched = !missing.empty();
     line.label = "observed" + (h.light.empty() ? std::string{} : " " + h.light);
+    for (const std::string& model : missing) line.label += (model == missing.front() ? ", missed by " : ", ") + model;
+    if (line.unmatched) addUnmatched(h.peak, MarkShape::Square, 7, line);
     if (shown_(OverlayRole::ObservedContour) && h.contour.points.size() > 1) {
       line.role = OverlayRole::ObservedContour;
       line.points = toPhotograph(camera_, h.contour.points);
@@ -114,6 +122,7 @@ class FrameLayers {
       line.colour = kObserved;
       line.width = selected_ && selected_->highlight == index ? 3.5 : 2.5;
       line.halo = true;
+      line.dash = line.unmatched ? Dash::Dashed : Dash::Solid;
       overlay_.lines.push_back(line);
     }
     if (shown_(OverlayRole::ObservedEllipse) && h.ellipse) {
@@ -163,6 +172,7 @@ class FrameLayers {
       line.label = model + (score.errorPct ? " " + errorText(*score.errorPct) + " %" : std::string{});
       for (std::size_t i = 0; i < comparison.prediction.highlights().size(); ++i)
         addPredicted(comparison, static_cast<int>(i), line);
+      for (const FilteredHighlight& filtered : comparison.prediction.filtered) addGhost(filtered, line);
     }
     if (answered)
       addCaption(model, score);
@@ -175,10 +185,17 @@ class FrameLayers {
     const PredictedHighlight& h = comparison.prediction.highlights()[static_cast<std::size_t>(index)];
     const bool onPlane = h.canonical && h.canonical->ellipse;
     line.highlight = index;
+    line.unmatched = isSpurious(comparison, index);
+    const bool chosen = line.unmatched && selected_ && selected_->model == line.model && selected_->light == line.light &&
+                        selected_->highlight < 0 && selected_->predicted == index;
+    if (line.unmatched) {
+      line.label = line.model + ", spurious: no observed highlight overlaps it";
+      addUnmatched(centroid(h.contour), MarkShape::Triangle, chosen ? 9 : 7, line);
+    }
     if (shown_(OverlayRole::PredictedContour)) {
       line.role = OverlayRole::PredictedContour;
-      line.width = selected_ && selected_->model == line.model ? 2.75 : 1.75;
-      line.dash = training_ ? Dash::Solid : Dash::Dashed;
+      line.width = chosen ? 3.75 : selected_ && selected_->model == line.model ? 2.75 : 1.75;
+      line.dash = line.unmatched ? Dash::DashDotted : training_ ? Dash::Solid : Dash::Dashed;
       addPrediction(h, camera_, line, overlay_.lines);
     }
     if (shown_(OverlayRole::UncertaintyBand)) addBand(h, camera_, line, overlay_.lines);
@@ -198,6 +215,53 @@ class FrameLayers {
         addEllipse(OverlayRole::PredictedEllipse, *h.canonical->ellipse, Dash::Dotted, line);
     }
     if (shown_(OverlayRole::PredictedPeak) && h.brightest.pixel.allFinite()) addPredictedPeak(h, line);
+  }
+
+  /// What has no partner is told by more than its line.
+  void addUnmatched(const Pixel& at, MarkShape shape, double size, const OverlayLine& of) {
+    if (!shown_(OverlayRole::Unmatched) || !at.allFinite()) return;
+    OverlayMark mark;
+    mark.role = OverlayRole::Unmatched;
+    mark.at = toPhotograph(camera_, {at}).front();
+    mark.shape = shape;
+    mark.size = size;
+    mark.width = 2;
+    mark.colour = shape == MarkShape::Square ? kObserved : of.colour;
+    mark.label = of.label;
+    mark.model = of.model;
+    mark.light = of.light;
+    mark.highlight = of.highlight;
+    overlay_.marks.push_back(mark);
+  }
+
+  /// What a filter took out of a prediction.
+  void addGhost(const FilteredHighlight& filtered, OverlayLine line) {
+    if (!shown_(OverlayRole::PredictedContour)) return;
+    line.role = OverlayRole::PredictedContour;
+    line.label = line.model + ", filtered: " + filtered.reason;
+    line.points = toPhotograph(camera_, filtered.highlight.contour.points);
+    line.closed = filtered.highlight.contour.closed;
+    line.dash = Dash::Dotted;
+    line.width = 0.75;
+    line.halo = false;
+    for (double& channel : line.colour) channel = 0.5 * (channel + 0.5);
+    overlay_.lines.push_back(std::move(line));
+  }
+
+  /// What a person took out of the evidence.
+  void addIgnored(const Highlight& h) {
+    if (!shown_(OverlayRole::ObservedContour)) return;
+    OverlayLine line;
+    line.role = OverlayRole::ObservedContour;
+    line.light = h.light;
+    line.label = "ignored by hand";
+    line.points = toPhotograph(camera_, h.contour.points);
+    line.closed = h.contour.closed;
+    line.colour = kIgnored;
+    line.dash = Dash::Dotted;
+    line.width = 1;
+    line.halo = true;
+    overlay_.lines.push_back(std::move(line));
   }
 
   void addPredictedPeak(const PredictedHighlight& h, const OverlayLine& of) {
@@ -284,6 +348,11 @@ const std::vector<OverlayLayer>& overlayLayers() {
       {OverlayRole::CanonicalEllipse, "frame/canonical", "Canonical",
        "Ellipse of the canonical contour on the tangent plane, dotted: observed in training frames, predicted elsewhere", true},
       {OverlayRole::ObservedPeak, "frame/peak", "Peaks", "Observed peak: cross; predicted brightest points: circles", true},
+      {OverlayRole::Unmatched, "frame/unmatched", "Unmatched",
+       "Crossed square: observed, and missed by the selected model (by any shown one, where none is selected), its contour "
+       "dashed. "
+       "Triangle: predicted, and seen by nobody (spurious), its contour in dashes and dots",
+       true},
       {OverlayRole::ResidualArrows, "frame/residuals", "Residuals",
        "Arrows from the observed to the predicted contour, every 10 degrees", false},
       {OverlayRole::LimitDirections, "frame/directions", "Directions",

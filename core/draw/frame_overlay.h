@@ -28,6 +28,7 @@ enum class OverlayRole {
   LimitDirections,
   ResidualArrows,
   SelectedPoint,
+  Unmatched,
   EpipolarLine
 };
 
@@ -54,10 +55,11 @@ struct OverlayLine {
   std::string label;  ///< short text for a tool tip or a legend: "canonical 0.42 %"; may be empty
   std::string model;  ///< "" for observed
   std::string light;
-  int highlight = -1;  ///< observed: index into FrameEvidence::scored(); predicted: into the prediction's highlights
+  int highlight = -1;      ///< observed: index into FrameEvidence::scored(); predicted: into the prediction's highlights
+  bool unmatched = false;  ///< observed and missed, or predicted and spurious: has no partner
 };
 
-enum class MarkShape { Cross, Circle };
+enum class MarkShape { Cross, Circle, Square, Triangle };
 
 /// One mark at a pixel (peak, brightest point).
 struct OverlayMark {
@@ -102,7 +104,9 @@ struct OverlayOptions {
 /// (crosses); per model in its fixed colour the predicted contours (dashed in frames that do not train, bridged gaps dotted),
 /// their 95 % bands, ellipses (dashed), brightest points (circles), arrows from observed to predicted contour every 10 degrees,
 /// and the walks of the limit angles (to the end on S, dotted on to the end on T). Empty lines and marks for a frame without
-/// evidence; the captions then say why.
+/// evidence; the captions then say why. What has no partner looks unlike the rest: an observed highlight that the selected model
+/// misses (any drawn one, where none is selected) is dashed with a crossed square at its peak; a spurious prediction has dashes and dots and
+/// a triangle at its middle; one that a filter took out is thin and dotted.
 /// @param frame  index into scene->frames; std::invalid_argument when it does not exist.
 FrameOverlay frameOverlay(const Inspection& inspection, int frame, const OverlayOptions& options = {});
 

@@ -56,6 +56,7 @@ PlotData errorPlot(const Inspection& inspection, const ErrorPlotOptions& options
   plot.y.title = "contour error (%)";
   plot.y.floor = kSmallestPct;
   plot.noValue = "missed a highlight";
+  plot.triangles = "spurious highlight";
   const std::size_t n = inspection.evidence.size();
   if (n == 0) return nothing(plot, "No results yet");
   // The axis counts frames; where their names are no such count, it says so.
@@ -92,6 +93,8 @@ PlotData errorPlot(const Inspection& inspection, const ErrorPlotOptions& options
         p.label += missedText(score) + (score.reason.empty() ? "" : "\n" + score.reason);
       else
         p.label += score.reason.empty() ? "nothing to compare" : score.reason;
+      p.triangle = !excluded && score.spurious > 0;
+      if (p.triangle) p.label += "\n" + spuriousText(score);
       if (pct) values.push_back(*pct);
       matched = matched || (!excluded && score.matched > 0);
       series.points.push_back(std::move(p));

@@ -2,6 +2,18 @@
 #include "core/draw/overlay_painter.h"
 
 namespace glint::draw {
+namespace {
+
+std::vector<Eigen::Vector2d> corners(MarkShape shape, const Eigen::Vector2d& at, double half) {
+  constexpr double kHeight = 1.732;  // of an equilateral triangle, in half sides
+  if (shape == MarkShape::Triangle)
+    return {at + half * Eigen::Vector2d(-1, kHeight / 3), at + half * Eigen::Vector2d(1, kHeight / 3),
+            at + half * Eigen::Vector2d(0, -2 * kHeight / 3)};
+  return {at + half * Eigen::Vector2d(-1, -1), at + half * Eigen::Vector2d(1, -1), at + half * Eigen::Vector2d(1, 1),
+          at + half * Eigen::Vector2d(-1, 1)};
+}
+
+}  // namespace
 
 void paintOverlay(Painter& painter, const FrameOverlay& overlay, const Crop& crop, const Box& box, double inkScale, bool hints) {
   const auto place = [&](const Pixel& p) {
@@ -21,6 +33,13 @@ void paintOverlay(Painter& painter, const FrameOverlay& overlay, const Crop& cro
     const double size = inkScale * mark.size;
     const auto draw = [&](const Colour& colour, double width, double reach) {
       if (mark.shape == MarkShape::Circle) return painter.ring(at, size, colour, width, box);
+      if (mark.shape != MarkShape::Cross) painter.stroke(corners(mark.shape, at, size), true, colour, width, Dash::Solid, box);
+      if (mark.shape == MarkShape::Triangle) return;
+      if (mark.shape == MarkShape::Square) {  // with a cross from corner to corner, as plots and the timeline have one
+        const std::vector<Eigen::Vector2d> c = corners(mark.shape, at, size);
+        painter.stroke({c[0], c[2]}, false, colour, width, Dash::Solid, box);
+        return painter.stroke({c[1], c[3]}, false, colour, width, Dash::Solid, box);
+      }
       for (const Eigen::Vector2d& arm : {Eigen::Vector2d(reach, 0), Eigen::Vector2d(0, reach)})
         painter.stroke({at - arm, at + arm}, false, colour, width, Dash::Solid, box);
     };

@@ -16,7 +16,7 @@ struct Box {
 /// A part of an image in its own pixels: (x, y) = left and top *edge*, so a whole image is (-0.5, -0.5, w, h).
 using Crop = Box;
 
-enum class Dash { Solid, Dashed, Dotted };
+enum class Dash { Solid, Dashed, Dotted, DashDotted };
 enum class Align { Left, Centre, Right };
 
 /// What charts and overlays are painted with, whatever takes the strokes: pixels in memory (viz/canvas.h), a file that scales

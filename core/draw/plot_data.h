@@ -29,6 +29,7 @@ struct PlotPoint {
   std::string label;                              ///< lines for a tool tip
   std::string note{};                             ///< stands beside the sample, which has a ring around it; "" = none
   bool hollow = false;                            ///< a ring in place of a disc
+  bool triangle = false;                          ///< a triangle around it, see PlotData::triangles
   PlotTarget target;
 };
 
@@ -75,6 +76,7 @@ struct PlotData {
   std::vector<PlotShade> shades;
   std::vector<std::string> remarks{};  ///< stand before the legend: how many samples there are, what is not shown
   std::string noValue;                 ///< what the crosses at the top stand for, for the legend: "missed highlight"
+  std::string triangles{};             ///< the same of triangles: "spurious highlight"
 };
 
 /// A sample: which series, which point.

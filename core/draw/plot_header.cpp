@@ -26,6 +26,12 @@ bool hasCrosses(const PlotData& plot) {
   return false;
 }
 
+bool hasTriangles(const PlotData& plot) {
+  return std::any_of(plot.series.begin(), plot.series.end(), [](const PlotSeries& series) {
+    return std::any_of(series.points.begin(), series.points.end(), [](const PlotPoint& p) { return p.triangle; });
+  });
+}
+
 void paintSwatch(Painter& painter, const PlotSeries& series, const PlotLook& look, double left, double middle) {
   const double swatch = look.px(kSwatch);
   for (const bool halo : {true, false}) {
@@ -55,6 +61,10 @@ std::vector<Entry> entriesOf(Painter& painter, const PlotData& plot, const PlotL
     entries.push_back({plot.noValue, [&painter, &look, swatch](double left, double middle) {
                          paintCross(painter, {left + 0.5 * swatch, middle}, look.faded, look);
                        }});
+  if (!plot.triangles.empty() && hasTriangles(plot))
+    entries.push_back({plot.triangles, [&painter, &look, swatch](double left, double middle) {
+                         paintTriangle(painter, {left + 0.5 * swatch, middle}, look.faded, look);
+                       }});
   std::vector<std::string> named;
   for (const PlotShade& shade : plot.shades) {
     if (shade.name.empty() || std::find(named.begin(), named.end(), shade.name) != named.end()) continue;
@@ -68,6 +78,12 @@ std::vector<Entry> entriesOf(Painter& painter, const PlotData& plot, const PlotL
 }
 
 }  // namespace
+
+void paintTriangle(Painter& painter, const Eigen::Vector2d& at, const Colour& colour, const PlotLook& look) {
+  const double half = look.px(6.5), low = half / 1.732;  // equilateral about its middle
+  painter.stroke({at + Eigen::Vector2d(-half, low), at + Eigen::Vector2d(half, low), at + Eigen::Vector2d(0, -2 * low)}, true,
+                 colour, look.px(1.5));
+}
 
 void paintCross(Painter& painter, const Eigen::Vector2d& at, const Colour& colour, const PlotLook& look) {
   constexpr double kHalf = 3.5, kWidth = 1.75;  // screen px

@@ -34,5 +34,7 @@ double paintPlotHeader(Painter& painter, const PlotData& plot, const PlotLook& l
 
 /// A cross about a place, with a stroke of the background around it.
 void paintCross(Painter& painter, const Eigen::Vector2d& at, const Colour& colour, const PlotLook& look);
+/// Around a sample of which PlotPoint::triangle is set.
+void paintTriangle(Painter& painter, const Eigen::Vector2d& at, const Colour& colour, const PlotLook& look);
 
 }  // namespace glint::draw

@@ -176,6 +176,7 @@ void PlotPicture::paintSamples() {
       const Eigen::Vector2d at = at_.placeOf(plot_, s, p);
       if (!at_.inside(plot_, at)) continue;
       if (p.noValue && !plot_.dial) paintCross(painter_, at, series.colour, look_);
+      if (p.triangle && !plot_.dial) paintTriangle(painter_, at, series.colour, look_);
       painter_.hint(at, px(kReach), p.label);
     }
   }

@@ -17,6 +17,9 @@ struct Selection {
   /// peak where there is no contour), rad in (-pi, pi], 0 = right, pi/2 = down. The same direction is marked on observed and
   /// predicted contours, dials and plots.
   std::optional<double> direction{};
+  /// A spurious highlight: index in what `model` predicts for `light` in this frame; `highlight` is -1 then. -1 = none. See
+  /// core/draw/unmatched.h.
+  int predicted = -1;
 
   friend bool operator==(const Selection&, const Selection&) = default;
 };

@@ -67,7 +67,12 @@ void SvgPainter::stroke(const std::vector<Eigen::Vector2d>& points, bool closed,
   }
   if (path.empty()) return;
   body_ += "<path fill=\"none\" stroke=\"" + hex(colour) + "\" stroke-width=\"" + num(widthPx) + "\"";
-  if (dash != Dash::Solid) body_ += std::string(" stroke-dasharray=\"") + (dash == Dash::Dashed ? "7 5" : "2.5 3.5") + "\"";
+  if (dash != Dash::Solid)
+    body_ += std::string(" stroke-dasharray=\"") +
+             (dash == Dash::Dashed   ? "7 5"
+              : dash == Dash::Dotted ? "2.5 3.5"
+                                     : "8 3.5 2 3.5") +
+             "\"";
   body_ += " d=\"" + path.substr(1) + "\"/>\n";
 }
 

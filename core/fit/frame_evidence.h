@@ -24,10 +24,12 @@ struct FrameEvidence {
   std::optional<Failure> failure;           ///< why there are no highlights: NoHighlight, FrameUnreadable, ...
   std::vector<RejectedCandidate> rejected;  ///< what detection saw and did not take, measured pixels
   std::vector<WithheldTexture> textures;    ///< taken out of `highlights`, by rising place
-  std::string
-      notParted;  ///< detect.background = colours: why the colours do not tell what is specular; "" where they do, or were not asked
+  /// detect.background = colours: why the colours do not tell what is specular; "" where they do, or were not asked.
+  std::string notParted;
   bool againstTruth = false;  ///< --truth is given: `truth` is scored, whatever was detected
-  std::vector<int> found;     ///< where lights are switched off: which of the highlights as found each one is; else empty
+  /// Where a what-if took some out or changed which there are: which of the highlights as found each one is; else empty.
+  std::vector<int> found;
+  std::vector<Highlight> ignored;  ///< by hand: neither evidence nor scored, and a prediction there is not spurious
   /// Index among the highlights as found, which is what a what-if names them by.
   int asFound(int highlight) const { return found.empty() ? highlight : found[static_cast<std::size_t>(highlight)]; }
   std::vector<Highlight> truth;

@@ -38,6 +38,7 @@ struct Highlight {
   bool touchesBorder = false;             ///< cut by the image border
   double cutPx2 = 0;                      ///< area of streaks and other narrow tongues that were cut off; clipped highlights only
   bool fromScene = false;                 ///< given in the scene file, not detected
+  std::string byHand{};                   ///< what a person did to its shape, and what that leaves in doubt; "" = nothing
   std::vector<LevelContour> otherLevels;  ///< beside `contour`, where several levels are evidence (fit.evidence = levels)
 };
 

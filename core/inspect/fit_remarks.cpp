@@ -47,4 +47,14 @@ std::string repeatedRemark(const Inspection& r, const ModelFit& fit) {
          " another one exactly and count once: " + names;
 }
 
+std::string byHandRemark(const Inspection& r, const ModelFit& fit) {
+  std::string names;
+  for (const TrainingView& v : r.views) {
+    if (v.highlight.byHand.empty() || !v.seen || v.highlight.light != fit.light) continue;
+    if (std::find(fit.frames.begin(), fit.frames.end(), v.frame) == fit.frames.end()) continue;
+    names += (names.empty() ? "" : "; ") + ("frame " + r.scene->frames[std::size_t(v.frame)].id + ": " + v.highlight.byHand);
+  }
+  return names;
+}
+
 }  // namespace glint

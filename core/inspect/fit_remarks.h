@@ -13,5 +13,7 @@ bool isSeen(const Inspection& inspection, const std::string& light);
 std::string mergedRemark(const Inspection& inspection, const ModelFit& fit);
 /// Training frames that show the fit's light and have no view because they repeat another one. "" where there are none.
 std::string repeatedRemark(const Inspection& inspection, const ModelFit& fit);
+/// Training highlights of the fit's light whose shape was made by hand, each with what that leaves in doubt. "" where there are none.
+std::string byHandRemark(const Inspection& inspection, const ModelFit& fit);
 
 }  // namespace glint

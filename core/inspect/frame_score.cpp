@@ -81,6 +81,12 @@ std::string missedText(const FrameScore& score) {
          (score.matched > 1 ? "s: mean " : ": ") + errorText(*score.errorPct) + " %";
 }
 
+std::string spuriousText(const FrameScore& score) {
+  if (score.spurious == 0) return {};
+  return std::to_string(score.spurious) + " spurious highlight" + (score.spurious == 1 ? "" : "s") +
+         ": predicted where none is seen";
+}
+
 FrameScore scoreOf(const FrameComparison& comparison) {
   ScoreSum sum;
   sum.add(comparison);

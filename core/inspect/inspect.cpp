@@ -14,6 +14,7 @@
 #include "core/fit/training.h"
 #include "core/inspect/fit_band.h"
 #include "core/inspect/fit_remarks.h"
+#include "core/inspect/hand_edits.h"
 #include "core/inspect/inspection.h"
 #include "core/inspect/live_prediction.h"
 #include "core/inspect/lobe_stage.h"
@@ -230,13 +231,12 @@ void Run::assignSeveralLights() {
 
 /// The user's changes to single highlights and lights come after detection, so that none of them detects anything again.
 void Run::changeHighlights() {
-  for (const auto& [at, change] : r_.request.whatIf.highlights) {
-    const auto [frame, index] = at;
-    if (frame < 0 || frame >= static_cast<int>(r_.evidence.size())) continue;
-    FrameEvidence& e = r_.evidence[frame];
-    if (index < 0 || index >= static_cast<int>(e.highlights.size())) continue;
-    r_.evidenceBefore.emplace(frame, e);
-    e.highlights[index] = changed(e.highlights[index], change);
+  const WhatIf& w = r_.request.whatIf;
+  for (FrameEvidence& e : r_.evidence) {
+    if (e.frame < 0 || !changesHighlights(w, e.frame)) continue;
+    r_.evidenceBefore.emplace(e.frame, e);
+    applyEdits(e, *r_.scene, r_.request);
+    moveHighlights(e, w);
   }
   for (FrameEvidence& e : r_.evidence) {
     if (!showsSwitchedOff(e, r_.request.whatIf)) continue;
@@ -404,6 +404,7 @@ void Run::modelFits() {
         fit->surface = g.key.surface;
         if (std::string merged = mergedRemark(r_, *fit); !merged.empty()) fit->remarks.push_back(std::move(merged));
         if (std::string repeated = repeatedRemark(r_, *fit); !repeated.empty()) fit->remarks.push_back(std::move(repeated));
+        if (std::string byHand = byHandRemark(r_, *fit); !byHand.empty()) fit->remarks.push_back(std::move(byHand));
         if (std::string texture = textureRemark(r_); !texture.empty()) fit->remarks.push_back(std::move(texture));
         if (r_.surfaces)
           if (std::string fused = r_.surfaces->fusionRemark(fit->frames); !fused.empty())

@@ -6,6 +6,7 @@
 
 #include "core/base/elapsed.h"
 #include "core/inspect/fit_band.h"
+#include "core/inspect/prediction_filter.h"
 #include "core/model/plausible.h"
 #include "core/surface/mesh_policy.h"
 
@@ -32,9 +33,10 @@ Prediction predictionFor(const Inspection& inspection, const ModelResult::Fit& f
   Prediction prediction = model.predict(*fit.fit, camera, surface, inspection.request.settings);
   prediction.timeUs = microsecondsSince(start);
   dropTooSmall(prediction);
+  filterPrediction(prediction, *fit.fit, camera, surface, inspection.request.settings);
   const Failure* const why = prediction.failure();
   if (!why) return prediction;
-  if (why->reason != Reason::NoSurface) return *why;
+  if (why->reason != Reason::NoSurface) return prediction.filtered.empty() ? Prediction(*why) : prediction;
   if (frame < 0) return Failure{Reason::NoSurface, "the frames see different surfaces, and none of them has this id"};
   // A step that missed the surface gets the reason why there is none: the file that cannot be read.
   const auto given = inspection.surfaces->surfaceOf(frame, meshPolicy(inspection.request.settings));

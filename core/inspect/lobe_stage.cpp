@@ -10,6 +10,7 @@
 #include "core/fit/evidence.h"
 #include "core/fit/highlight_motion.h"
 #include "core/fit/training.h"
+#include "core/inspect/hand_edits.h"
 #include "core/inspect/requested_evidence.h"
 #include "core/inspect/stage_inputs.h"
 #include "core/model/pixel_evidence.h"
@@ -68,7 +69,8 @@ std::string lobeInputs(const InspectionRequest& request, const TrainSpec& train,
   frames += train.perSurface ? "per-surface" : "";
   for (const int f : request.excluded) frames += "x" + std::to_string(f);
   return inputsText(request.settings, {"surface"}, evidenceInputs(together ? request : atHalf(request), together)) + "|" +
-         frames + "|" + posesKey(request.whatIf) + "|" + lightsOffKey(request.whatIf) + (looksAtPixels(request) ? "|pixels" : "");
+         frames + "|" + posesKey(request.whatIf) + "|" + lightsOffKey(request.whatIf) + ignoredKey(request.whatIf) +
+         (looksAtPixels(request) ? "|pixels" : "");
 }
 
 void fitLobes(Inspection& r, const SurfaceOfFrame& surfaceOf, bool together, const ProgressFn& progress) {
@@ -95,7 +97,9 @@ void fitLobes(Inspection& r, const SurfaceOfFrame& surfaceOf, bool together, con
         if (!surface || !pixels) return;
         for (int h = 0; h < static_cast<int>(evidence.highlights.size()); ++h) {
           const Highlight& highlight = evidence.highlights[static_cast<std::size_t>(h)];
-          if (highlight.light.empty() || isSwitchedOff(r.request.whatIf, f, highlight.light)) continue;
+          if (highlight.light.empty() || isSwitchedOff(r.request.whatIf, f, highlight.light) ||
+              isIgnored(r.request.whatIf, f, highlight))
+            continue;
           TrainingView view = trainingView(evidence, h, frame.camera, surface);
           if (!view.seen) continue;
           Outcome<PixelPatch> patch =
@@ -199,6 +203,8 @@ void addDetectedLevels(const Inspection& r, const SurfaceOfFrame& surfaceOf, Fra
   for (std::size_t h = 0; h < evidence.highlights.size(); ++h)
     if (r.request.whatIf.highlights.count({evidence.frame, evidence.asFound(static_cast<int>(h))}))
       evidence.highlights[h].otherLevels.clear();
+  for (Highlight& h : evidence.highlights)
+    if (!h.byHand.empty()) h.otherLevels.clear();
 }
 
 void attachPixels(Inspection& r) {
@@ -207,7 +213,7 @@ void attachPixels(Inspection& r) {
   for (TrainingView& v : r.views) {
     const FrameEvidence& evidence = r.evidence[static_cast<std::size_t>(v.frame)];
     const int index = evidence.asFound(next[v.frame]++);
-    if (r.request.whatIf.highlights.count({v.frame, index})) continue;
+    if (r.request.whatIf.highlights.count({v.frame, index}) || !v.highlight.byHand.empty()) continue;
     for (auto p = r.patches.lower_bound({v.frame, 0}); p != r.patches.end() && p->first.first == v.frame && !v.pixels; ++p)
       if (p->second->light == v.highlight.light && contains(v.highlight.contour, p->second->peak)) v.pixels = p->second;
   }

@@ -10,6 +10,7 @@
 #include "core/fit/evidence.h"
 #include "core/fit/highlight_motion.h"
 #include "core/fit/several_lights.h"
+#include "core/inspect/hand_edits.h"
 #include "core/inspect/lobe_stage.h"
 #include "core/inspect/requested_evidence.h"
 #include "core/inspect/stage_inputs.h"
@@ -43,11 +44,8 @@ std::optional<Observation> observeFrame(std::shared_ptr<const Scene> scene, cons
       if (std::optional<FrameEvidence> again = contouredAgain(*known, *seen.scene, request, frame, seen.evidence, *surface))
         seen.evidence = *std::move(again);
   }
-  for (const auto& [at, change] : w.highlights)
-    if (at.first == frame && at.second >= 0 && at.second < static_cast<int>(seen.evidence.highlights.size())) {
-      Highlight& h = seen.evidence.highlights[std::size_t(at.second)];
-      h = changed(h, change);
-    }
+  applyEdits(seen.evidence, *seen.scene, request);
+  moveHighlights(seen.evidence, w);
   dropSwitchedOff(seen.evidence, w);
   return seen;
 }

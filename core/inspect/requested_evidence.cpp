@@ -6,6 +6,7 @@
 
 #include "core/fit/evidence.h"
 #include "core/fit/several_lights.h"
+#include "core/inspect/hand_edits.h"
 
 namespace glint {
 
@@ -29,6 +30,17 @@ FrameEvidence evidenceFor(const Scene& scene, int frame, const InspectionRequest
   else
     evidence.truthFailure = truth.failure();
   return evidence;
+}
+
+bool changesHighlights(const WhatIf& w, int frame) {
+  const auto moved = w.highlights.lower_bound({frame, 0});
+  return (moved != w.highlights.end() && moved->first.first == frame) || hasEdits(w, frame);
+}
+
+void moveHighlights(FrameEvidence& e, const WhatIf& w) {
+  for (std::size_t i = 0; i < e.highlights.size(); ++i)
+    if (const auto by = w.highlights.find({e.frame, e.asFound(static_cast<int>(i))}); by != w.highlights.end())
+      e.highlights[i] = changed(e.highlights[i], by->second);
 }
 
 bool showsSwitchedOff(const FrameEvidence& e, const WhatIf& w) {

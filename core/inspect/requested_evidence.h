@@ -10,6 +10,11 @@ namespace glint {
 /// @param scene  with the request's what-if
 FrameEvidence evidenceFor(const Scene& scene, int frame, const InspectionRequest& request);
 
+/// Whether a what-if moves highlights of a frame or changes which there are.
+bool changesHighlights(const WhatIf& whatIf, int frame);
+/// Highlights as they were moved by hand; after their edits (hand_edits.h), which they may be the result of.
+void moveHighlights(FrameEvidence& evidence, const WhatIf& whatIf);
+
 /// Takes what is of lights that the what-if switched off in this frame out of highlights and truth. Where nothing is left the
 /// failure is NoHighlight.
 void dropSwitchedOff(FrameEvidence& evidence, const WhatIf& whatIf);

@@ -26,6 +26,7 @@ ComparisonTally tallyOf(const FrameComparison& c) {
   t.predicted = !c.prediction.highlights().empty();
   t.iou = c.iou;
   t.timeUs = c.prediction.timeUs;
+  t.filtered = static_cast<int>(c.prediction.filtered.size());
   if (c.prediction.failure()) t.failure = c.prediction.failure()->message();
   for (const FrameComparison::Row& row : c.rows) {
     if (row.observed >= 0) t.observed = true;
@@ -76,6 +77,7 @@ ModelSummary summaryOf(const std::vector<ComparisonTally>& tallies, const std::s
     s.matched += t.matched;
     s.missed += t.missed;
     s.spurious += t.spurious;
+    s.filtered += t.filtered;
     for (const ComparisonTally::Measured& m : t.measured) {
       pct.push_back(m.contourErrorPct);
       px.push_back(m.contourErrorPx);

@@ -16,6 +16,7 @@ struct ModelSummary {
   int frames = 0;                             ///< (frame, light) pairs that should be predicted
   int predicted = 0;                          ///< of those, pairs with a prediction
   int matched = 0, missed = 0, spurious = 0;  ///< highlights
+  int filtered = 0;                           ///< predicted highlights that predict.filter_... took out: none of the above
   Statistic contourErrorPct, contourErrorPx, ellipseErrorPct, hausdorffPx, peakOffsetPx, coverage;  ///< over matched highlights
   Statistic iou;  ///< per (frame, light), over the union of all regions
   Statistic timeUs;
@@ -28,7 +29,7 @@ struct ComparisonTally {
   int frame = -1;
   bool predicted = false, observed = false;
   bool unreadable = false;  ///< a row says why nothing could be compared
-  int matched = 0, missed = 0, spurious = 0;
+  int matched = 0, missed = 0, spurious = 0, filtered = 0;
   double iou = 0, timeUs = 0;
   std::string failure;  ///< of the prediction; "" = none
   struct Measured {

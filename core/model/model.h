@@ -174,6 +174,13 @@ struct PredictedHighlight {
   std::vector<double> sigmaPx;
 };
 
+/// A highlight that a model predicts and a filter took out (core/inspect/prediction_filter.h): nobody compares it, views draw it
+/// faintly.
+struct FilteredHighlight {
+  PredictedHighlight highlight;
+  std::string reason;  ///< in words
+};
+
 /// Prediction of one light in one view: highlights, at least one, or the reason why there is none.
 class Prediction {
  public:
@@ -188,6 +195,7 @@ class Prediction {
   void drop(const std::function<std::optional<Failure>(const PredictedHighlight&)>& reasonFor);
 
   double timeUs = 0;
+  std::vector<FilteredHighlight> filtered;  ///< not in highlights()
 
  private:
   std::variant<std::vector<PredictedHighlight>, Failure> answer_;

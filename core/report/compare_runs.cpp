@@ -124,6 +124,12 @@ std::map<std::string, std::string> changes(const Inspection& run) {
     all["highlight " + std::to_string(at.second + 1) + " of " + id(at.first)] =
         "contour by " + sixDigits(h.contourBy.x()) + " " + sixDigits(h.contourBy.y()) + " px, times " +
         sixDigits(h.contourScale) + "; peak by " + sixDigits(h.peakBy.x()) + " " + sixDigits(h.peakBy.y()) + " px";
+  for (std::size_t i = 0; i < w.edits.size(); ++i) {
+    const HighlightEdit& e = w.edits[i];
+    std::string places;
+    for (const Pixel& p : e.places) places += " " + sixDigits(p.x()) + " " + sixDigits(p.y());
+    all["edit " + std::to_string(i + 1)] = std::string(pastOf(e.kind)) + " in " + id(e.frame) + " at" + places + " px";
+  }
   for (const auto& [at, on] : w.lightsSwitched) all["light " + at.second + " in " + id(at.first)] = on ? "on" : "off";
   if (!w.synthesise) return all;
   all["contours"] = "synthesised";

@@ -214,6 +214,7 @@ Json summaryValues(const ModelSummary& s) {
           {"matched", s.matched},
           {"missed", s.missed},
           {"spurious", s.spurious},
+          {"filtered", s.filtered},
           {"peak_offset_px", statistic(s.peakOffsetPx)},
           {"coverage", statistic(s.coverage)},
           {"time_us", {{"median", numberOrNull(s.timeUs.median)}, {"p99", numberOrNull(s.timeP99Us)}}}};

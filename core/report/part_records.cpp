@@ -84,6 +84,7 @@ std::string jsonOf(const ComparisonRecord& r) {
   for (const ComparisonTally::Measured& m : t.measured)
     j["measured"].push_back(
         numbersJson({m.contourErrorPct, m.contourErrorPx, m.ellipseErrorPct, m.hausdorffPx, m.peakOffsetPx, m.coverage}));
+  if (t.filtered > 0) j["filtered"] = t.filtered;
   if (!t.bands.empty()) j["bands"] = Json::array();
   for (const BandScore& b : t.bands) j["bands"].push_back(numbersJson({b.sigmaPx, b.coverage}));
   return j.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -100,6 +101,7 @@ ComparisonRecord readComparisonRecord(const JsonNode& j) {
   t.matched = countIn(j.at("matched"));
   t.missed = countIn(j.at("missed"));
   t.spurious = countIn(j.at("spurious"));
+  if (const std::optional<JsonNode> filtered = j.find("filtered")) t.filtered = countIn(*filtered);
   t.iou = numberOrNan(j.at("iou"));
   t.timeUs = numberOrNan(j.at("time_us"));
   t.failure = j.at("failure").text();

@@ -58,9 +58,10 @@ std::string overlayJson(const Inspection& inspection, int frame) {
   const draw::FrameOverlay overlay = draw::frameOverlay(inspection, frame, options);
   const auto line = [](const draw::OverlayLine& l) {
     return "{\"model\":" + quoted(l.model) + ",\"light\":" + quoted(l.light) + ",\"closed\":" + truth(l.closed) + ",\"dash\":" +
-           std::to_string(l.dash == draw::Dash::Dashed   ? 1
-                          : l.dash == draw::Dash::Dotted ? 2
-                                                         : 0) +
+           std::to_string(l.dash == draw::Dash::Dashed       ? 1
+                          : l.dash == draw::Dash::Dotted     ? 2
+                          : l.dash == draw::Dash::DashDotted ? 3
+                                                             : 0) +
            ",\"label\":" + quoted(l.label) + ",\"points\":" + Rounding::pixels(l.points) + "}";
   };
   std::vector<draw::OverlayMark> marks;

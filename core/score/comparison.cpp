@@ -60,6 +60,28 @@ std::optional<BandScore> bandScore(const Polyline& observed, const PredictedHigh
   return score;
 }
 
+/// Whether a predicted contour overlaps a highlight that a person ignores.
+bool isIgnored(const FrameEvidence& evidence, const std::string& light, const Polyline& predicted) {
+  return std::any_of(evidence.ignored.begin(), evidence.ignored.end(),
+                     [&](const Highlight& h) { return h.light == light && regionIou({h.contour}, {predicted}) > 0; });
+}
+
+/// A row for each predicted contour without a partner.
+/// @return the predicted contours without those where a person ignores a highlight
+std::vector<Polyline> addSpurious(const FrameEvidence& evidence, const Camera& camera, const std::vector<Polyline>& predicted,
+                                  const std::vector<char>& used, FrameComparison& c) {
+  std::vector<Polyline> compared;
+  for (std::size_t p = 0; p < predicted.size(); ++p) {
+    if (!used[p] && isIgnored(evidence, c.light, predicted[p])) continue;
+    compared.push_back(predicted[p]);
+    if (used[p] || clippedToImage(c.prediction.highlights()[p].contour, camera).points.empty()) continue;  // nobody could see it
+    FrameComparison::Row row;
+    row.predicted = static_cast<int>(p);
+    c.rows.push_back(row);
+  }
+  return compared;
+}
+
 }  // namespace
 
 FrameComparison compareFrame(const FrameEvidence& evidence, const std::string& light, const Camera& camera,
@@ -112,13 +134,8 @@ FrameComparison compareFrame(const FrameEvidence& evidence, const std::string& l
     }
     c.rows.push_back(std::move(row));
   }
-  for (int p = 0; p < static_cast<int>(predicted.size()); ++p) {
-    if (used[p] || clippedToImage(c.prediction.highlights()[p].contour, camera).points.empty()) continue;  // nobody could see it
-    FrameComparison::Row row;
-    row.predicted = p;
-    c.rows.push_back(row);
-  }
-  c.iou = observed.size() == 1 && predicted.size() == 1 && ious.size() == 1 ? ious[0] : regionIou(observed, predicted);
+  const std::vector<Polyline> compared = addSpurious(evidence, camera, predicted, used, c);
+  c.iou = observed.size() == 1 && predicted.size() == 1 && ious.size() == 1 ? ious[0] : regionIou(observed, compared);
   return c;
 }
 

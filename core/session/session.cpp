@@ -183,6 +183,7 @@ SessionView readView(const JsonNode& node) {
     if (const auto m = n->find("model")) view.model = m->text();
     if (const auto m = n->find("light")) view.light = m->text();
     if (const auto m = n->find("highlight")) view.highlight = m->integer();
+    if (const auto m = n->find("predicted")) view.predicted = m->integer();
   }
   return view;
 }
@@ -287,6 +288,7 @@ std::string sessionText(const Session& session, const fs::path& file) {
   for (const auto& [name, c] : v.cameras) root["view"]["cameras"][name] = toJson(c);
   for (const SessionCamera& c : v.moreCameras) root["view"]["more_cameras"].push_back(toJson(c));
   root["view"]["selection"] = {{"frame", v.frame}, {"model", v.model}, {"light", v.light}, {"highlight", v.highlight}};
+  if (v.predicted >= 0) root["view"]["selection"]["predicted"] = v.predicted;
   if (session.recovery) root["recovery"] = {{"of", relative(session.recovery->of)}, {"session", session.recovery->isSession}};
   root["notes"] = session.notes;
   if (session.tradeoff) root["tradeoff"] = Json::parse(tradeoffJson(*session.tradeoff));

@@ -32,6 +32,7 @@ struct SessionView {
   std::map<std::string, std::string> options;    ///< how views show things, as "VIEW/NAME"; absent = default
   std::string frame, model, light;               ///< selection; "" = none
   int highlight = -1;                            ///< index in the frame's evidence; -1 = none
+  int predicted = -1;                            ///< of a spurious highlight, among those that the model predicts; -1 = none
 };
 
 /// A file that the results depend on.

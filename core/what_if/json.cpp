@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/what_if/json.h"
 
+#include <algorithm>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "core/base/bounded_json.h"
@@ -17,6 +19,23 @@ int frameOf(const JsonNode& node) {
   if (frame < 0) node.at("frame").fail("must not be negative");
   return frame;
 }
+
+HighlightEdit editOf(const JsonNode& node) {
+  using Kind = HighlightEdit::Kind;
+  HighlightEdit edit;
+  edit.frame = frameOf(node);
+  const std::string name = node.at("kind").text();
+  const Kind kinds[] = {Kind::Ignore, Kind::Merge, Kind::Split, Kind::Seed};
+  const auto kind = std::find_if(std::begin(kinds), std::end(kinds), [&](Kind k) { return name == nameOf(k); });
+  if (kind == std::end(kinds)) node.at("kind").fail("unknown edit '" + name + "' (ignore, merge, split, seed)");
+  edit.kind = *kind;
+  const JsonNode places = node.at("places");
+  if (places.size() != placesOf(edit.kind))
+    places.fail("needs " + std::to_string(placesOf(edit.kind)) + ", has " + std::to_string(places.size()));
+  for (std::size_t i = 0; i < places.size(); ++i) edit.places.push_back(pixel(places.at(i)));
+  if (const auto light = node.find("light")) edit.light = light->text();
+  return edit;
+}
 }  // namespace
 
 std::string whatIfJson(const WhatIf& w) {
@@ -30,6 +49,13 @@ std::string whatIfJson(const WhatIf& w) {
                                   {"contour_by", toJson(change.contourBy)},
                                   {"contour_scale", change.contourScale},
                                   {"peak_by", toJson(change.peakBy)}});
+  if (!w.edits.empty()) root["edits"] = Json::array();
+  for (const HighlightEdit& e : w.edits) {
+    Json edit = {{"frame", e.frame}, {"kind", nameOf(e.kind)}, {"places", Json::array()}};
+    for (const Pixel& p : e.places) edit["places"].push_back(toJson(p));
+    if (!e.light.empty()) edit["light"] = e.light;
+    root["edits"].push_back(std::move(edit));
+  }
   if (!w.lightsSwitched.empty()) root["lights_switched"] = Json::array();
   for (const auto& [at, on] : w.lightsSwitched)
     root["lights_switched"].push_back({{"frame", at.first}, {"light", at.second}, {"on", on}});
@@ -56,6 +82,8 @@ WhatIf readWhatIf(const JsonNode& node) {
       HighlightChange change{pixel(n.at("contour_by")), positive(n.at("contour_scale"), kFarthestPx), pixel(n.at("peak_by"))};
       w.highlights[{frameOf(n), n.at("highlight").integer()}] = change;
     }
+  if (const auto edits = node.find("edits"))
+    for (std::size_t i = 0; i < edits->size(); ++i) w.edits.push_back(editOf(edits->at(i)));
   if (const auto lights = node.find("lights_switched"))
     for (std::size_t i = 0; i < lights->size(); ++i) {
       const JsonNode n = lights->at(i);

@@ -181,6 +181,16 @@ std::vector<WhatIfKnob> whatIfKnobs(const Scene& scene, int frame, int highlight
   return knobs;
 }
 
+const char* pastOf(HighlightEdit::Kind kind) {
+  switch (kind) {
+    case HighlightEdit::Kind::Ignore: return "ignored";
+    case HighlightEdit::Kind::Merge: return "merged";
+    case HighlightEdit::Kind::Split: return "split";
+    case HighlightEdit::Kind::Seed: break;
+  }
+  return "grown";
+}
+
 std::string summaryOf(const WhatIf& w) {
   std::string text;
   const auto add = [&](const std::string& part) { text += (text.empty() ? "" : ", ") + part; };
@@ -191,6 +201,7 @@ std::string summaryOf(const WhatIf& w) {
   }
   if (!w.poses.empty()) add(counted(w.poses.size(), "pose"));
   if (!w.highlights.empty()) add(counted(w.highlights.size(), "highlight"));
+  if (!w.edits.empty()) add(counted(w.edits.size(), "highlight edit") + " by hand");
   const auto switches = std::count_if(w.lightsSwitched.begin(), w.lightsSwitched.end(),
                                       [&](const auto& entry) { return !entry.second || w.synthesise; });
   if (switches > 0) add(counted(std::size_t(switches), "light") + " switched");
@@ -204,6 +215,12 @@ std::string frameNote(const WhatIf& w, int frame) {
   if (w.poses.count(frame)) add("camera moved by hand");
   if (std::any_of(w.highlights.begin(), w.highlights.end(), [&](const auto& h) { return h.first.first == frame; }))
     add("highlight moved by hand");
+  for (const HighlightEdit::Kind kind :
+       {HighlightEdit::Kind::Ignore, HighlightEdit::Kind::Merge, HighlightEdit::Kind::Split, HighlightEdit::Kind::Seed}) {
+    const auto count =
+        std::count_if(w.edits.begin(), w.edits.end(), [&](const HighlightEdit& e) { return e.frame == frame && e.kind == kind; });
+    if (count > 0) add(counted(std::size_t(count), "highlight") + " " + pastOf(kind) + " by hand");
+  }
   for (const auto& [at, on] : w.lightsSwitched)
     if (at.first == frame && (!on || w.synthesise)) add("light " + at.second + " switched " + (on ? "on" : "off"));
   return text;

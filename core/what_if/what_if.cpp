@@ -244,6 +244,28 @@ Highlight changed(Highlight h, const HighlightChange& change) {
   return h;
 }
 
+namespace {
+std::string exactText(const HighlightEdit& e) {
+  std::string key = std::to_string(e.frame) + " " + nameOf(e.kind) + " " + e.light + ":";
+  for (const Pixel& p : e.places) key += exact(p.x()) + exact(p.y());
+  return key + ";";
+}
+}  // namespace
+
+const char* nameOf(HighlightEdit::Kind kind) {
+  switch (kind) {
+    case HighlightEdit::Kind::Ignore: return "ignore";
+    case HighlightEdit::Kind::Merge: return "merge";
+    case HighlightEdit::Kind::Split: return "split";
+    case HighlightEdit::Kind::Seed: break;
+  }
+  return "seed";
+}
+
+std::size_t placesOf(HighlightEdit::Kind kind) {
+  return kind == HighlightEdit::Kind::Merge ? 2 : kind == HighlightEdit::Kind::Split ? 3 : 1;
+}
+
 std::string posesKey(const WhatIf& w) {
   std::string key;
   for (const auto& [frame, change] : w.poses)
@@ -256,7 +278,15 @@ std::string highlightsKey(const WhatIf& w) {
   for (const auto& [at, c] : w.highlights)
     key += std::to_string(at.first) + "/" + std::to_string(at.second) + ":" + exact(c.contourBy.x()) + exact(c.contourBy.y()) +
            exact(c.contourScale) + exact(c.peakBy.x()) + exact(c.peakBy.y());
+  for (const HighlightEdit& e : w.edits) key += exactText(e);
   return key;
+}
+
+std::string ignoredKey(const WhatIf& w) {
+  std::string key;
+  for (const HighlightEdit& e : w.edits)
+    if (e.kind == HighlightEdit::Kind::Ignore) key += exactText(e);
+  return key.empty() ? key : "|ignored " + key;
 }
 
 std::string lightsOffKey(const WhatIf& w) {

@@ -31,12 +31,32 @@ struct HighlightChange {
   friend bool operator==(const HighlightChange&, const HighlightChange&) = default;
 };
 
+/// One change by hand to which highlights a frame shows. Highlights are named by a place inside of their contour, so that a change
+/// outlives other settings of detection; where no highlight is there any more it changes nothing. core/inspect/hand_edits.h makes them.
+struct HighlightEdit {
+  enum class Kind {
+    Ignore,  ///< places[0]: neither trains nor is scored
+    Merge,   ///< places[0], places[1]: one highlight, its contour their convex hull
+    Split,   ///< places[0]: cut along the line through places[1] and places[2]
+    Seed     ///< places[0]: grown from that pixel; takes the place of highlights whose peaks it holds
+  };
+  Kind kind = Kind::Ignore;
+  int frame = 0;
+  std::vector<Pixel> places;  ///< ideal pixels
+  std::string light{};        ///< of a seed
+  friend bool operator==(const HighlightEdit&, const HighlightEdit&) = default;
+};
+const char* nameOf(HighlightEdit::Kind kind);    ///< "ignore", "merge", "split", "seed"
+const char* pastOf(HighlightEdit::Kind kind);    ///< "ignored", "merged", "split", "grown"
+std::size_t placesOf(HighlightEdit::Kind kind);  ///< how many it has
+
 /// What the user tries out on a scene: changes that no file knows of. Plain data, kept by sessions; equal values give equal
 /// results. Everything on its default = the scene as it was captured.
 struct WhatIf {
   std::map<int, PoseChange> poses;  ///< by frame
   std::map<std::pair<int, int>, HighlightChange>
-      highlights;  ///< by frame and index in its evidence, as found; of evidence that is not there: no effect
+      highlights;                    ///< by frame and index in its evidence, as found; of evidence that is not there: no effect
+  std::vector<HighlightEdit> edits;  ///< in the order in which they were made; before `highlights`, which may move what they made
   /// By frame and light id: on or off, whatever was captured. What is off makes no highlight there: none trains, none is
   /// predicted, none is scored. On counts where contours are synthesised; no photograph shows a light that was off.
   std::map<std::pair<int, std::string>, bool> lightsSwitched;
@@ -108,7 +128,8 @@ Highlight changed(Highlight highlight, const HighlightChange& change);
 /// of highlights, and that of lights which are switched off.
 std::string synthesisKey(const WhatIf& whatIf);
 std::string posesKey(const WhatIf& whatIf);
-std::string highlightsKey(const WhatIf& whatIf);
+std::string highlightsKey(const WhatIf& whatIf);  ///< edits too
+std::string ignoredKey(const WhatIf& whatIf);     ///< of its edits those that ignore; "" where there is none
 std::string lightsOffKey(const WhatIf& whatIf);
 
 }  // namespace glint

@@ -31,6 +31,7 @@ void QtPainter::stroke(const std::vector<Eigen::Vector2d>& points, bool closed, 
   QPen pen(toQColor(colour), widthPx, Qt::SolidLine, Qt::FlatCap, Qt::RoundJoin);
   if (dash == draw::Dash::Dashed) pen.setDashPattern({4, 3});
   if (dash == draw::Dash::Dotted) pen.setDashPattern({1, 2});
+  if (dash == draw::Dash::DashDotted) pen.setDashPattern({5, 2, 1, 2});
   for (const draw::Chain& chain : draw::chainsInside(points, closed, clip)) {
     QPolygonF polygon;
     polygon.reserve(int(chain.points.size()));

@@ -294,7 +294,15 @@ void Document::setRole(int frame, FrameRole role) {
   push(std::move(after), role == FrameRole::Training ? tr("Train on frame %1").arg(id) : tr("Hold out frame %1").arg(id));
 }
 
-void Document::select(const draw::Selection& selection, int gesture) {
+void Document::select(draw::Selection s, int gesture) {
+  const draw::Selection& now = state_.selection;
+  if (s.highlight >= 0 ||
+      (s.predicted == now.predicted && (s.frame != now.frame || s.model != now.model || s.light != now.light)))
+    s.predicted = -1;  // it was of the frame and model that were selected
+  selectExactly(s, gesture);
+}
+
+void Document::selectExactly(const draw::Selection& selection, int gesture) {
   if (!scene_) return;
   ViewState after = state_;
   after.selection = selection;
@@ -316,7 +324,7 @@ void Document::showFrame(int frame) {
   if (!scene_ || frame == state_.selection.frame || frame < 0 || frame >= frameCount()) return;
   ViewState after = state_;
   after.selection.frame = frame;
-  after.selection.highlight = -1;
+  after.selection.highlight = after.selection.predicted = -1;
   after.selection.direction.reset();
   apply(after);
 }

@@ -130,7 +130,10 @@ class Document : public QObject {
   /// @param mergeKey  equal texts that are not empty merge into one step.
   void setWhatIf(const glint::WhatIf& whatIf, const QString& text, const QString& mergeKey = {});
   void setRole(int frame, FrameRole role);
-  void select(const draw::Selection& selection, int gesture = 0);
+  /// Of a selection that was changed, not made: a spurious highlight stays selected only as long as its frame, model and light do.
+  void select(draw::Selection selection, int gesture = 0);
+  /// As it is: what was clicked names its spurious highlight itself.
+  void selectExactly(const draw::Selection& selection, int gesture = 0);
   void selectFrame(int frame, int gesture = 0);
   /// Selects it without a step of undo: playing.
   void showFrame(int frame);

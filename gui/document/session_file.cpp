@@ -96,7 +96,7 @@ Opened openInput(const std::string& path, const Relinked& instead) {
   }
   opened.scene = read.scene;
   opened.request = read.session.request;
-  opened.selection = {frameNumber(*read.scene, view.frame), view.model, view.highlight, view.light, {}};
+  opened.selection = {frameNumber(*read.scene, view.frame), view.model, view.highlight, view.light, {}, view.predicted};
   opened.layers = view.layers;
   opened.options = view.options;
   opened.layout = view.layout;
@@ -144,6 +144,7 @@ SessionView viewOf(const Opened& opened) {
   view.model = opened.selection.model;
   view.light = opened.selection.light;
   view.highlight = opened.selection.highlight;
+  view.predicted = opened.selection.predicted;
   for (const viz::ViewPoint& seen : opened.viewPoints)
     if (&seen == &opened.viewPoints.front())
       view.cameras[kSceneView] = cameraOf(seen);

@@ -12,7 +12,13 @@ namespace glint::gui {
 
 namespace {
 Qt::PenStyle penStyle(draw::Dash dash) {
-  return dash == draw::Dash::Solid ? Qt::SolidLine : dash == draw::Dash::Dashed ? Qt::DashLine : Qt::DotLine;
+  switch (dash) {
+    case draw::Dash::Solid: return Qt::SolidLine;
+    case draw::Dash::Dashed: return Qt::DashLine;
+    case draw::Dash::DashDotted: return Qt::DashDotLine;
+    case draw::Dash::Dotted: break;
+  }
+  return Qt::DotLine;
 }
 }  // namespace
 

@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "core/base/error_text.h"
+#include "core/draw/unmatched.h"
 #include "core/geometry/polyline.h"
 #include "core/scene/scene_files.h"
 #include "core/what_if/knobs.h"
@@ -25,6 +26,7 @@
 #include "gui/frame/develop_bar.h"
 #include "gui/frame/frame_canvas.h"
 #include "gui/frame/hand_tool.h"
+#include "gui/frame/highlight_edits.h"
 #include "gui/frame/pair_bar.h"
 #include "gui/frame/retexture_bar.h"
 #include "viz/frame_pick.h"
@@ -173,6 +175,8 @@ void FramePanel::buildToolbar(QVBoxLayout* column) {
   });
   hand_ = new HandTool(document_, this);
   canvas_->setDragTool(hand_);
+  edits_ = new HighlightEdits(document_, canvas_, this);
+  connect(edits_, &HighlightEdits::problem, this, &FramePanel::problem);
   QAction* byHand = tool("hand", tr("What-if: move highlights, peaks and the camera by hand (E)"));
   byHand->setCheckable(true);
   connect(byHand, &QAction::triggered, hand_, &HandTool::setOn);
@@ -269,7 +273,9 @@ QString FramePanel::problemText(int frame, const QString& reason) const {
       .arg(nameText(scene.frames[std::size_t(frame)].id), toQString(withoutFolder(reason.toStdString(), scene)).remove(named));
 }
 
-bool FramePanel::busy() const { return refresh_.isActive() || loader_.busy() || secondLoader_.busy() || retexture_->busy(); }
+bool FramePanel::busy() const {
+  return refresh_.isActive() || loader_.busy() || secondLoader_.busy() || retexture_->busy() || edits_->busy();
+}
 
 void FramePanel::showScene() {
   loader_.setScene(document_.sharedScene());
@@ -465,7 +471,7 @@ void FramePanel::followLink(const QString& target) {
 void FramePanel::selectAt(double x, double y) {
   const std::shared_ptr<const Inspection> inspection = document_.frameInspection();
   if (!inspection) return;
-  document_.select(
+  document_.selectExactly(
       viz::pickInFrame(*inspection, document_.selection(), shown_, {x, y}, FrameCanvas::kNearScreenPx / canvas_->zoom()));
 }
 
@@ -512,10 +518,14 @@ void FramePanel::zoomTo(int highlight, bool withCanonical) {
   if (!inspection) return;
   const auto look = [&](FrameCanvas* canvas, int frame, int highlight) {
     if (frame >= int(inspection->evidence.size())) return;
-    const std::vector<Highlight>& highlights = inspection->evidence[std::size_t(frame)].highlights;
-    if (highlights.empty()) return;
+    const std::vector<Highlight>& highlights = inspection->evidence[std::size_t(frame)].scored();
+    const draw::Selection& now = document_.selection();
+    const PredictedHighlight* const spurious =
+        frame == now.frame && highlight < 0 ? draw::selectedSpurious(*inspection, now) : nullptr;
+    if (highlights.empty() && !spurious) return;
     Eigen::AlignedBox2d box;
-    for (const Pixel& p : highlights[std::size_t(std::clamp(highlight, 0, int(highlights.size()) - 1))].contour.points)
+    for (const Pixel& p : spurious ? spurious->contour.points
+                                   : highlights[std::size_t(std::clamp(highlight, 0, int(highlights.size()) - 1))].contour.points)
       box.extend(document_.scene()->frames[std::size_t(frame)].camera.distorted(p));
     if (box.isEmpty()) return;
     // The highlight fills half of the canvas, so that its surroundings show.
@@ -580,7 +590,8 @@ void FramePanel::addActions(Actions& actions, QMenu* menu) {
       document_.setLayerVisible("frame/residuals", "Residuals", true);
       document_.undoStack()->endMacro();
     });
-  pair_->addActions(actions, menu->addMenu(tr("&Side by side")));
+  edits_->addActions(actions, menu->addMenu(tr("Highlight&s")));
+  pair_->addActions(actions, menu->addMenu(tr("Side b&y side")));
   retexture_->addActions(actions, menu->addMenu(tr("Rete&xture")));
   showOverlay();
 }

@@ -29,6 +29,7 @@ namespace glint::gui {
 class DevelopBar;
 class FrameCanvas;
 class HandTool;
+class HighlightEdits;
 class PairBar;
 class PanelScroll;
 class RetextureBar;
@@ -61,6 +62,7 @@ class FramePanel : public QWidget {
  signals:
   void photographFailed(int frame, const QString& reason);  ///< there is nothing to show for it
   void probed(const QString& text);
+  void problem(const QString& why);  ///< what was asked for cannot be done
 
  protected:
   void changeEvent(QEvent* e) override;
@@ -89,6 +91,7 @@ class FramePanel : public QWidget {
   PixelProbeWorker probe_;
   FrameCanvas *canvas_, *second_;
   HandTool* hand_;
+  HighlightEdits* edits_;
   DevelopBar* develop_;
   PairBar* pair_;
   QLabel *title_, *role_, *zoom_, *captions_;

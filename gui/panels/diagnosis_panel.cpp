@@ -21,7 +21,7 @@ namespace glint::gui {
 namespace {
 
 constexpr int kFrame = Qt::UserRole, kLight = Qt::UserRole + 1, kModel = Qt::UserRole + 2, kHighlight = Qt::UserRole + 3,
-              kShared = Qt::UserRole + 4;
+              kShared = Qt::UserRole + 4, kPredicted = Qt::UserRole + 5;
 constexpr std::size_t kMostFrames = 12;      // of a model: more are in the table of errors
 constexpr std::size_t kMostHighlights = 12;  // that stand against a model
 
@@ -32,7 +32,12 @@ struct WrongFrame {
   int missed = 0, spurious = 0;
   double pct = 0;  ///< largest error of a matched highlight
   std::string reason;
-  QStringList causes;  ///< of what is missed or spurious
+  /// What is missed or spurious, and why.
+  struct Part {
+    int observed = -1, predicted = -1;
+    QString cause;
+  };
+  std::vector<Part> parts;
 };
 
 std::vector<WrongFrame> wrongFrames(const Inspection& inspection, const ModelResult& result) {
@@ -49,10 +54,11 @@ std::vector<WrongFrame> wrongFrames(const Inspection& inspection, const ModelRes
     }
     if (const Failure* const failure = c.prediction.failure()) w.reason = failure->message();
     // A depth map would have to be read here, on the interface's thread.
-    if (inspection.scene->frames[std::size_t(c.frame)].depth.empty() && !c.prediction.failure())
-      for (const FrameComparison::Row& row : c.rows)
-        if (const QString cause = toQString(whyUnmatched(inspection, c, row)); !cause.isEmpty() && !w.causes.contains(cause))
-          w.causes << cause;
+    const bool quick = inspection.scene->frames[std::size_t(c.frame)].depth.empty() && !c.prediction.failure();
+    for (const FrameComparison::Row& row : c.rows)
+      if (!row.metrics && (row.observed >= 0 || row.predicted >= 0))
+        w.parts.push_back({row.observed, row.observed < 0 ? row.predicted : -1,
+                           quick ? toQString(whyUnmatched(inspection, c, row)) : QString()});
     if (w.missed > 0 || w.spurious > 0 || w.pct > kLargestExpectedPct) wrong.push_back(std::move(w));
   }
   std::stable_sort(wrong.begin(), wrong.end(), [](const WrongFrame& a, const WrongFrame& b) {
@@ -197,13 +203,25 @@ void DiagnosisPanel::fillProblems() {
       if (w.missed) words << tr(w.missed == 1 ? "%1 highlight missed" : "%1 highlights missed").arg(w.missed);
       if (w.spurious) words << tr("%1 predicted where none is seen").arg(w.spurious);
       if (!w.reason.empty()) words << toQString(w.reason);
-      words << w.causes;
+      if (w.parts.size() == 1 && !w.parts.front().cause.isEmpty()) words << w.parts.front().cause;
       if (w.pct > kLargestExpectedPct) words.prepend(tr("off by %1 %").arg(numberText(w.pct, 3)));
       auto* line = addLine(top, tr("frame %1, light %2: %3")
                                     .arg(nameText(inspection->scene->frames[std::size_t(w.frame)].id), toQString(w.light),
                                          words.join(QStringLiteral("; "))));
-      line->setData(0, kFrame, w.frame);
-      line->setData(0, kLight, toQString(w.light));
+      const auto select = [&w](QTreeWidgetItem* item, int highlight, int predicted) {
+        item->setData(0, kFrame, w.frame);
+        item->setData(0, kLight, toQString(w.light));
+        item->setData(0, kHighlight, highlight);
+        item->setData(0, kPredicted, predicted);
+      };
+      const bool one = w.parts.size() == 1;
+      select(line, one ? w.parts.front().observed : -1, one ? w.parts.front().predicted : -1);
+      for (std::size_t k = 0; !one && k < w.parts.size(); ++k) {
+        const WrongFrame::Part& part = w.parts[k];
+        const QString what = part.observed >= 0 ? tr("□ highlight %1 missed").arg(part.observed + 1)
+                                                : tr("△ predicted highlight %1 spurious").arg(part.predicted + 1);
+        select(addLine(line, part.cause.isEmpty() ? what : tr("%1: %2").arg(what, part.cause)), part.observed, part.predicted);
+      }
     }
     if (summary.answered && wrong.size() > kMostFrames)
       addLine(top, tr("and %1 more: see Errors").arg(wrong.size() - kMostFrames));
@@ -301,16 +319,19 @@ void DiagnosisPanel::tryRemedy(const std::string& model, const Change& change) {
 
 void DiagnosisPanel::choose(QTreeWidgetItem* item) {
   draw::Selection selection = document_.selection();
-  const QTreeWidgetItem* const top = item->parent() ? item->parent() : item;
+  const QTreeWidgetItem* top = item;
+  while (top->parent()) top = top->parent();
   selection.model = top->data(0, kModel).toString().toStdString();
   if (const QVariant frame = item->data(0, kFrame); frame.isValid()) {
     selection.frame = frame.toInt();
     selection.light = item->data(0, kLight).toString().toStdString();
     const QVariant highlight = item->data(0, kHighlight);
     selection.highlight = highlight.isValid() ? highlight.toInt() : -1;
+    const QVariant predicted = item->data(0, kPredicted);
+    selection.predicted = predicted.isValid() ? predicted.toInt() : -1;
     selection.direction = std::nullopt;
   }
-  document_.select(selection);
+  document_.selectExactly(selection);
   if (const QVariant shared = item->data(0, kShared); shared.isValid()) document_.brush(shared_[std::size_t(shared.toInt())]);
 }
 

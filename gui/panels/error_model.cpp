@@ -169,6 +169,14 @@ QVariant ErrorModel::tip(int row, int column) const {
   return {};
 }
 
+draw::Selection ErrorModel::selectionOf(int index) const {
+  const HighlightRow& row = at(index);
+  draw::Selection s{row.frame, row.model, row.observed};
+  s.predicted = row.observed < 0 ? row.predicted : -1;
+  if (!hasError(row)) s.light = row.light;
+  return s;
+}
+
 QVariant ErrorModel::data(const QModelIndex& index, int role) const {
   if (!index.isValid()) return {};
   const HighlightRow& row = at(index.row());

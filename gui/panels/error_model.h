@@ -50,6 +50,8 @@ class ErrorModel : public QAbstractTableModel {
   const std::string& modelOf(int row) const { return at(row).model; }
   int highlightOf(int row) const { return at(row).observed; }
   const HighlightRow& at(int row) const { return (*rows_)[std::size_t(row)]; }
+  /// What a row selects: its highlight; a missed or spurious one with its light.
+  draw::Selection selectionOf(int row) const;
   /// Every text of the row, in lower case, for a search.
   const QString& textOf(int row) const;
   /// What a column is called in the program's settings: "error-pct".

@@ -383,7 +383,8 @@ void ErrorTable::selectFromDocument() {
     const int source = proxy_->mapToSource(proxy_->index(row, 0)).row();
     if (model_->frameOf(source) != s.frame) continue;
     const int score = 1 + 2 * (model_->modelOf(source) == document_.plottedModel()) +
-                      (s.highlight >= 0 && model_->highlightOf(source) == s.highlight);
+                      (s.highlight >= 0 && model_->highlightOf(source) == s.highlight) +
+                      4 * (s.highlight < 0 && s.predicted >= 0 && model_->selectionOf(source) == s);
     if (score > bestScore) best = row, bestScore = score;
   }
   selecting_ = true;
@@ -406,7 +407,7 @@ void ErrorTable::selectFromTable() {
   if (selecting_ || !current.isValid()) return;
   const int row = proxy_->mapToSource(current).row();
   selecting_ = true;
-  document_.select({model_->frameOf(row), model_->modelOf(row), model_->highlightOf(row)}, steps_.gesture(document_));
+  document_.selectExactly(model_->selectionOf(row), steps_.gesture(document_));
   selecting_ = false;
 }
 

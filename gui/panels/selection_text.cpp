@@ -8,8 +8,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/diagnose/mismatch.h"
 #include "core/diagnostics/conditioning.h"
 #include "core/diagnostics/polar_residual.h"
+#include "core/draw/unmatched.h"
 #include "core/scene/scene_files.h"
 #include "gui/base/text.h"
 #include "gui/base/unit_text.h"
@@ -65,6 +67,7 @@ NumberGroup observation(const FrameEvidence& evidence, int index, bool synthesis
       lines.add(QObject::tr("angle"), h.ellipse->angle * kDegPerRad, "deg");
     }
     if (h.clipped) lines.note(QObject::tr("clipped: the peak is the ellipse centre"));
+    if (!h.byHand.empty()) lines.note(toQString(h.byHand));
     if (h.touchesBorder) lines.note(QObject::tr("cut by the image border"));
     if (h.fromScene) lines.note(synthesised ? QObject::tr("synthesised (what-if)") : QObject::tr("given in the scene file"));
   }
@@ -166,7 +169,15 @@ NumberGroup comparison(const FrameComparison& c, int observed) {
 NumberGroup selectedParts(const Inspection& inspection, const draw::Selection& selection, const std::string& model) {
   Lines lines;
   if (selection.highlight >= 0) lines.add(QObject::tr("highlight"), QString::number(selection.highlight + 1));
+  if (selection.predicted >= 0 && draw::selectedSpurious(inspection, selection))
+    lines.add(QObject::tr("predicted highlight"), QString::number(selection.predicted + 1));
   if (!selection.light.empty()) lines.add(QObject::tr("light"), nameText(selection.light));
+  if (const draw::UnmatchedRow found = draw::selectedUnmatched(inspection, selection, model); found.row) {
+    const bool missed = found.row->observed >= 0;
+    lines.note((missed ? QObject::tr("missed by %1: %2") : QObject::tr("spurious, predicted by %1: %2"))
+                   .arg(toQString(selection.model.empty() ? model : selection.model),
+                        toQString(whyUnmatched(inspection, *found.comparison, *found.row))));
+  }
   if (selection.direction) {
     lines.add(QObject::tr("direction"),
               numberText(*selection.direction * kDegPerRad, 6) + QStringLiteral("° (0 right, 90 down)"));
@@ -192,7 +203,7 @@ std::vector<NumberGroup> describeSelection(const Inspection& inspection, const d
   const int frame = selection.frame;
   if (frame < 0 || frame >= int(inspection.evidence.size())) return groups;
   const FrameEvidence& evidence = inspection.evidence[std::size_t(frame)];
-  if (selection.highlight >= 0 || !selection.light.empty() || selection.direction)
+  if (selection.highlight >= 0 || selection.predicted >= 0 || !selection.light.empty() || selection.direction)
     groups.push_back(selectedParts(inspection, selection, model));
   const int count = int(evidence.highlights.size());
   const int observed = selection.highlight >= 0 && selection.highlight < count ? selection.highlight : count > 0 ? 0 : -1;

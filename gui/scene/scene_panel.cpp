@@ -280,9 +280,10 @@ void ScenePanel::select(const viz::Picked& picked) {
   }
   if (!picked.model.empty()) s.model = picked.model;
   if (!picked.light.empty()) s.light = picked.light;
-  if (picked.highlight >= 0) s.highlight = picked.highlight;
+  if (picked.highlight >= 0 || picked.predicted >= 0) s.highlight = picked.highlight;
+  s.predicted = picked.predicted;
   if (picked.direction) s.direction = picked.direction;
-  document_.select(s);
+  document_.selectExactly(s);
   emit this->picked(picked);
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The errors of the timeline: lines of all models or bars of one, and above them a row for frames where a highlight was missed.
+// The errors of the timeline: lines of all models or bars of one, and above them a row for frames where a highlight was missed
+// (cross) or is spurious (triangle).
 #include <QPainter>
 #include <QPainterPath>
 #include <algorithm>
@@ -23,7 +24,7 @@ bool TimelineStrip::marksMissed(const viz::TimelineData::Series& series) const {
   // A model that answers nowhere has no line either; its crosses would fill the row.
   if (!bars_ && data_.series.size() > 1 && !series.answers()) return false;
   for (std::size_t i = 0; i < series.missed.size(); ++i)
-    if (series.missed[i] && document_.role(int(i)) != FrameRole::Excluded) return true;
+    if ((series.missed[i] || series.spurious[i]) && document_.role(int(i)) != FrameRole::Excluded) return true;
   return false;
 }
 
@@ -34,7 +35,8 @@ QRectF TimelineStrip::missedRow() const {
   return QRectF(c.left(), c.top(), c.width(), std::min(std::max(kLeastMissedRow, double(models) * kMissedLine), c.height() / 3));
 }
 
-/// A cross for each frame, or column of frames, where a model missed a highlight: it has no error there.
+/// A cross for each frame, or column of frames, where a model missed a highlight: it has no error there. A triangle where one is
+/// spurious.
 void TimelineStrip::paintMissed(QPainter& painter) {
   const QRectF row = missedRow();
   if (row.height() <= 0) return;
@@ -44,19 +46,28 @@ void TimelineStrip::paintMissed(QPainter& painter) {
   std::vector<const viz::TimelineData::Series*> marked;
   for (const viz::TimelineData::Series& series : data_.series)
     if (marksMissed(series)) marked.push_back(&series);
+  painter.setBrush(Qt::NoBrush);
   const double line = row.height() / double(marked.size()), r = std::clamp(0.5 * line - 0.75, 1.0, 3.0);
   for (std::size_t k = 0; k < marked.size(); ++k) {
     QColor colour = toQColor(draw::modelColour(marked[k]->model));
     if (document_.stale()) colour.setAlpha(90);
     painter.setPen(QPen(colour, 1.5));
-    std::vector<char> shown = marked[k]->missed;
-    for (const int frame : shownExcluded(document_))
-      if (frame >= 0 && frame < int(shown.size())) shown[std::size_t(frame)] = 0;
-    if (!perFrame) shown = viz::columnMarks(shown, first_, first_ + inView_, columns);
+    const auto shownOf = [&](std::vector<char> marks) {
+      for (const int frame : shownExcluded(document_))
+        if (frame >= 0 && frame < int(marks.size())) marks[std::size_t(frame)] = 0;
+      return perFrame ? marks : viz::columnMarks(marks, first_, first_ + inView_, columns);
+    };
+    const std::vector<char> shown = shownOf(marked[k]->missed), spurious = shownOf(marked[k]->spurious);
     for (int i = 0; i < int(shown.size()); ++i) {
-      if (!shown[std::size_t(i)]) continue;
+      if (!shown[std::size_t(i)] && !spurious[std::size_t(i)]) continue;
       const QPointF at(perFrame ? frameX(i + 0.5) : frameX(first_ + (i + 0.5) * inView_ / columns),
                        row.top() + (double(k) + 0.5) * line);
+      if (spurious[std::size_t(i)]) {
+        const double half = r + (shown[std::size_t(i)] ? 1.5 : 0.5);  // around the cross, where there is one
+        const QPointF corners[] = {at + QPointF(-half, half), at + QPointF(half, half), at + QPointF(0, -half)};
+        painter.drawPolygon(corners, 3);
+      }
+      if (!shown[std::size_t(i)]) continue;
       painter.drawLine(at - QPointF(r, r), at + QPointF(r, r));
       painter.drawLine(at + QPointF(-r, r), at + QPointF(r, -r));
     }

@@ -468,6 +468,8 @@ QString TimelineStrip::toolTip(int frame) const {
     const std::optional<double>& pct = series.errorPct[std::size_t(frame)];
     text += QStringLiteral("\n%1: ").arg(toQString(series.model)) +
             (pct ? numberText(*pct, 3) + QStringLiteral(" %") : toQString(series.reason[std::size_t(frame)]));
+    if (const std::string& spurious = series.spuriousWords[std::size_t(frame)]; !spurious.empty())
+      text += (series.reason[std::size_t(frame)].empty() && !pct ? QString() : QStringLiteral("; ")) + toQString(spurious);
   }
   return text;
 }

@@ -26,8 +26,10 @@ void offerMenus(const Actions& actions, FramePanel& frame, PlotsPanel& plots, Er
     view->setContextMenuPolicy(Qt::ActionsContextMenu);
   };
   for (QWidget* canvas : frame.findChildren<FrameCanvas*>())
-    offer(canvas, {"frame.highlight", "frame.fit", "frame.pixels", "frame.values", "", "frame.train", "frame.hold-out",
-                   "frame.exclude", "", "frame.hand", "frame.side-by-side", "", "export.frame"});
+    offer(canvas,
+          {"frame.highlight", "frame.fit", "frame.pixels", "frame.values", "", "frame.train", "frame.hold-out", "frame.exclude",
+           "", "frame.ignore-highlight", "frame.merge-highlights", "frame.split-highlight", "frame.grow-highlight",
+           "frame.highlights-as-found", "", "frame.hand", "frame.side-by-side", "", "export.frame"});
   for (PlotCanvas* plot : plots.findChildren<PlotCanvas*>())
     offer(plot, {"plots.show-all", "", "plots.copy-png", "plots.copy-svg", "plots.copy-csv", "", "plots.save-svg",
                  "plots.save-png", "plots.save-csv"});

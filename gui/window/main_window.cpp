@@ -180,6 +180,7 @@ MainWindow::MainWindow(Engine engine, QWidget* parent)
   connect(unreadable_, &UnreadableFiles::message, this, &MainWindow::log);
   connect(unreadable_, &UnreadableFiles::changed, this, [this] { timeline_->strip()->setUnreadable(unreadable_->all()); });
   connect(frame_, &FramePanel::photographFailed, unreadable_, &UnreadableFiles::note);
+  connect(frame_, &FramePanel::problem, this, &MainWindow::showProblem);
   auto* recovery = new Recovery(
       engine_, document_, [this] { return snapshot(); }, *files_, *messageBar_, this);
   connect(recovery, &Recovery::problem, this, &MainWindow::log);

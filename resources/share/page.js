@@ -175,7 +175,7 @@
       const name = line.closed ? 'polygon' : 'polyline';
       if (line.model === '') svg(picture, name, { ...attributes, stroke: '#1f2126', 'stroke-width': 4.5 });
       const drawn = svg(picture, name, { ...attributes, stroke: line.model === '' ? '#ffffff' : colourOf(line.model), 'stroke-width': line.model === '' ? 2.5 : 2 });
-      if (line.dash) drawn.setAttribute('stroke-dasharray', line.dash === 1 ? '7 4' : '2 4');
+      if (line.dash) drawn.setAttribute('stroke-dasharray', line.dash === 1 ? '7 4' : line.dash === 2 ? '2 4' : '8 3 2 3');
       svg(drawn, 'title', {}).textContent = line.label || line.model || 'observed';
     }
     const unit = Math.max(view[2], view[3]) / 160;

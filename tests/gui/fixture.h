@@ -77,6 +77,7 @@ int runUntilKilled();  ///< see recovery_test.cpp
 QObject* makeTableTest();
 QObject* makeTradeoffTest();
 QObject* makeTurnsTest();
+QObject* makeUnmatchedTest();
 QObject* makeUnreadableTest();
 QObject* makeCapturesTest();
 QObject* makeInputReportTest();

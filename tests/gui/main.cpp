@@ -44,6 +44,7 @@ int main(int argc, char** argv) {
       {"random", makeRandomTest},
       {"figure", makeFigureTest},
       {"comparison", makeComparisonTest},
+      {"unmatched", makeUnmatchedTest},
       {"unreadable", makeUnreadableTest},
       {"captures", makeCapturesTest},
       {"input_report", makeInputReportTest},

@@ -52,6 +52,7 @@ const std::map<QString, const char*>& leftOut() {
                                                   {"lesson.", "opens another session"},
                                                   {"edit.stop", "leaves results out of date"},
                                                   {"plots.influence", "fits once per training frame"},
+                                                  {"frame.grow-highlight", "goes on in the background"},
                                                   {"plots.diagnose", "goes on in the background"}};
   return ids;
 }

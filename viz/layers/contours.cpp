@@ -3,6 +3,7 @@
 #include <set>
 
 #include "core/draw/frame_overlay.h"
+#include "core/draw/unmatched.h"
 #include "core/geometry/polyline.h"
 #include "viz/glyphs.h"
 #include "viz/layers.h"
@@ -26,6 +27,46 @@ std::vector<Points> dots(const std::vector<Points>& chains) {
   }
   return result;
 }
+
+/// The chains in dashes: `pattern` says how many parts of a dash's length are drawn and left out in turn.
+std::vector<Points> inDashes(const std::vector<Points>& chains, double dash, const std::vector<double>& pattern) {
+  std::vector<Points> result;
+  for (const Points& chain : chains) {
+    std::size_t at = 0;
+    double left = pattern[0] * dash;
+    Points piece;
+    if (!chain.empty()) piece.push_back(chain.front());
+    for (std::size_t i = 1; i < chain.size(); ++i) {
+      Eigen::Vector3d from = chain[i - 1];
+      double length = (chain[i] - from).norm();
+      while (length > left) {
+        from += (chain[i] - from) * (left / length);
+        length = (chain[i] - from).norm();
+        if (at % 2 == 0) {
+          piece.push_back(from);
+          result.push_back(piece);
+        }
+        piece = {from};
+        at = (at + 1) % pattern.size();
+        left = pattern[at] * dash;
+      }
+      left -= length;
+      if (at % 2 == 0) piece.push_back(chain[i]);
+    }
+    if (at % 2 == 0 && piece.size() > 1) result.push_back(piece);
+  }
+  return result;
+}
+
+/// A dash: a sixteenth of the contour that it is of, so that small ones show some.
+double dashOf(const std::vector<Points>& chains) {
+  constexpr int kDashes = 16;
+  double length = 0;
+  for (const Points& chain : chains)
+    for (std::size_t i = 1; i < chain.size(); ++i) length += (chain[i] - chain[i - 1]).norm();
+  return std::max(length / kDashes, 1e-12);
+}
+const std::vector<double> kMissedDashes{0.6, 0.4}, kSpuriousDashes{0.9, 0.35, 0.2, 0.35};
 
 std::vector<int> observedFrames(const LayerInput& in) {
   std::vector<int> frames;
@@ -70,6 +111,17 @@ const Highlight* selectedHighlight(const LayerInput& in, const std::string& ligh
   return nullptr;
 }
 
+/// Which models miss an observed highlight of the selected frame; "" where none does.
+std::string modelsThatMiss(const LayerInput& in, int observed) {
+  std::string names;
+  const std::set<std::string> shown(in.models.begin(), in.models.end());
+  for (const std::string& model : draw::missedBy(*in.inspection, in.selection.frame, observed, [&](const std::string& m) {
+         return shown.count(m) > 0 && (in.selection.model.empty() || in.selection.model == m);
+       }))
+    names += (names.empty() ? "" : ", ") + model;
+  return names;
+}
+
 }  // namespace
 
 LayerContent observedContoursLayer(const LayerInput& in) {
@@ -92,14 +144,36 @@ LayerContent observedContoursLayer(const LayerInput& in) {
       const bool strong = selected && (in.selection.highlight < 0 || in.selection.highlight == static_cast<int>(i));
       const double width = strong ? 3.0 : 1.2;
       const Colour colour = selected ? kObserved : Colour{0.80, 0.82, 0.84};
-      content.addOnSurface(lineActor(castContour(camera, *in.surface, h.contour, in.scale, 0), colour, width), info, width,
-                           selected ? kSelectedPx : kObservedPx);
+      std::vector<Points> chains = castContour(camera, *in.surface, h.contour, in.scale, 0);
+      if (selected && !in.inspection->evidence[static_cast<std::size_t>(index)].againstTruth)
+        if (const std::string missed = modelsThatMiss(in, static_cast<int>(i)); !missed.empty()) {
+          info.text += line("missed by", missed);
+          chains = inDashes(chains, dashOf(chains), kMissedDashes);
+        }
+      content.addOnSurface(lineActor(chains, colour, width), info, width, selected ? kSelectedPx : kObservedPx);
       if (selected && in.selection.direction && &h == selectedHighlight(in, ""))
         addMark(content, in, camera, h, h.contour, kObserved, info);
     }
   }
   return content;
 }
+
+namespace {
+/// What a filter took out: thin, dotted, faint.
+void addGhost(LayerContent& content, const LayerInput& in, const std::string& model, const FilteredHighlight& f,
+              double nearerPx) {
+  Picked info;
+  info.layer = "predicted-contours";
+  info.frame = in.selection.frame;
+  info.model = model;
+  info.text = line("filtered prediction", model) + line("reason", f.reason);
+  Colour colour = modelColour(model);
+  for (double& channel : colour) channel = 0.5 * (channel + 0.5);
+  const std::vector<Points> chains =
+      castContour(in.frame(in.selection.frame).camera, *in.surface, f.highlight.contour, in.scale, 0);
+  content.addOnSurface(lineActor(inDashes(chains, dashOf(chains), {0.2, 0.4}), colour, 1), info, 1, nearerPx);
+}
+}  // namespace
 
 LayerContent predictedContoursLayer(const LayerInput& in) {
   LayerContent content;
@@ -120,8 +194,11 @@ LayerContent predictedContoursLayer(const LayerInput& in) {
         for (const FrameComparison::Row& row : comparison->rows) {
           if (row.predicted == static_cast<int>(i)) info.highlight = row.observed;
         }
-        info.text = line("prediction", model) + line("frame", in.frame(in.selection.frame).id) +
-                    line("light", comparison->light) + line("coverage", h.coverage) + line("IoU", comparison->iou);
+        const bool spurious = draw::isSpurious(*comparison, static_cast<int>(i));
+        if (spurious) info.predicted = static_cast<int>(i);
+        info.text = line(spurious ? "spurious prediction" : "prediction", model) +
+                    line("frame", in.frame(in.selection.frame).id) + line("light", comparison->light) +
+                    line("coverage", h.coverage) + line("IoU", comparison->iou);
         for (const FrameComparison::Row& row : comparison->rows) {
           if (row.predicted != static_cast<int>(i) || !row.metrics) continue;
           info.text += line("contour error", row.metrics->contourErrorPct, "%") +
@@ -141,7 +218,10 @@ LayerContent predictedContoursLayer(const LayerInput& in) {
         const Highlight* observed = in.selection.direction ? selectedHighlight(in, comparison->light) : nullptr;
         if (observed && (in.selection.highlight < 0 || in.selection.highlight == info.highlight))
           addMark(content, in, camera, *observed, h.contour, colour, info);
-        const double width = in.selection.model == model ? 3.4 : 2.2;  // the selected model stands out
+        const bool chosen = spurious && in.selection.highlight < 0 && in.selection.predicted == static_cast<int>(i) &&
+                            in.selection.model == model && in.selection.light == comparison->light;
+        const double width = chosen ? 4.4 : in.selection.model == model ? 3.4 : 2.2;  // the selected model stands out
+        if (spurious) solid = inDashes(solid, dashOf(solid), kSpuriousDashes);
         if (!solid.empty()) content.addOnSurface(lineActor(solid, colour, width), info, width, nearerPx);
         if (!dotted.empty()) {
           info.text += line("this part", "not predicted; bridges failed directions");
@@ -149,6 +229,8 @@ LayerContent predictedContoursLayer(const LayerInput& in) {
         }
       }
     }
+    for (const FrameComparison* comparison : in.comparisons(model))
+      for (const FilteredHighlight& f : comparison->prediction.filtered) addGhost(content, in, model, f, nearerPx);
     nearerPx += kNextModelPx;
   }
   return content;

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/base/filter_settings.h"
+
+#include <algorithm>
+
+namespace glint {
+
+namespace {
+
+std::vector<ParamSpec> filterParams() {
+  return {
+      {"predict.filter_area",
+       "Filter by area",
+       "A_min",
+       "",
+       false,
+       0,
+       0,
+       0,
+       {},
+       "Leave out predicted highlights that are smaller than detection takes (detect.min_area). Views draw them faintly; nothing "
+       "compares them. Kept: area A >= A_min.",
+       "predict"},
+      {"predict.filter_brightness",
+       "Filter by brightness",
+       "b_min",
+       "",
+       0.0,
+       0.0,
+       1.0,
+       0.01,
+       {},
+       "Leave out predicted highlights that are fainter than this share of the brightest one in the same frame; 0 keeps all. "
+       "Models without a light keep all. Kept: I / I_brightest >= b_min, log I = log q (tan α / tan α_lim)².",
+       "predict"},
+      {"predict.filter_shadow",
+       "Filter own shadow",
+       "P L",
+       "",
+       false,
+       0,
+       0,
+       0,
+       {},
+       "Leave out predicted highlights whose middle the object itself hides from the lamp. Models without a light keep "
+       "all. Kept: P + t (L - P) meets no surface for 0 < t < 1; a filtered one = a shadow.",
+       "predict"}};
+}
+
+}  // namespace
+
+std::vector<ParamSpec> withFilterParams(std::vector<ParamSpec> others) {
+  const auto last =
+      std::find_if(others.rbegin(), others.rend(), [](const ParamSpec& p) { return p.key.rfind("predict.", 0) == 0; });
+  const std::vector<ParamSpec> filters = filterParams();
+  others.insert(last.base(), filters.begin(), filters.end());
+  return others;
+}
+
+}  // namespace glint

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/draw/selection.h"
+#include "core/inspect/inspection.h"
+
+namespace glint::draw {
+
+// What has no partner: observed highlights that a model misses, and predicted ones that nobody saw (spurious).
+
+/// Whether a predicted highlight of a comparison is spurious. What lies outside of the image or where a person ignores a highlight is not.
+bool isSpurious(const FrameComparison& comparison, int predicted);
+/// Which of the models miss an observed highlight, from simple to rich. A model that predicts nothing anywhere is left out: its fit
+/// says why.
+/// @param observed  index into FrameEvidence::scored()
+/// @param counts    whether a model is asked
+std::vector<std::string> missedBy(const Inspection& inspection, int frame, int observed,
+                                  const std::function<bool(const std::string&)>& counts);
+/// The spurious highlight that is selected; null where nothing is, or where it is not spurious any more.
+const PredictedHighlight* selectedSpurious(const Inspection& inspection, const Selection& selection);
+/// The comparison of the selected model that a missed or spurious selection is a row of, and that row; nulls where there is none.
+struct UnmatchedRow {
+  const FrameComparison* comparison = nullptr;
+  const FrameComparison::Row* row = nullptr;
+};
+/// @param model  asked where the selection names none
+UnmatchedRow selectedUnmatched(const Inspection& inspection, const Selection& selection, const std::string& model);
+
+}  // namespace glint::draw
