@@ -145,6 +145,8 @@ void RetextureBar::buildRow() {
   base_->addItem(tr("Background"), QStringLiteral("background"));
   base_->addItem(tr("Highlight removed"), QStringLiteral("removed"));
   file_ = new QToolButton;
+  file_->setAccessibleName(tr("Picture file"));
+  file_->setToolTip(tr("Choose the picture"));
   file_->setObjectName(QStringLiteral("retextureFile"));
   file_->setIcon(icon(QStringLiteral("open")));
   file_->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);

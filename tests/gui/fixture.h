@@ -45,6 +45,7 @@ struct TestClass {
   const char* name;
   TestFactory make;
 };
+QObject* makeAccessibilityTest();
 QObject* makeDecodedFramesTest();
 QObject* makeDiagnosisTest();
 QObject* makeDocumentTest();

@@ -17,6 +17,7 @@ int main(int argc, char** argv) {
       {"document", makeDocumentTest},
       {"runner", makeRunnerTest},
       {"observer", makeObserverTest},
+      {"accessibility", makeAccessibilityTest},
       {"frame_canvas", makeFrameCanvasTest},
       {"frame_view", makeFrameViewTest},
       {"theme", makeThemeTest},

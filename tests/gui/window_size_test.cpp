@@ -81,7 +81,7 @@ class WindowSizeTest : public QObject, WindowFixture {
     QTRY_VERIFY(window.idle() && window.document().inspection() && !window.document().stale());
     window.applyLayout(QStringLiteral("debug"));
     QTest::qWait(50);
-    for (const char* name : {"train", "trainingCounts", "autoModel", "conditioningReason"}) {
+    for (const char* name : {"train", "trainingCounts", "conditioningReason"}) {
       const auto* widget = window.findChild<QWidget*>(QLatin1String(name));
       QVERIFY2(widget && widget->isVisible(), name);
       QVERIFY2(widget->visibleRegion().boundingRect().size() == widget->size(), name);
