@@ -109,7 +109,7 @@ Highlight merged(const Highlight& a, const Highlight& b) {
   h.touchesBorder = a.touchesBorder || b.touchesBorder;
   describe(h);
   h.byHand = formatted("merged by hand: %.0f %% of its contour joins two highlights and was not seen",
-                       100 * joining / std::max(length(h.contour), 1e-9));
+                       100 * joining / std::max(length(h.contour), kJoinStepPx));
   return h;
 }
 
