@@ -121,7 +121,9 @@ TEST(Unmatched, TimelineAndPlotMarkTheFrameAndGiveItNoError) {
   const draw::PlotData plot = draw::errorPlot(*r, {});
   for (const draw::PlotSeries& s : plot.series)
     for (const draw::PlotPoint& p : s.points)
-      if (s.name.rfind("canonical", 0) == 0) EXPECT_EQ(p.triangle, p.target.frame == kFrame) << p.target.frame;
+      if (s.name.rfind("canonical", 0) == 0) {
+        EXPECT_EQ(p.triangle, p.target.frame == kFrame) << p.target.frame;
+      }
 }
 
 TEST(Unmatched, FilteredOnesAreGhostsThatNoClickSelects) {
