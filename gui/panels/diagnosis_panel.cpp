@@ -21,7 +21,7 @@ namespace glint::gui {
 namespace {
 
 constexpr int kFrame = Qt::UserRole, kLight = Qt::UserRole + 1, kModel = Qt::UserRole + 2, kHighlight = Qt::UserRole + 3,
-              kShared = Qt::UserRole + 4, kPredicted = Qt::UserRole + 5;
+              kShared = Qt::UserRole + 4, kPredicted = Qt::UserRole + 5, kWrong = Qt::UserRole + 6;
 constexpr std::size_t kMostFrames = 12;      // of a model: more are in the table of errors
 constexpr std::size_t kMostHighlights = 12;  // that stand against a model
 
@@ -67,10 +67,54 @@ std::vector<WrongFrame> wrongFrames(const Inspection& inspection, const ModelRes
   return wrong;
 }
 
+/// Adds an item; the list of wrong frames stays the last one, so that causes and remedies are in sight.
+void append(QTreeWidgetItem* parent, QTreeWidgetItem* item) {
+  const int count = parent->childCount();
+  const bool framesLast = count > 0 && parent->child(count - 1)->data(0, kWrong).toBool();
+  parent->insertChild(framesLast ? count - 1 : count, item);
+}
+
 QTreeWidgetItem* addLine(QTreeWidgetItem* parent, const QString& text) {
-  auto* item = new QTreeWidgetItem(parent, {text});
+  auto* item = new QTreeWidgetItem({text});
   item->setToolTip(0, text);
+  append(parent, item);
   return item;
+}
+
+/// @param open  whether the list shows its lines: not where causes and remedies are known.
+void addWrongFrames(QTreeWidgetItem* top, const Inspection& inspection, const std::vector<WrongFrame>& wrong, bool open) {
+  auto* list = new QTreeWidgetItem(
+      top, {QObject::tr(wrong.size() == 1 ? "the wrong frame" : "the %1 wrong frames, worst first").arg(wrong.size())});
+  list->setData(0, kWrong, true);
+  for (std::size_t i = 0; i < wrong.size() && i < kMostFrames; ++i) {
+    const WrongFrame& w = wrong[i];
+    QStringList words;
+    if (w.missed) words << QObject::tr(w.missed == 1 ? "%1 highlight missed" : "%1 highlights missed").arg(w.missed);
+    if (w.spurious) words << QObject::tr("%1 predicted where none is seen").arg(w.spurious);
+    if (!w.reason.empty()) words << toQString(w.reason);
+    if (w.parts.size() == 1 && !w.parts.front().cause.isEmpty()) words << w.parts.front().cause;
+    if (w.pct > kLargestExpectedPct) words.prepend(QObject::tr("off by %1 %").arg(numberText(w.pct, 3)));
+    auto* line = addLine(list, QObject::tr("frame %1, light %2: %3")
+                                   .arg(nameText(inspection.scene->frames[std::size_t(w.frame)].id), toQString(w.light),
+                                        words.join(QStringLiteral("; "))));
+    const auto select = [&w](QTreeWidgetItem* item, int highlight, int predicted) {
+      item->setData(0, kFrame, w.frame);
+      item->setData(0, kLight, toQString(w.light));
+      item->setData(0, kHighlight, highlight);
+      item->setData(0, kPredicted, predicted);
+    };
+    const bool one = w.parts.size() == 1;
+    select(line, one ? w.parts.front().observed : -1, one ? w.parts.front().predicted : -1);
+    for (std::size_t k = 0; !one && k < w.parts.size(); ++k) {
+      const WrongFrame::Part& part = w.parts[k];
+      const QString what = part.observed >= 0 ? QObject::tr("□ highlight %1 missed").arg(part.observed + 1)
+                                              : QObject::tr("△ predicted highlight %1 spurious").arg(part.predicted + 1);
+      select(addLine(line, part.cause.isEmpty() ? what : QObject::tr("%1: %2").arg(what, part.cause)), part.observed,
+             part.predicted);
+    }
+  }
+  if (wrong.size() > kMostFrames) addLine(list, QObject::tr("and %1 more: see Errors").arg(wrong.size() - kMostFrames));
+  list->setExpanded(open);
 }
 
 }  // namespace
@@ -197,40 +241,13 @@ void DiagnosisPanel::fillProblems() {
       if (fit.failure() && !explained)
         addLine(top, tr("because light %1: %2").arg(toQString(textOf(fit.key())), toQString(fit.failure()->message())));
     if (summary.answered) addShared(top, *inspection, name);
-    for (std::size_t i = 0; summary.answered && i < wrong.size() && i < kMostFrames; ++i) {
-      const WrongFrame& w = wrong[i];
-      QStringList words;
-      if (w.missed) words << tr(w.missed == 1 ? "%1 highlight missed" : "%1 highlights missed").arg(w.missed);
-      if (w.spurious) words << tr("%1 predicted where none is seen").arg(w.spurious);
-      if (!w.reason.empty()) words << toQString(w.reason);
-      if (w.parts.size() == 1 && !w.parts.front().cause.isEmpty()) words << w.parts.front().cause;
-      if (w.pct > kLargestExpectedPct) words.prepend(tr("off by %1 %").arg(numberText(w.pct, 3)));
-      auto* line = addLine(top, tr("frame %1, light %2: %3")
-                                    .arg(nameText(inspection->scene->frames[std::size_t(w.frame)].id), toQString(w.light),
-                                         words.join(QStringLiteral("; "))));
-      const auto select = [&w](QTreeWidgetItem* item, int highlight, int predicted) {
-        item->setData(0, kFrame, w.frame);
-        item->setData(0, kLight, toQString(w.light));
-        item->setData(0, kHighlight, highlight);
-        item->setData(0, kPredicted, predicted);
-      };
-      const bool one = w.parts.size() == 1;
-      select(line, one ? w.parts.front().observed : -1, one ? w.parts.front().predicted : -1);
-      for (std::size_t k = 0; !one && k < w.parts.size(); ++k) {
-        const WrongFrame::Part& part = w.parts[k];
-        const QString what = part.observed >= 0 ? tr("□ highlight %1 missed").arg(part.observed + 1)
-                                                : tr("△ predicted highlight %1 spurious").arg(part.predicted + 1);
-        select(addLine(line, part.cause.isEmpty() ? what : tr("%1: %2").arg(what, part.cause)), part.observed, part.predicted);
-      }
-    }
-    if (summary.answered && wrong.size() > kMostFrames)
-      addLine(top, tr("and %1 more: see Errors").arg(wrong.size() - kMostFrames));
+    if (summary.answered && !wrong.empty()) addWrongFrames(top, *inspection, wrong, !explained);
   }
 }
 
 void DiagnosisPanel::addShared(QTreeWidgetItem* top, const Inspection& inspection, const std::string& model) {
   for (SharedCause& cause : sharedCauses(inspection, *document_.rows(), model)) {
-    auto* const line = new QTreeWidgetItem(top, {tr("in common: %1").arg(toQString(cause.text))});
+    auto* const line = addLine(top, tr("in common: %1").arg(toQString(cause.text)));
     line->setToolTip(
         0, tr("%1\nWhat goes together; it need not be the cause. A click brushes these highlights: the table of errors and the "
               "plot \"Any two columns\" show them.")
@@ -244,10 +261,6 @@ void DiagnosisPanel::fillDiagnosis(const ModelDiagnosis& d) {
   if (d.status == ModelDiagnosis::Status::Ok) return;
   QTreeWidgetItem* const top = itemOf(d.model, tr("%1: %2").arg(toQString(d.model), QLatin1String(nameOf(d.status))));
   for (const std::string& cause : d.causes) addLine(top, tr("because %1").arg(toQString(cause)));
-  for (const FitTrace& fit : d.fits)
-    for (const std::string& line : textOf(fit))
-      addLine(top, tr("fit of light %1: %2").arg(toQString(textOf(fit.key)), toQString(line)))
-          ->setData(0, kLight, toQString(fit.key.light));
   for (const Remedy& remedy : d.remedies) addRemedy(d.model, remedy);
   if (d.remedies.empty()) addLine(top, tr("nothing helps: %1 changes were tried").arg(d.tried));
   std::vector<const HighlightEvidence*> against;
@@ -265,6 +278,10 @@ void DiagnosisPanel::fillDiagnosis(const ModelDiagnosis& d) {
     line->setData(0, kLight, toQString(e.light));
     line->setData(0, kHighlight, e.highlight);
   }
+  for (const FitTrace& fit : d.fits)
+    for (const std::string& line : textOf(fit))
+      addLine(top, tr("fit of light %1: %2").arg(toQString(textOf(fit.key)), toQString(line)))
+          ->setData(0, kLight, toQString(fit.key.light));
 }
 
 QTreeWidgetItem* DiagnosisPanel::itemOf(const std::string& model, const QString& otherwise) {
@@ -277,7 +294,8 @@ QTreeWidgetItem* DiagnosisPanel::itemOf(const std::string& model, const QString&
 }
 
 void DiagnosisPanel::addRemedy(const std::string& model, const Remedy& remedy) {
-  auto* line = new QTreeWidgetItem(itemOf(model, toQString(model)));
+  auto* line = new QTreeWidgetItem;
+  append(itemOf(model, toQString(model)), line);
   auto* holder = new QWidget;
   auto* row = new QHBoxLayout(holder);
   row->setContentsMargins(0, 1, 4, 1);
