@@ -156,7 +156,8 @@ def model_rows(label, run):
         reasons = {}
         for f in model["frames"]:
             if f["reason"] and f["status"] != "spurious" and f["index"] not in held_in(run):
-                reasons[f["reason"]] = reasons.get(f["reason"], 0) + 1
+                reason = f["reason"].split("; ")[0]  # what follows is of this highlight alone
+                reasons[reason] = reasons.get(reason, 0) + 1
         remark = model["reason"] if model["status"] != "ok" else "; ".join(f"{n} × {r}" for r, n in sorted(reasons.items()))
         rows.append(label + [
             name, number(e["mean"]), number(e["median"]), number(e["p95"]), number(e["max"]),

@@ -67,7 +67,9 @@ std::string nearest(const Highlights& others, const Pixel& place, const char* wh
 
 std::string whyUnmatched(const Inspection& inspection, const FrameComparison& c, const FrameComparison::Row& row) {
   if (row.metrics) return "";
-  if (row.failure) return row.failure->message();
+  // That nothing overlaps is what is to be explained.
+  const bool unanswered = row.observed >= 0 && row.predicted < 0 && !c.prediction.failure();
+  if (row.failure && !unanswered) return row.failure->message();
   const Frame& frame = inspection.scene->frames[std::size_t(c.frame)];
   const FrameEvidence& seen = inspection.evidence[std::size_t(c.frame)];
   const std::vector<Highlight>& observed = seen.scored();

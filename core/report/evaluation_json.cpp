@@ -197,7 +197,10 @@ void addRows(const Inspection& inspection, const FrameComparison& c, Json& out) 
   for (const FrameComparison::Row& row : c.rows) {
     Json j = base(row.observed >= 0 ? row.observed : row.predicted);
     j["status"] = row.metrics ? "ok" : row.observed >= 0 ? "missed" : row.predicted >= 0 ? "spurious" : "failed";
-    j["reason"] = row.metrics ? "" : whyUnmatched(inspection, c, row);
+    std::string reason = whyUnmatched(inspection, c, row);
+    if (const std::string general = row.failure ? row.failure->message() : ""; !row.metrics && general != reason)
+      reason = general + (general.empty() ? "" : "; ") + reason;
+    j["reason"] = row.metrics ? "" : reason;
     metricsJson(&row, c, j);
     out.push_back(j);
   }

@@ -61,6 +61,7 @@ ErrorModel::ErrorModel(Document& document, QObject* parent) : QAbstractTableMode
   connect(&document_, &Document::inspectionChanged, this, &ErrorModel::rebuild);
   connect(&document_, &Document::sceneOpened, this, &ErrorModel::rebuild);
   connect(&document_, &Document::pinnedChanged, this, &ErrorModel::rebuild);
+  rebuild();
 }
 
 int ErrorModel::rowCount(const QModelIndex& parent) const { return parent.isValid() ? 0 : int(rows_->size()); }

@@ -8,6 +8,7 @@
 #include <thread>
 #include <vector>
 
+#include "core/draw/contrast.h"
 #include "core/draw/overlay_painter.h"
 #include "core/scene/scene.h"
 #include "tests/viz/small_inspection.h"
@@ -25,6 +26,9 @@ bool isNear(const Image& image, int x, int y, const Colour& colour, double toler
   }
   return true;
 }
+
+/// Of texts about what failed, on the panel of dark pictures.
+const Colour kFailedText = draw::readableOn({0.15, 0.16, 0.18}, kFailed);
 
 int countOfColour(const Image& image, const Colour& colour, double tolerance = 0.08) {
   int count = 0;
@@ -160,7 +164,7 @@ TEST(FramePicture, AMissingPhotographIsSaidInItsPlace) {
   const TemporaryFolder folder;
   const auto inspection = smallInspection(folder.path());
   const Image picture = framePicture(*inspection, 0, Failure{Reason::FrameUnreadable, "x.png"}, 600, 400);
-  EXPECT_GT(countOfColour(picture, kFailed, 0.2), 30);
+  EXPECT_GT(countOfColour(picture, kFailedText, 0.2), 30);
 }
 
 TEST(Pictures, EverySizeWorks) {
@@ -203,7 +207,7 @@ TEST(LadderPicture, AReasonIsWholeInSeveralLines) {
     int bands = 0, before = 0;
     for (int y = 0; y < picture.height; ++y) {
       int red = 0;
-      for (int x = 0; x < picture.width; ++x) red += isNear(picture, x, y, kFailed, 0.12);
+      for (int x = 0; x < picture.width; ++x) red += isNear(picture, x, y, kFailedText, 0.12);
       bands += red > 0 && before == 0;
       before = red;
     }

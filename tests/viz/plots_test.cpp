@@ -315,7 +315,7 @@ TEST(Plots, SamplesOfAFrameOnTheSphere) {
 }
 
 TEST(Plots, EveryKindHasAName) {
-  EXPECT_EQ(plotKinds().size(), 9u);
+  EXPECT_EQ(plotKinds().size(), 10u);
   for (const PlotKind& k : plotKinds()) EXPECT_GT(std::string(k.help).size(), 20u) << k.id;
 }
 
