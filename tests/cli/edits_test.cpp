@@ -21,7 +21,8 @@ class Edits : public testing::Test {
     session_.erase("results");
     const ProgramRun run = runGlint("detect '" + (folder_ / "two-lamps.glint").string() + "' --json -");
     ASSERT_EQ(run.code, 0) << run.err;
-    for (const Json& h : Json::parse(run.out)["frames"][1]["highlights"]) peaks_.push_back(h["peak"]);
+    const Json detected = Json::parse(run.out);
+    for (const Json& h : detected["frames"][1]["highlights"]) peaks_.push_back(h["peak"]);
     ASSERT_EQ(peaks_.size(), 2U);
   }
   struct Count {
@@ -34,7 +35,8 @@ class Edits : public testing::Test {
     EXPECT_EQ(run.code, 0) << run.err;
     Count count;
     if (run.code != 0) return count;
-    for (const Json& row : Json::parse(run.out)["models"]["limit-angle"]["frames"]) {
+    const Json evaluation = Json::parse(run.out);
+    for (const Json& row : evaluation["models"]["limit-angle"]["frames"]) {
       if (row["index"] != 1) continue;
       count.ok += row["status"] == "ok";
       count.missed += row["status"] == "missed";
