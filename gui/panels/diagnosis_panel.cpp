@@ -8,6 +8,7 @@
 #include <QTreeWidget>
 #include <QVBoxLayout>
 #include <algorithm>
+#include <set>
 
 #include "core/diagnose/mismatch.h"
 #include "core/diagnose/shared_causes.h"
@@ -84,7 +85,8 @@ QTreeWidgetItem* addLine(QTreeWidgetItem* parent, const QString& text) {
 /// @param open  whether the list shows its lines: not where causes and remedies are known.
 void addWrongFrames(QTreeWidgetItem* top, const Inspection& inspection, const std::vector<WrongFrame>& wrong, bool open) {
   auto* list = new QTreeWidgetItem(
-      top, {QObject::tr(wrong.size() == 1 ? "the wrong frame" : "the %1 wrong frames, worst first").arg(wrong.size())});
+      top, {wrong.size() == 1 ? QObject::tr("what is wrong")
+                              : QObject::tr("what is wrong in each frame and light, worst first (%1)").arg(wrong.size())});
   list->setData(0, kWrong, true);
   for (std::size_t i = 0; i < wrong.size() && i < kMostFrames; ++i) {
     const WrongFrame& w = wrong[i];
@@ -230,10 +232,13 @@ void DiagnosisPanel::fillProblems() {
     const std::vector<WrongFrame> wrong = wrongFrames(*inspection, result->second);
     if (summary.answered && wrong.empty()) continue;
     ++problems_;
+    std::set<int> frames;  // one may be wrong under several lights
+    for (const WrongFrame& w : wrong) frames.insert(w.frame);
     auto* top = new QTreeWidgetItem(
-        list_, {summary.answered
-                    ? tr(wrong.size() == 1 ? "%1: %2 frame wrong" : "%1: %2 frames wrong").arg(toQString(name)).arg(wrong.size())
-                    : tr("%1: no answer").arg(toQString(name))});
+        list_,
+        {summary.answered
+             ? tr(frames.size() == 1 ? "%1: %2 frame wrong" : "%1: %2 frames wrong").arg(toQString(name)).arg(frames.size())
+             : tr("%1: no answer").arg(toQString(name))});
     top->setData(0, kModel, toQString(name));
     top->setExpanded(true);
     const bool explained = diagnosis_ && of_ == inspection;  // its causes say it
