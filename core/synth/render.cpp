@@ -348,8 +348,8 @@ SynthPart synthesisePart(const SynthSpec& spec, const fs::path& folder, const Sh
                          const ProgressFn& progress) {
   const SurfaceCache surfaces(spec.scene);
   const std::vector<int> all = allFrames(spec.scene);
-  const auto [first, end] = rangeOf(shard, static_cast<int>(all.size()));
-  const std::vector<int> own(all.begin() + first, all.begin() + end);
+  const auto range = rangeOf(shard, static_cast<int>(all.size()));  // no structured binding: a lambda of clang 14 cannot take one
+  const std::vector<int> own(all.begin() + range.first, all.begin() + range.second);
   const bool needsAll = spec.render && (spec.render->exposure <= 0 || spec.render->noise > 0);
   Traced t = traced(spec, needsAll ? all : own, surfaces, folder, progress);
   if (needsAll) {
@@ -365,7 +365,8 @@ SynthPart synthesisePart(const SynthSpec& spec, const fs::path& folder, const Sh
   part.write([&](const fs::path& out) {
     copyMeshes(t.scene, t.meshes, out);
     if (spec.render) renderFrames(t.scene, own, *spec.render, spec.material, surfaces, t.top, out, progress);
-    return synthPartText({textOf(t.scene), spec.scene.file, needsAll ? t.top : 0, files, out}, shard, program, first, end);
+    return synthPartText({textOf(t.scene), spec.scene.file, needsAll ? t.top : 0, files, out}, shard, program, range.first,
+                         range.second);
   });
   SynthPart result{part.file(), static_cast<int>(own.size()), 0, t.scene.warnings};
   for (const int i : own) result.highlights += static_cast<int>(t.scene.frames[static_cast<std::size_t>(i)].highlights.size());
