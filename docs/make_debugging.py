@@ -2,11 +2,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Makes two sequences that are hard to fit, lets `glint diagnose` lead out of them, and writes the tables of docs/debugging.md.
 
-Usage: docs/make_debugging.py --glint PROGRAM [--keep DIR] [--picture INSPECTOR] [--write]
+Usage: docs/make_debugging.py --glint PROGRAM --times PROGRAM [--keep DIR] [--picture INSPECTOR] [--write]
 
 Every command of the page is run; every figure is what one printed. The two sequences:
   unequal   an ellipsoid under a small and a wide lamp; no frame says which lamps are on
   ears      a body with two thin ears and a thin fin, as a mesh; two of 16 frames are hard to tell by eye
+--times PROGRAM  diagnose_times of the same build (bench/): seconds until the first remedy
 --keep DIR       leave the sequences there
 --picture FILE   draw the pictures with this glint-inspector (needs xvfb-run)
 --write          put the tables into docs/debugging.md; else print them"""
@@ -117,11 +118,20 @@ def shown(entry):
     return f"{pct:.3g} % ({predicted} of {frames})" if predicted and pct is not None else f"no answer (0 of {frames})"
 
 
-def table(glint, name, scene):
+def first_remedy(times, scene):
+    """One sentence: how long a user of the inspector waits."""
+    words = run([times, scene])[0].split(maxsplit=4)
+    if words[4].strip() == "none":
+        return f"*Find out why* finds no remedy; it ends after {words[3]} s."
+    model, change = words[4].strip().split(": ", 1)
+    return f"*Find out why* shows its first remedy after {words[1]} s (`{change}` for {model}) and ends after {words[3]} s."
+
+
+def table(glint, times, name, scene):
     before = held_out(glint, scene, ["--models", ",".join(MODELS)])
     out, seconds = run([glint, "diagnose", scene, "--json", "-"], codes=(0, 3))
     diagnosis = json.loads(out)["models"]
-    lines = [f"`glint diagnose {name}/scene.json` (all models): {seconds:.0f} s.", "",
+    lines = [f"`glint diagnose {name}/scene.json` (all models): {seconds:.0f} s. On results that are there, {first_remedy(times, scene)}", "",
              "| model | status | held-out frames, before | first cause | best remedy | views that the fit did not see | held-out frames, after |",
              "|---|---|---|---|---|---|---|"]
     for model in MODELS:
@@ -155,6 +165,7 @@ def picture(inspector, scene, name):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--glint", required=True, type=pathlib.Path)
+    parser.add_argument("--times", required=True, type=pathlib.Path)
     parser.add_argument("--keep", type=pathlib.Path)
     parser.add_argument("--picture", type=pathlib.Path)
     parser.add_argument("--write", action="store_true")
@@ -163,7 +174,7 @@ def main():
         folder = options.keep or pathlib.Path(temporary)
         os.makedirs(folder, exist_ok=True)
         scenes = make(options.glint.resolve(), folder)
-        tables = {name: table(options.glint.resolve(), name, scene) for name, scene in scenes.items()}
+        tables = {name: table(options.glint.resolve(), options.times.resolve(), name, scene) for name, scene in scenes.items()}
         if options.picture:
             picture(options.picture.resolve(), scenes["ears"], "problems")
     if not options.write:

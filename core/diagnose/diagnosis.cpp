@@ -58,13 +58,13 @@ class ModelCase {
     judge();
     if (d_.status == ModelDiagnosis::Status::Ok) return std::move(d_);
     explain();
-    d_.fits = traceFits(r_, model_);
     const std::vector<CandidateChange> candidates = candidateChanges(r_, model_, d_.evidence);
     d_.known += static_cast<int>(candidates.size());
     otherModels();
     leaveOutOfScore();
     changes(candidates, false);
     changes(candidates, true);
+    d_.fits = traceFits(r_, model_);  // after the remedies: it fits once more, and the first remedy must not wait for that
     std::stable_sort(d_.remedies.begin(), d_.remedies.end(), [](const Remedy& a, const Remedy& b) {
       return std::pair(!a.measured, a.after.meanPct()) < std::pair(!b.measured, b.after.meanPct());
     });
