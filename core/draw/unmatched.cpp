@@ -30,6 +30,21 @@ std::vector<std::string> missedBy(const Inspection& inspection, int frame, int o
   return models;
 }
 
+std::map<int, FrameUnmatched> unmatchedByFrame(const Inspection& inspection) {
+  std::map<int, FrameUnmatched> unmatched;
+  for (const std::string& model : modelsInOrder(inspection)) {
+    const std::vector<FrameComparison>& frames = inspection.models.at(model).frames;
+    const bool answers =
+        std::any_of(frames.begin(), frames.end(), [](const auto& c) { return !c.prediction.highlights().empty(); });
+    for (const FrameComparison& c : frames)
+      for (const FrameComparison::Row& row : c.rows) {
+        if (row.observed < 0 && row.predicted >= 0) unmatched[c.frame].spurious.push_back({model, c.light, row.predicted});
+        if (row.observed >= 0 && row.predicted < 0 && answers) unmatched[c.frame].missedBy[row.observed].push_back(model);
+      }
+  }
+  return unmatched;
+}
+
 UnmatchedRow selectedUnmatched(const Inspection& inspection, const Selection& s, const std::string& model) {
   const auto result = inspection.models.find(s.model.empty() ? model : s.model);
   if (result == inspection.models.end()) return {};

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,19 @@ bool isSpurious(const FrameComparison& comparison, int predicted);
 /// @param counts    whether a model is asked
 std::vector<std::string> missedBy(const Inspection& inspection, int frame, int observed,
                                   const std::function<bool(const std::string&)>& counts);
+/// What has no partner in one frame.
+struct FrameUnmatched {
+  std::map<int, std::vector<std::string>> missedBy;  ///< by index into FrameEvidence::scored(), as missedBy() says
+  struct Spurious {
+    std::string model, light;
+    int predicted = -1;  ///< index in what the model predicts for this light
+    friend bool operator==(const Spurious&, const Spurious&) = default;
+  };
+  std::vector<Spurious> spurious;  ///< models from simple to rich
+  friend bool operator==(const FrameUnmatched&, const FrameUnmatched&) = default;
+};
+/// Of all models, by frame; a frame where all have a partner is not there. One pass, for lists of long sequences.
+std::map<int, FrameUnmatched> unmatchedByFrame(const Inspection& inspection);
 /// The spurious highlight that is selected; null where nothing is, or where it is not spurious any more.
 const PredictedHighlight* selectedSpurious(const Inspection& inspection, const Selection& selection);
 /// The comparison of the selected model that a missed or spurious selection is a row of, and that row; nulls where there is none.

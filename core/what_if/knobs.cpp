@@ -148,7 +148,8 @@ void addHighlight(std::vector<WhatIfKnob>& knobs, const Scene& scene, int frame,
            HighlightChange change = lookUp(w.highlights, at);
            member(change) = v;
            store(w.highlights, at, change);
-         }});
+         },
+         index});
   };
   add("contour.x", "Contour right", "px", 0, -reach, reach, 0.1, "Moves the observed contour.",
       [](HighlightChange& c) -> double& { return c.contourBy.x(); });

@@ -18,10 +18,11 @@ struct WhatIfKnob {
   bool synthetic = false;                    ///< counts only where contours are synthesised
   std::function<double(const WhatIf&)> get;  ///< in spec.unit
   std::function<void(WhatIf&, double)> set;  ///< a what-if whose knobs are all on their defaults is `none()` again
+  int highlight = -1;                        ///< number of the frame's highlight, before edits by hand; -1 = of something else
 };
 
 /// Knobs for the lights (those with a position), the surface, the lobe, the camera and the highlights of one frame.
-/// @param highlights  how many the frame's evidence has.
+/// @param highlights  how many the frame's evidence has, with those made by hand (FrameEvidence::asFound).
 /// @param roughness   m that a synthesis starts from, > 0: the default of that knob.
 std::vector<WhatIfKnob> whatIfKnobs(const Scene& scene, int frame, int highlights, double roughness = WhatIf{}.roughness);
 

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "gui/base/clear_style.h"
 
+#include <QAbstractScrollArea>
 #include <QPainter>
 #include <QPainterPath>
 #include <QStyleFactory>
 #include <QStyleOption>
 #include <algorithm>
 
+#include "gui/base/focus_frame.h"
 #include "gui/base/theme.h"
 
 namespace glint::gui {
@@ -68,6 +70,14 @@ void drawIndicator(const QStyleOption* option, QPainter* painter, bool round) {
 }  // namespace
 
 ClearStyle::ClearStyle() : QProxyStyle(QStyleFactory::create(QStringLiteral("Fusion"))) {}
+
+/// What scrolls draws no ring of its own, and a text that is only read has no cursor either.
+void ClearStyle::polish(QWidget* widget) {
+  QProxyStyle::polish(widget);
+  if (qobject_cast<QAbstractScrollArea*>(widget) && widget->focusPolicy() & Qt::TabFocus &&
+      !widget->findChild<FocusFrame*>(QString(), Qt::FindDirectChildrenOnly))
+    new FocusFrame(widget);
+}
 
 void ClearStyle::drawPrimitive(PrimitiveElement element, const QStyleOption* option, QPainter* painter,
                                const QWidget* widget) const {

@@ -11,6 +11,8 @@ namespace glint::gui {
 class ClearStyle : public QProxyStyle {
  public:
   ClearStyle();
+  using QProxyStyle::polish;
+  void polish(QWidget* widget) override;
   void drawPrimitive(PrimitiveElement element, const QStyleOption* option, QPainter* painter,
                      const QWidget* widget) const override;
   void drawComplexControl(ComplexControl control, const QStyleOptionComplex* option, QPainter* painter,

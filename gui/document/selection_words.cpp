@@ -14,7 +14,7 @@ namespace {
 /// What was given up, where nothing was chosen.
 QString givenUp(const draw::Selection& before, const draw::Selection& after) {
   if (before.model != after.model) return QObject::tr("Select all models");
-  if (before.highlight != after.highlight) return QObject::tr("Deselect the highlight");
+  if (before.highlight != after.highlight || before.predicted != after.predicted) return QObject::tr("Deselect the highlight");
   if (before.direction != after.direction) return QObject::tr("Deselect the contour point");
   return QObject::tr("Select all lights");
 }
@@ -30,12 +30,14 @@ QString selectionWords(const draw::Selection& before, const draw::Selection& aft
   if (!after.light.empty() && after.light != before.light && !highlight)
     chosen << QObject::tr("light %1").arg(nameText(after.light));
   if (highlight) chosen << QObject::tr("highlight %1").arg(after.highlight + 1);
+  const bool spurious = after.predicted >= 0 && (another || after.predicted != before.predicted);
+  if (spurious) chosen << QObject::tr("spurious highlight %1").arg(after.predicted + 1);
   const bool point = after.direction && (another || after.direction != before.direction);
   if (point) chosen << QObject::tr("contour point at %1°").arg(std::lround(*after.direction * 180 / std::numbers::pi));
   if (chosen.isEmpty()) return another ? QObject::tr("Select frame %1").arg(frame) : givenUp(before, after);
   const QString what = chosen.join(QStringLiteral(", "));
-  return another || highlight || point ? QObject::tr("Select %1 in frame %2").arg(what, frame)
-                                       : QObject::tr("Select %1").arg(what);
+  return another || highlight || spurious || point ? QObject::tr("Select %1 in frame %2").arg(what, frame)
+                                                   : QObject::tr("Select %1").arg(what);
 }
 
 }  // namespace glint::gui

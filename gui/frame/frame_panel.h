@@ -42,6 +42,7 @@ class FramePanel : public QWidget {
  public:
   explicit FramePanel(Document& document, QWidget* parent = nullptr);
   FrameCanvas* canvas() const { return canvas_; }
+  HighlightEdits* edits() const { return edits_; }
   FrameCanvas* secondCanvas() const { return second_; }
   const PairBar& pair() const { return *pair_; }  ///< what stands beside the selected frame
   PhotoLoader* loader() { return &loader_; }

@@ -22,7 +22,7 @@ namespace glint::gui {
 namespace {
 
 constexpr int kFrame = Qt::UserRole, kLight = Qt::UserRole + 1, kModel = Qt::UserRole + 2, kHighlight = Qt::UserRole + 3,
-              kShared = Qt::UserRole + 4, kPredicted = Qt::UserRole + 5, kWrong = Qt::UserRole + 6;
+              kShared = Qt::UserRole + 4, kPredicted = Qt::UserRole + 5, kPlace = Qt::UserRole + 6;
 constexpr std::size_t kMostFrames = 12;      // of a model: more are in the table of errors
 constexpr std::size_t kMostHighlights = 12;  // that stand against a model
 
@@ -68,26 +68,31 @@ std::vector<WrongFrame> wrongFrames(const Inspection& inspection, const ModelRes
   return wrong;
 }
 
-/// Adds an item; the list of wrong frames stays the last one, so that causes and remedies are in sight.
-void append(QTreeWidgetItem* parent, QTreeWidgetItem* item) {
-  const int count = parent->childCount();
-  const bool framesLast = count > 0 && parent->child(count - 1)->data(0, kWrong).toBool();
-  parent->insertChild(framesLast ? count - 1 : count, item);
+/// Places of lines below their model, top to bottom: why it is so, what helps, what goes together, and the evidence one by one.
+enum class ProblemLine { Cause, Help, Shared, Against, Course, Wrong };
+
+/// Adds an item below those of its own place and of earlier ones, whenever it is found.
+void append(QTreeWidgetItem* parent, QTreeWidgetItem* item, ProblemLine place) {
+  item->setData(0, kPlace, int(place));
+  int at = parent->childCount();
+  while (at > 0 && parent->child(at - 1)->data(0, kPlace).toInt() > int(place)) --at;
+  parent->insertChild(at, item);
 }
 
-QTreeWidgetItem* addLine(QTreeWidgetItem* parent, const QString& text) {
+QTreeWidgetItem* addLine(QTreeWidgetItem* parent, const QString& text, ProblemLine place) {
   auto* item = new QTreeWidgetItem({text});
   item->setToolTip(0, text);
-  append(parent, item);
+  append(parent, item, place);
   return item;
 }
 
 /// @param open  whether the list shows its lines: not where causes and remedies are known.
 void addWrongFrames(QTreeWidgetItem* top, const Inspection& inspection, const std::vector<WrongFrame>& wrong, bool open) {
-  auto* list = new QTreeWidgetItem(
-      top, {wrong.size() == 1 ? QObject::tr("what is wrong")
-                              : QObject::tr("what is wrong in each frame and light, worst first (%1)").arg(wrong.size())});
-  list->setData(0, kWrong, true);
+  auto* list =
+      addLine(top,
+              wrong.size() == 1 ? QObject::tr("what is wrong")
+                                : QObject::tr("what is wrong in each frame and light, worst first (%1)").arg(wrong.size()),
+              ProblemLine::Wrong);
   for (std::size_t i = 0; i < wrong.size() && i < kMostFrames; ++i) {
     const WrongFrame& w = wrong[i];
     QStringList words;
@@ -96,9 +101,11 @@ void addWrongFrames(QTreeWidgetItem* top, const Inspection& inspection, const st
     if (!w.reason.empty()) words << toQString(w.reason);
     if (w.parts.size() == 1 && !w.parts.front().cause.isEmpty()) words << w.parts.front().cause;
     if (w.pct > kLargestExpectedPct) words.prepend(QObject::tr("off by %1 %").arg(numberText(w.pct, 3)));
-    auto* line = addLine(list, QObject::tr("frame %1, light %2: %3")
-                                   .arg(nameText(inspection.scene->frames[std::size_t(w.frame)].id), toQString(w.light),
-                                        words.join(QStringLiteral("; "))));
+    auto* line = addLine(list,
+                         QObject::tr("frame %1, light %2: %3")
+                             .arg(nameText(inspection.scene->frames[std::size_t(w.frame)].id), toQString(w.light),
+                                  words.join(QStringLiteral("; "))),
+                         ProblemLine::Wrong);
     const auto select = [&w](QTreeWidgetItem* item, int highlight, int predicted) {
       item->setData(0, kFrame, w.frame);
       item->setData(0, kLight, toQString(w.light));
@@ -111,11 +118,12 @@ void addWrongFrames(QTreeWidgetItem* top, const Inspection& inspection, const st
       const WrongFrame::Part& part = w.parts[k];
       const QString what = part.observed >= 0 ? QObject::tr("□ highlight %1 missed").arg(part.observed + 1)
                                               : QObject::tr("△ predicted highlight %1 spurious").arg(part.predicted + 1);
-      select(addLine(line, part.cause.isEmpty() ? what : QObject::tr("%1: %2").arg(what, part.cause)), part.observed,
-             part.predicted);
+      select(addLine(line, part.cause.isEmpty() ? what : QObject::tr("%1: %2").arg(what, part.cause), ProblemLine::Wrong),
+             part.observed, part.predicted);
     }
   }
-  if (wrong.size() > kMostFrames) addLine(list, QObject::tr("and %1 more: see Errors").arg(wrong.size() - kMostFrames));
+  if (wrong.size() > kMostFrames)
+    addLine(list, QObject::tr("and %1 more: see Errors").arg(wrong.size() - kMostFrames), ProblemLine::Wrong);
   list->setExpanded(open);
 }
 
@@ -244,7 +252,8 @@ void DiagnosisPanel::fillProblems() {
     const bool explained = diagnosis_ && of_ == inspection;  // its causes say it
     for (const ModelResult::Fit& fit : result->second.fits)
       if (fit.failure() && !explained)
-        addLine(top, tr("because light %1: %2").arg(toQString(textOf(fit.key())), toQString(fit.failure()->message())));
+        addLine(top, tr("because light %1: %2").arg(toQString(textOf(fit.key())), toQString(fit.failure()->message())),
+                ProblemLine::Cause);
     if (summary.answered) addShared(top, *inspection, name);
     if (summary.answered && !wrong.empty()) addWrongFrames(top, *inspection, wrong, !explained);
   }
@@ -252,7 +261,7 @@ void DiagnosisPanel::fillProblems() {
 
 void DiagnosisPanel::addShared(QTreeWidgetItem* top, const Inspection& inspection, const std::string& model) {
   for (SharedCause& cause : sharedCauses(inspection, *document_.rows(), model)) {
-    auto* const line = addLine(top, tr("in common: %1").arg(toQString(cause.text)));
+    auto* const line = addLine(top, tr("in common: %1").arg(toQString(cause.text)), ProblemLine::Shared);
     line->setToolTip(
         0, tr("%1\nWhat goes together; it need not be the cause. A click brushes these highlights: the table of errors and the "
               "plot \"Any two columns\" show them.")
@@ -265,9 +274,9 @@ void DiagnosisPanel::addShared(QTreeWidgetItem* top, const Inspection& inspectio
 void DiagnosisPanel::fillDiagnosis(const ModelDiagnosis& d) {
   if (d.status == ModelDiagnosis::Status::Ok) return;
   QTreeWidgetItem* const top = itemOf(d.model, tr("%1: %2").arg(toQString(d.model), QLatin1String(nameOf(d.status))));
-  for (const std::string& cause : d.causes) addLine(top, tr("because %1").arg(toQString(cause)));
+  for (const std::string& cause : d.causes) addLine(top, tr("because %1").arg(toQString(cause)), ProblemLine::Cause);
   for (const Remedy& remedy : d.remedies) addRemedy(d.model, remedy);
-  if (d.remedies.empty()) addLine(top, tr("nothing helps: %1 changes were tried").arg(d.tried));
+  if (d.remedies.empty()) addLine(top, tr("nothing helps: %1 changes were tried").arg(d.tried), ProblemLine::Help);
   std::vector<const HighlightEvidence*> against;
   for (const HighlightEvidence& e : d.evidence)
     if (!e.against.empty()) against.push_back(&e);
@@ -276,16 +285,18 @@ void DiagnosisPanel::fillDiagnosis(const ModelDiagnosis& d) {
     const HighlightEvidence& e = *against[i];
     QStringList words;
     for (const std::string& a : e.against) words << toQString(a);
-    auto* line = addLine(top, tr("against it: frame %1, light %2: %3")
-                                  .arg(nameText(of_->scene->frames[std::size_t(e.frame)].id), toQString(e.light),
-                                       words.join(QStringLiteral("; "))));
+    auto* line = addLine(
+        top,
+        tr("against it: frame %1, light %2: %3")
+            .arg(nameText(of_->scene->frames[std::size_t(e.frame)].id), toQString(e.light), words.join(QStringLiteral("; "))),
+        ProblemLine::Against);
     line->setData(0, kFrame, e.frame);
     line->setData(0, kLight, toQString(e.light));
     line->setData(0, kHighlight, e.highlight);
   }
   for (const FitTrace& fit : d.fits)
     for (const std::string& line : textOf(fit))
-      addLine(top, tr("fit of light %1: %2").arg(toQString(textOf(fit.key)), toQString(line)))
+      addLine(top, tr("fit of light %1: %2").arg(toQString(textOf(fit.key)), toQString(line)), ProblemLine::Course)
           ->setData(0, kLight, toQString(fit.key.light));
 }
 
@@ -300,7 +311,7 @@ QTreeWidgetItem* DiagnosisPanel::itemOf(const std::string& model, const QString&
 
 void DiagnosisPanel::addRemedy(const std::string& model, const Remedy& remedy) {
   auto* line = new QTreeWidgetItem;
-  append(itemOf(model, toQString(model)), line);
+  append(itemOf(model, toQString(model)), line, ProblemLine::Help);
   auto* holder = new QWidget;
   auto* row = new QHBoxLayout(holder);
   row->setContentsMargins(0, 1, 4, 1);

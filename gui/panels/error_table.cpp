@@ -38,8 +38,9 @@ namespace glint::gui {
 
 namespace {
 constexpr int kSearchWidth = 90, kChangeWidth = 110;  // px
+constexpr int kHeadGapPx = 6;                         // between what stands above the table
 constexpr int kLeastLetters = 6;                      // of a choice of rows; its list shows the rest
-constexpr int kColumnGapPx = 12;                      // of the summary
+constexpr int kColumnGapPx = 5;                       // of the summary
 constexpr double kWorstPct = 1000;                    // ten times the highlight's size: how far astray beyond that says nothing
 constexpr int kIou = 4, kMissed = 6, kSpurious = 7;   // columns of its values
 }  // namespace
@@ -48,14 +49,15 @@ ErrorTable::ErrorTable(Document& document, QWidget* parent) : QWidget(parent), d
   auto* column = new QVBoxLayout(this);
   column->setContentsMargins(0, 0, 0, 0);
   column->setSpacing(0);
-  auto* head = new FlowLayout(6);  // a narrow dock puts the choice of rows below the summary
-  head->setContentsMargins(8, 4, 6, 4);
+  auto* head = new FlowLayout(kHeadGapPx);  // a narrow dock puts the choice of rows below the summary
+  head->setContentsMargins(8, 2, 6, 2);
   summary_ = new QLabel;
   summary_->setObjectName(QStringLiteral("errorSummary"));
   summary_->setTextFormat(Qt::RichText);
   summary_->setMinimumWidth(1);  // a dock narrower than its first column cuts it rather than growing
   summary_->setTextInteractionFlags(Qt::TextSelectableByMouse);
   head->addWidget(summary_);
+  buildWarnings(*head);  // beside the summary: a line of their own would cost the table a row
   filter_ = new QComboBox;
   filter_->setObjectName(QStringLiteral("errorFilter"));
   filter_->addItems({tr("all frames"), tr("held-out frames"), tr("training frames"), tr("problems only"), tr("brushed only")});
@@ -68,25 +70,6 @@ ErrorTable::ErrorTable(Document& document, QWidget* parent) : QWidget(parent), d
   count_->setObjectName(QStringLiteral("errorCount"));
   count_->setProperty("role", "faded");
   head->addWidget(count_);
-  warnings_ = new QToolButton;
-  warnings_->setObjectName(QStringLiteral("errorWarnings"));
-  warnings_->setAutoRaise(true);
-  warnings_->setProperty("role", "warning");
-  constexpr int kTextWidth = 520;  // px, about 80 characters a line
-  warningTexts_ = new QLabel;
-  warningTexts_->setObjectName(QStringLiteral("warningTexts"));
-  warningTexts_->setTextFormat(Qt::RichText);
-  warningTexts_->setTextInteractionFlags(Qt::TextSelectableByMouse);
-  warningTexts_->setWordWrap(true);
-  warningTexts_->setFixedWidth(kTextWidth);
-  warningTexts_->setMargin(6);
-  auto* menu = new QMenu(warnings_);
-  auto* texts = new QWidgetAction(menu);
-  texts->setDefaultWidget(warningTexts_);
-  menu->addAction(texts);
-  connect(warnings_, &QToolButton::clicked, menu,
-          [this, menu] { menu->popup(warnings_->mapToGlobal(warnings_->rect().bottomLeft())); });
-  head->addWidget(warnings_);
   column->addLayout(head);
   column->addWidget(new PinnedSummary(document));
 
@@ -105,7 +88,7 @@ ErrorTable::ErrorTable(Document& document, QWidget* parent) : QWidget(parent), d
   view_->setShowGrid(false);
   view_->setWordWrap(false);
   view_->verticalHeader()->hide();
-  view_->verticalHeader()->setDefaultSectionSize(fontMetrics().height() + 5);
+  view_->verticalHeader()->setDefaultSectionSize(fontMetrics().height() + 3);
   view_->horizontalHeader()->setHighlightSections(false);
   view_->horizontalHeader()->setStretchLastSection(false);
   constexpr int kTextWidths[] = {54, 66, 98, 50, 64}, kNumberWidth = 62;  // px, least
@@ -134,9 +117,9 @@ ErrorTable::ErrorTable(Document& document, QWidget* parent) : QWidget(parent), d
   connect(&document_, &Document::brushedChanged, this, &ErrorTable::followBrush);
   connect(&document_, &Document::pinnedChanged, this, &ErrorTable::followPinned);
   connect(model_, &QAbstractItemModel::modelReset, this, [this] {
+    showWarnings();  // the summary leaves them their room
     showSummary();
     showCount();
-    showWarnings();
     listModels();
     fitReason();
     followPinned();
@@ -145,8 +128,30 @@ ErrorTable::ErrorTable(Document& document, QWidget* parent) : QWidget(parent), d
   connect(&document_, &Document::staleChanged, this, &ErrorTable::showSummary);
   connect(&document_, &Document::selectionChanged, this, &ErrorTable::selectFromDocument);
   connect(view_->selectionModel(), &QItemSelectionModel::currentRowChanged, this, &ErrorTable::selectFromTable);
-  showSummary();
   showWarnings();
+  showSummary();
+}
+
+void ErrorTable::buildWarnings(QLayout& row) {
+  warnings_ = new QToolButton;
+  warnings_->setObjectName(QStringLiteral("errorWarnings"));
+  warnings_->setAutoRaise(true);
+  warnings_->setProperty("role", "warning");
+  constexpr int kTextWidth = 520;  // px, about 80 characters a line
+  warningTexts_ = new QLabel;
+  warningTexts_->setObjectName(QStringLiteral("warningTexts"));
+  warningTexts_->setTextFormat(Qt::RichText);
+  warningTexts_->setTextInteractionFlags(Qt::TextSelectableByMouse);
+  warningTexts_->setWordWrap(true);
+  warningTexts_->setFixedWidth(kTextWidth);
+  warningTexts_->setMargin(6);
+  auto* menu = new QMenu(warnings_);
+  auto* texts = new QWidgetAction(menu);
+  texts->setDefaultWidget(warningTexts_);
+  menu->addAction(texts);
+  connect(warnings_, &QToolButton::clicked, menu,
+          [this, menu] { menu->popup(warnings_->mapToGlobal(warnings_->rect().bottomLeft())); });
+  row.addWidget(warnings_);
 }
 
 void ErrorTable::buildFilters(QLayout& row) {
@@ -340,7 +345,8 @@ void ErrorTable::fitSummary() {
   }
   const int all = summaryRows_.front().values.size();
   const QMargins margins = layout()->itemAt(0)->layout()->contentsMargins();
-  const int room = width() - margins.left() - margins.right();
+  const int beside = warnings_->isHidden() ? 0 : warnings_->sizeHint().width() + kHeadGapPx;
+  const int room = width() - margins.left() - margins.right() - beside;
   int first = 0, problems = 0;
   for (const SummaryRow& row : summaryRows_) {
     first = std::max(first, summary_->fontMetrics().horizontalAdvance(QStringLiteral("■ ") + row.name) + 20);

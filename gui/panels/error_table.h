@@ -47,6 +47,7 @@ class ErrorTable : public QWidget {
   QString summaryHtml(const std::vector<int>& columns, int problemWidth) const;
   int columnWidth(int column) const;  ///< px
   void showCount();
+  void buildWarnings(QLayout& row);
   void buildFilters(QLayout& row);
   void showFiltered();  ///< other rows are shown
   void listModels();

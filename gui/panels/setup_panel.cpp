@@ -23,17 +23,17 @@ namespace glint::gui {
 
 SetupPanel::SetupPanel(Document& document, QWidget* parent) : QWidget(parent), document_(document) {
   auto* grid = new QGridLayout(this);
-  grid->setContentsMargins(10, 4, 8, 6);
-  grid->setVerticalSpacing(4);
+  grid->setContentsMargins(10, 3, 8, 3);
+  grid->setVerticalSpacing(3);  // all of it is in sight in a window of 1500 x 940
   grid->setColumnStretch(1, 1);
   const auto label = [](const QString& text) {
     auto* l = new QLabel(text);
     l->setProperty("role", "group");
     return l;
   };
-  grid->addWidget(label(tr("Models")), 2, 0, 1, 2);
   models_ = new QListWidget;
   models_->setAccessibleName(tr("Models"));
+  models_->setToolTip(tr("Models that are computed"));
   models_->setObjectName(QStringLiteral("models"));
   models_->setIconSize({11, 11});
   models_->setSelectionMode(QAbstractItemView::NoSelection);
@@ -46,7 +46,7 @@ SetupPanel::SetupPanel(Document& document, QWidget* parent) : QWidget(parent), d
     item->setCheckState(Qt::Checked);
   }
   models_->setVerticalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
-  models_->setFixedHeight(models_->sizeHintForRow(0) * models_->count() + 8);
+  models_->setFixedHeight(models_->sizeHintForRow(0) * models_->count() + 2 * models_->frameWidth() + 2);
   grid->addWidget(models_, 3, 0, 1, 2);
 
   auto* choose = new QPushButton(tr("Auto"));

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "gui/plots/plot_canvas.h"
 
+#include <QAccessible>
+#include <QKeyEvent>
 #include <QMouseEvent>
 #include <QPainter>
 #include <QToolTip>
@@ -8,8 +10,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "gui/base/draw_turns.h"
+#include "gui/base/focus_frame.h"
 #include "gui/base/picture_access.h"
 #include "gui/base/qt_painter.h"
 #include "gui/base/text.h"
@@ -21,6 +25,7 @@ namespace glint::gui {
 namespace {
 constexpr double kReachPx = 10;     // of a click or the mouse, screen px
 constexpr double kDragPx = 4;       // a press that moves further is a drag
+constexpr double kCursorPx = 8;     // radius of the ring around the point that the keyboard is at
 constexpr double kWheelStep = 1.2;  // zoom of one notch
 
 Eigen::Vector2d placeOf(const QPointF& at) { return {at.x(), at.y()}; }
@@ -44,7 +49,12 @@ QString plotWords(const draw::PlotData& plot) {
 PlotCanvas::PlotCanvas(QWidget* parent) : QWidget(parent) {
   setMouseTracking(true);
   setAttribute(Qt::WA_OpaquePaintEvent);
-  describePicture(this, tr("Plot"), [this] { return plotWords(view_.plot()); });
+  setFocusPolicy(Qt::TabFocus);  // a click leaves the arrow keys where they are
+  new FocusFrame(this);
+  describePicture(this, tr("Plot"), [this] {
+    const std::string at = cursor_.words(view_.plot(), places());
+    return plotWords(view_.plot()) + (at.empty() ? QString() : tr(". At point %1").arg(toQString(at)));
+  });
 }
 
 const draw::PlotData& PlotCanvas::plot() const { return view_.plot(); }
@@ -55,6 +65,7 @@ void PlotCanvas::paintEvent(QPaintEvent*) {
   QtPainter into(painter);
   view_.setStyle(style());
   view_.paint(into, width(), height());
+  if (hasFocus()) drawCursor(painter);
   if (!brushing_ || !dragging_ || moves_) return;
   QColor colour = palette().color(QPalette::Highlight);
   painter.setPen(colour);
@@ -165,7 +176,85 @@ void PlotCanvas::leaveEvent(QEvent*) {
   update();
 }
 
+// --- by keyboard ----------------------------------------------------------------------------------------------------------
+
+PlotCursor::Where PlotCanvas::places() const {
+  return [this](const draw::PlotSample& sample) { return positionOf(sample); };
+}
+
+bool PlotCanvas::takes(const QKeyEvent& e) const {
+  if (e.modifiers() & ~(Qt::ShiftModifier | Qt::KeypadModifier)) return false;
+  switch (e.key()) {
+    case Qt::Key_Left:
+    case Qt::Key_Right:
+    case Qt::Key_Up:
+    case Qt::Key_Down:
+    case Qt::Key_Home:
+    case Qt::Key_End: return true;
+    case Qt::Key_Return:
+    case Qt::Key_Enter:
+    case Qt::Key_Escape: return cursor_.any() || byKeys_;  // else Esc stops computations
+    default: return false;
+  }
+}
+
+void PlotCanvas::keyPressEvent(QKeyEvent* e) {
+  if (!takes(*e)) return QWidget::keyPressEvent(e);
+  using Step = PlotCursor::Step;
+  if (e->key() == Qt::Key_Escape) {
+    cursor_.clear();
+    if (std::exchange(byKeys_, false)) emit brushed({});
+    return tellCursor();
+  }
+  if (e->key() == Qt::Key_Return || e->key() == Qt::Key_Enter) {
+    if (const std::optional<draw::PlotSample> sample = cursor_.sample(plot()))
+      emit clicked(plot().series[std::size_t(sample->series)].points[std::size_t(sample->point)].target);
+    return;
+  }
+  const Step step = e->key() == Qt::Key_Home                             ? Step::First
+                    : e->key() == Qt::Key_End                            ? Step::Last
+                    : e->key() == Qt::Key_Left || e->key() == Qt::Key_Up ? Step::Previous
+                                                                         : Step::Next;
+  const bool extend = brushing_ && e->modifiers().testFlag(Qt::ShiftModifier);
+  if (!cursor_.move(plot(), places(), step, extend)) return;
+  if (extend) {
+    byKeys_ = true;
+    emit brushed(cursor_.range(plot(), places()));
+  }
+  tellCursor();
+}
+
+void PlotCanvas::tellCursor() {
+  update();
+  QAccessibleEvent changed(this, QAccessible::DescriptionChanged);
+  QAccessible::updateAccessibility(&changed);
+  const std::optional<draw::PlotSample> sample = cursor_.sample(plot());
+  const std::optional<QPointF> at = sample ? positionOf(*sample) : std::nullopt;
+  if (!at) return QToolTip::hideText();
+  showTip(mapToGlobal(at->toPoint()),
+          toQString(plot().series[std::size_t(sample->series)].points[std::size_t(sample->point)].label), this);
+}
+
+void PlotCanvas::drawCursor(QPainter& painter) const {
+  const std::optional<draw::PlotSample> sample = cursor_.sample(plot());
+  const std::optional<QPointF> at = sample ? positionOf(*sample) : std::nullopt;
+  if (!at) return;
+  painter.setRenderHint(QPainter::Antialiasing);
+  painter.setBrush(Qt::NoBrush);
+  painter.setPen(QPen(focusColour(), 2));
+  painter.drawEllipse(*at, kCursorPx, kCursorPx);
+}
+
+void PlotCanvas::focusInEvent(QFocusEvent* e) {
+  emit touched();
+  QWidget::focusInEvent(e);
+}
+
 bool PlotCanvas::event(QEvent* e) {
+  if (e->type() == QEvent::ShortcutOverride && takes(*static_cast<QKeyEvent*>(e))) {
+    e->accept();
+    return true;
+  }
   if (e->type() == QEvent::ToolTip) return true;  // hover() shows them
   return QWidget::event(e);
 }

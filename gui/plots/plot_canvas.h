@@ -6,11 +6,13 @@
 #include <optional>
 
 #include "core/draw/plot_view.h"
+#include "gui/plots/plot_cursor.h"
 
 namespace glint::gui {
 
 /// Shows one plot. Hover tells a sample's value, a click selects it, the wheel zooms along x (with Ctrl along both), dragging
-/// moves what is zoomed, a double click shows everything again.
+/// moves what is zoomed, a double click shows everything again. By keyboard: the arrow keys, Home and End go from point to point,
+/// Enter selects one, and Esc gives it up; where one brushes, Shift extends the brush.
 class PlotCanvas : public QWidget {
   Q_OBJECT
  public:
@@ -44,6 +46,8 @@ class PlotCanvas : public QWidget {
   void mouseDoubleClickEvent(QMouseEvent* e) override;
   void wheelEvent(QWheelEvent* e) override;
   void leaveEvent(QEvent* e) override;
+  void keyPressEvent(QKeyEvent* e) override;
+  void focusInEvent(QFocusEvent* e) override;
   bool event(QEvent* e) override;
 
  private:
@@ -51,10 +55,16 @@ class PlotCanvas : public QWidget {
   std::optional<draw::PlotSample> sampleAt(const QPointF& at) const;
   void hover(const QPointF& at, const QPoint& global);
   std::vector<draw::PlotSample> samplesIn(const QRectF& box) const;
+  PlotCursor::Where places() const;
+  bool takes(const QKeyEvent& e) const;  ///< a key that goes about in the plot
+  void tellCursor();
+  void drawCursor(QPainter& painter) const;
 
   draw::PlotView view_;
   std::optional<draw::PlotSample> hovered_;
   QPointF pressed_, last_;
+  PlotCursor cursor_;
+  bool byKeys_ = false;  ///< the brush was made by keys
   bool dragging_ = false, held_ = false, brushing_ = false, moves_ = false;
 };
 

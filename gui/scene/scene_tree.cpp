@@ -181,17 +181,9 @@ void SceneTree::followDocument() {
   if (selecting_) return;
   const std::optional<SceneObject> current = objectAt(tree_->currentIndex());
   const bool frame = now.frame != before.frame;
-  if (!frame && now.highlight != before.highlight && now.highlight >= 0) {
-    const SceneObject camera{Kind::Camera, now.frame, -1, {}, {}};
-    const QModelIndex row = shown_->mapFromSource(model_->indexOf(camera));
-    const auto evidence = document_.inspection();
-    if (row.isValid() && tree_->isExpanded(row) && evidence && std::size_t(now.frame) < evidence->evidence.size()) {
-      const auto& highlights = evidence->evidence[std::size_t(now.frame)].highlights;
-      if (std::size_t(now.highlight) < highlights.size())
-        return mark({Kind::Highlight, now.frame, now.highlight, {}, highlights[std::size_t(now.highlight)].light});
-    }
-    return mark(camera);
-  }
+  const bool another = frame || now.highlight != before.highlight || now.predicted != before.predicted ||
+                       (now.predicted >= 0 && (now.model != before.model || now.light != before.light));
+  if (another && (now.highlight >= 0 || now.predicted >= 0)) return mark(partOf(now));
   if (!frame && (now.model != before.model || now.light != before.light)) {
     for (const SceneObject& o : model_->objectsOf(Kind::Ellipsoid))
       if (!now.model.empty() && isSelected(o, now)) return mark(o);
@@ -200,6 +192,16 @@ void SceneTree::followDocument() {
   }
   if (current && isSelected(*current, now)) return;
   mark({Kind::Camera, now.frame, -1, {}, {}});
+}
+
+/// The selected highlight where its camera is open, else the camera.
+SceneObject SceneTree::partOf(const draw::Selection& s) const {
+  const SceneObject camera{Kind::Camera, s.frame, -1, {}, {}};
+  const QModelIndex row = model_->indexOf(camera);
+  if (row.isValid() && tree_->isExpanded(shown_->mapFromSource(row)))
+    for (int i = 0; i < model_->rowCount(row); ++i)
+      if (const auto part = model_->objectAt(model_->index(i, 0, row)); part && isSelected(*part, s)) return *part;
+  return camera;
 }
 
 void SceneTree::select(const SceneObject& o) {
@@ -223,6 +225,8 @@ void SceneTree::select(const SceneObject& o) {
       moveTo(o.frame);
       s.highlight = o.highlight;
       s.light = o.light;
+      s.predicted = o.predicted;
+      if (o.predicted >= 0) s.model = o.key;
       break;
     case Kind::Light: s.light = o.key; break;
     case Kind::Ellipsoid:
@@ -231,7 +235,10 @@ void SceneTree::select(const SceneObject& o) {
       break;
   }
   selecting_ = true;
-  if (s != document_.selection()) document_.select(s, steps_.gesture(document_));
+  if (s != document_.selection()) {
+    const int step = steps_.gesture(document_);
+    o.predicted >= 0 ? document_.selectExactly(s, step) : document_.select(s, step);
+  }
   selecting_ = false;
 }
 

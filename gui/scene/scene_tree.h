@@ -46,6 +46,7 @@ class SceneTree : public QWidget {
   void find(const QString& text);
   void followDocument();
   void select(const SceneObject& object);
+  SceneObject partOf(const draw::Selection& selection) const;
   bool isRole(const QModelIndex& index) const;  ///< of a camera, where one click excludes
   void exclude(const QModelIndex& index);       ///< or take back
   bool isTick(const QPoint& position) const;    ///< in the viewport

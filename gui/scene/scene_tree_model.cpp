@@ -8,6 +8,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/diagnose/mismatch.h"
 #include "core/diagnostics/influence.h"
 #include "core/geometry/ellipsoid.h"
 #include "gui/base/text.h"
@@ -100,7 +101,9 @@ bool isSelected(const SceneObject& o, const draw::Selection& s) {
   switch (o.kind) {
     case Kind::Surface: return false;
     case Kind::Camera: return s.frame == o.frame;
-    case Kind::Highlight: return s.frame == o.frame && s.highlight == o.highlight;
+    case Kind::Highlight:
+      if (o.predicted < 0) return s.frame == o.frame && s.highlight == o.highlight;
+      return s.frame == o.frame && s.highlight < 0 && s.predicted == o.predicted && s.model == o.key && s.light == o.light;
     case Kind::Light: return s.light == o.key;
     case Kind::Ellipsoid: return s.model == o.key && (s.light.empty() || s.light == o.light);
   }
@@ -131,6 +134,7 @@ void SceneTreeModel::rebuild() {
   beginResetModel();
   for (Group& group : groups_) group.objects.clear();
   highlights_.clear();
+  unmatched_.clear();
   if (const Scene* scene = document_.scene()) {
     groups_[0].objects = surfacesOf(*scene);
     for (int i = 0; i < document_.frameCount(); ++i) groups_[kCameras].objects.push_back(camera(i));
@@ -151,11 +155,15 @@ void SceneTreeModel::followInspection() {
   const auto inspection = document_.inspection();
   setObjects(kLights, lightsOf(*scene, inspection.get()));
   setObjects(kModels, modelsOf(document_.request(), inspection.get()));
+  unmatched_ = inspection ? draw::unmatchedByFrame(*inspection) : std::map<int, draw::FrameUnmatched>();
   for (int i = 0; i < int(highlights_.size()); ++i) {
     std::vector<SceneObject> highlights;
     if (inspection && std::size_t(i) < inspection->evidence.size()) {
       const std::vector<Highlight>& seen = inspection->evidence[std::size_t(i)].highlights;
       for (int h = 0; h < int(seen.size()); ++h) highlights.push_back({Kind::Highlight, i, h, {}, seen[std::size_t(h)].light});
+      if (const auto found = unmatched_.find(i); found != unmatched_.end())
+        for (const draw::FrameUnmatched::Spurious& s : found->second.spurious)
+          highlights.push_back({Kind::Highlight, i, -1, s.model, s.light, s.predicted});
     }
     setHighlights(i, std::move(highlights));
   }
@@ -175,7 +183,7 @@ void SceneTreeModel::followSelection() {
     const QModelIndex row = indexOf(camera(frame));
     if (!row.isValid()) continue;
     emit dataChanged(row, row.siblingAtColumn(ColumnCount - 1));
-    if (const int n = rowCount(row); n > 0) emit dataChanged(index(0, 0, row), index(n - 1, ColumnCount - 1, row));
+    emitHighlightsChanged(frame);
   }
   for (const int group : {kSurfaces, kLights, kModels}) emitChanged(group);
 }
@@ -205,7 +213,7 @@ void SceneTreeModel::setObjects(int group, std::vector<SceneObject> objects) {
 
 void SceneTreeModel::setHighlights(int at, std::vector<SceneObject> highlights) {
   std::vector<SceneObject>& now = highlights_[std::size_t(at)];
-  if (now == highlights) return;
+  if (now == highlights) return emitHighlightsChanged(at);  // what misses them may be another
   const QModelIndex parent = indexOf(camera(at));
   const int had = int(now.size()), has = int(highlights.size());
   if (has < had) {
@@ -219,6 +227,13 @@ void SceneTreeModel::setHighlights(int at, std::vector<SceneObject> highlights) 
   } else {
     now = std::move(highlights);
   }
+  emitHighlightsChanged(at);
+}
+
+void SceneTreeModel::emitHighlightsChanged(int at) {
+  const QModelIndex row = indexOf(camera(at));
+  if (const int n = row.isValid() ? rowCount(row) : 0; n > 0)
+    emit dataChanged(index(0, 0, row), index(n - 1, ColumnCount - 1, row));
 }
 
 void SceneTreeModel::followView() {
@@ -309,7 +324,11 @@ QModelIndex SceneTreeModel::groupOf(Kind kind) const {
 QModelIndex SceneTreeModel::indexOf(const SceneObject& object) const {
   if (object.kind == Kind::Highlight) {
     const QModelIndex parent = indexOf(camera(object.frame));
-    return object.highlight < rowCount(parent) ? index(object.highlight, 0, parent) : QModelIndex();
+    if (object.predicted < 0) return object.highlight < rowCount(parent) ? index(object.highlight, 0, parent) : QModelIndex();
+    if (!parent.isValid()) return {};
+    const std::vector<SceneObject>& all = highlights_[std::size_t(object.frame)];
+    const auto found = std::find(all.begin(), all.end(), object);
+    return found == all.end() ? QModelIndex() : index(int(found - all.begin()), 0, parent);
   }
   const QModelIndex group = groupOf(object.kind);
   const std::vector<SceneObject>& objects = groups_[std::size_t(group.row())].objects;
@@ -339,13 +358,31 @@ QString SceneTreeModel::nameOf(const SceneObject& o) const {
   switch (o.kind) {
     case Kind::Surface: return o.key == viz::HiddenObjects::kDepthMaps ? tr("depth maps") : tr("surface %1").arg(nameText(o.key));
     case Kind::Camera: return tr("camera %1").arg(nameText(scene->frames[std::size_t(o.frame)].id));
-    case Kind::Highlight:
-      return tr("highlight %1 of frame %2").arg(o.highlight).arg(nameText(scene->frames[std::size_t(o.frame)].id));
+    case Kind::Highlight: return tr("%1 of frame %2").arg(highlightName(o), nameText(scene->frames[std::size_t(o.frame)].id));
     case Kind::Light: return tr("light %1").arg(nameText(o.key));
     case Kind::Ellipsoid:
       return objectsOf(Kind::Light).size() < 2 ? nameText(o.key) : tr("%1 of light %2").arg(nameText(o.key), nameText(o.light));
   }
   return {};
+}
+
+std::vector<std::string> SceneTreeModel::missedBy(const SceneObject& o) const {
+  const auto inspection = document_.inspection();
+  const auto found = unmatched_.find(o.frame);
+  // Where a truth is scored, its highlights are other ones.
+  if (o.highlight < 0 || !inspection || inspection->evidence[std::size_t(o.frame)].againstTruth || found == unmatched_.end())
+    return {};
+  const auto missed = found->second.missedBy.find(o.highlight);
+  return missed == found->second.missedBy.end() ? std::vector<std::string>() : missed->second;
+}
+
+/// As the frame view and the list of problems mark and count them.
+QString SceneTreeModel::highlightName(const SceneObject& o) const {
+  if (o.predicted >= 0) return tr("△ %1 %2, spurious").arg(nameText(o.key)).arg(o.predicted + 1);
+  const std::vector<std::string> models = missedBy(o);
+  if (models.empty()) return tr("highlight %1").arg(o.highlight + 1);
+  return models.size() == 1 ? tr("□ highlight %1, missed by %2").arg(o.highlight + 1).arg(nameText(models.front()))
+                            : tr("□ highlight %1, missed by %2 models").arg(o.highlight + 1).arg(models.size());
 }
 
 QString SceneTreeModel::detailOf(const SceneObject& o) const {
@@ -389,7 +426,29 @@ QString SceneTreeModel::tipOf(const SceneObject& o, int column) const {
   if (column == Effect && o.kind == Kind::Camera && effects_.count(o.frame))
     return tr("Influence on %1: %2 %. Positive: the frame helps; negative: the model is better without it")
         .arg(toQString(document_.plottedModel()), QString::number(effects_.at(o.frame), 'g', 3));
+  if (o.kind == Kind::Highlight) return highlightTip(o);
   return column == Detail ? detailOf(o) : QString();
+}
+
+/// Whole names, which the panel may cut, and why it is so.
+QString SceneTreeModel::highlightTip(const SceneObject& o) const {
+  QStringList lines{tr("%1, light %2").arg(nameOf(o), nameText(o.light))};
+  const std::vector<std::string> models = o.predicted >= 0 ? std::vector<std::string>{o.key} : missedBy(o);
+  const auto inspection = document_.inspection();
+  // A depth map would have to be read for the cause, on the interface's thread.
+  const bool quick = inspection && inspection->scene->frames[std::size_t(o.frame)].depth.empty();
+  for (const std::string& model : models) {
+    draw::Selection of;
+    of.frame = o.frame;
+    of.highlight = o.highlight;
+    of.predicted = o.predicted;
+    of.light = o.light;
+    of.model = model;
+    const draw::UnmatchedRow found = quick ? draw::selectedUnmatched(*inspection, of, model) : draw::UnmatchedRow();
+    const QString cause = found.row ? toQString(whyUnmatched(*inspection, *found.comparison, *found.row)) : QString();
+    lines << (cause.isEmpty() ? nameText(model) : tr("%1: %2").arg(nameText(model), cause));
+  }
+  return lines.join(QLatin1Char('\n'));
 }
 
 bool SceneTreeModel::layerShown(const Group& group) const {
@@ -439,7 +498,7 @@ QVariant SceneTreeModel::objectData(const SceneObject& o, const Group& group, in
         return points > 0 && !effectsAreErrors_ ? QLatin1Char('+') + text : text;
       }
       if (o.kind == Kind::Camera) return nameText(document_.scene()->frames[std::size_t(o.frame)].id);
-      if (o.kind == Kind::Highlight) return tr("highlight %1").arg(o.highlight);
+      if (o.kind == Kind::Highlight) return highlightName(o);
       if (o.kind == Kind::Surface) return o.key == viz::HiddenObjects::kDepthMaps ? tr("depth maps") : nameText(o.key);
       // A model's row is one text over all columns: the names are long, and so is what the fit is.
       return o.kind == Kind::Light ? nameText(o.key) : tr("%1: %2").arg(nameOf(o), detailOf(o));
@@ -461,6 +520,7 @@ QVariant SceneTreeModel::objectData(const SceneObject& o, const Group& group, in
     case Qt::ForegroundRole:
       if (isHiddenIn(hidden_, o) || !layerShown(group))
         return QGuiApplication::palette().brush(QPalette::Disabled, QPalette::Text);
+      if (o.kind == Kind::Highlight && column == Name && (o.predicted >= 0 || !missedBy(o).empty())) return warningColour();
       return {};
     case Qt::TextAlignmentRole: return int((column == Effect ? Qt::AlignRight : Qt::AlignLeft) | Qt::AlignVCenter);
     case Qt::ToolTipRole: return plainTip(tipOf(o, column));

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/draw/unmatched.h"
 #include "gui/document/document.h"
 #include "viz/hidden_objects.h"
 
@@ -20,8 +21,9 @@ struct SceneObject {
   Kind kind = Kind::Surface;
   int frame = -1;      ///< of a camera or highlight
   int highlight = -1;  ///< index in the frame's evidence
-  std::string key;     ///< of a surface: its key; of a light: its id; of an ellipsoid: its model
+  std::string key;     ///< of a surface: its key; of a light: its id; of an ellipsoid or a spurious highlight: its model
   std::string light;   ///< of an ellipsoid or highlight
+  int predicted = -1;  ///< of a spurious highlight: index in what its model predicts for its light; `highlight` is -1 then
 
   friend bool operator==(const SceneObject&, const SceneObject&) = default;
 };
@@ -32,7 +34,8 @@ bool isHiddenIn(const viz::HiddenObjects& hidden, const SceneObject& object);
 /// Whether the selection is, or holds, the object. Never of a surface.
 bool isSelected(const SceneObject& object, const draw::Selection& selection);
 
-/// The scene as a tree: surfaces, cameras with the highlights observed in them, lights and the models' ellipsoids. A tick says
+/// The scene as a tree: surfaces, cameras with the highlights observed in them (which says of each by
+/// which models it is missed) and those predicted in vain, lights and the models' ellipsoids. A tick says
 /// that an object is drawn; to change it is one step of undo.
 class SceneTreeModel : public QAbstractItemModel {
   Q_OBJECT
@@ -84,6 +87,9 @@ class SceneTreeModel : public QAbstractItemModel {
   void setObjects(int group, std::vector<SceneObject> objects);
   void setHighlights(int camera, std::vector<SceneObject> highlights);
   void emitChanged(int group);  ///< its head and its objects
+  void emitHighlightsChanged(int camera);
+  QString highlightName(const SceneObject& object) const;
+  std::vector<std::string> missedBy(const SceneObject& object) const;  ///< none where it is spurious, or where no one misses it
   void emitAllChanged();
   std::array<bool, kGroups> layersShown() const;
   bool layerShown(const Group& group) const;
@@ -91,10 +97,12 @@ class SceneTreeModel : public QAbstractItemModel {
   QVariant objectData(const SceneObject& object, const Group& group, int row, int column, int role) const;
   QString detailOf(const SceneObject& object) const;
   QString tipOf(const SceneObject& object, int column) const;
+  QString highlightTip(const SceneObject& object) const;
 
   Document& document_;
   std::array<Group, kGroups> groups_;
-  std::vector<std::vector<SceneObject>> highlights_;  ///< by camera
+  std::vector<std::vector<SceneObject>> highlights_;  ///< by camera: observed ones, then spurious ones
+  std::map<int, draw::FrameUnmatched> unmatched_;     ///< by frame
   // What the rows were shown for: a long sequence has a thousand, and none is told of a change that is not about it.
   viz::HiddenObjects hidden_;
   draw::Selection selection_;

@@ -14,6 +14,7 @@
 #include <memory>
 #include <utility>
 
+#include "core/inspect/hand_edits.h"
 #include "core/reflectance/added_lobe.h"
 #include "core/reflectance/lobe.h"
 #include "gui/base/draw_turns.h"
@@ -89,12 +90,22 @@ WhatIfPanel::WhatIfPanel(Document& document, QWidget* parent)
   rebuild();
 }
 
-int highlightsToMove(const Document& document) {
+QStringList highlightsToMove(const Document& document) {
   const auto inspection = document.inspection();
   const std::size_t frame = std::size_t(document.selection().frame);
-  if (!inspection || frame >= inspection->evidence.size()) return 0;
+  if (!inspection || frame >= inspection->evidence.size()) return {};
+  const FrameEvidence& now = inspection->evidence[frame];
   const auto before = inspection->evidenceBefore.find(int(frame));
-  return int((before != inspection->evidenceBefore.end() ? before->second : inspection->evidence[frame]).highlights.size());
+  const std::size_t found = (before == inspection->evidenceBefore.end() ? now : before->second).highlights.size();
+  QStringList notes;
+  for (std::size_t i = 0; i < found; ++i)
+    notes << (hasEdits(inspection->request.whatIf, int(frame)) ? QObject::tr("not there now") : QString());
+  for (std::size_t i = 0; i < now.highlights.size(); ++i) {
+    const int number = now.asFound(int(i));
+    while (notes.size() <= number) notes << QObject::tr("not there now");
+    notes[number] = toQString(now.highlights[i].byHand).section(QLatin1Char(':'), 0, 0);  // the rest says what it leaves in doubt
+  }
+  return notes;
 }
 
 /// While contours are synthesised a fit gives back the lobe that made them: that of the scene as captured stays.
@@ -145,13 +156,14 @@ QString WhatIfPanel::origin(const WhatIf& w) const {
 void WhatIfPanel::rebuild() {
   const Scene* scene = document_.scene();
   rememberLobe();
-  const int frame = document_.selection().frame, count = highlightsToMove(document_);
+  const int frame = document_.selection().frame;
+  const QStringList highlights = highlightsToMove(document_);
   const double roughness = fitted_ ? fitted_->roughness : WhatIf{}.roughness;
-  if (scene == builtFor_ && frame == builtFrame_ && count == builtHighlights_ && roughness == builtRoughness_ && knobs_)
+  if (scene == builtFor_ && frame == builtFrame_ && highlights == builtHighlights_ && roughness == builtRoughness_ && knobs_)
     return refresh();
   builtFor_ = scene;
   builtFrame_ = frame;
-  builtHighlights_ = count;
+  builtHighlights_ = highlights;
   builtRoughness_ = roughness;
   rows_.clear();
   if (knobs_) {
@@ -168,10 +180,12 @@ void WhatIfPanel::rebuild() {
     grid->setColumnStretch(1, 1);
     int row = 0;
     std::string group;
-    for (const WhatIfKnob& knob : whatIfKnobs(*scene, frame, count, roughness)) {
+    for (const WhatIfKnob& knob : whatIfKnobs(*scene, frame, int(highlights.size()), roughness)) {
       if (knob.group != group) {
         group = knob.group;
-        auto* heading = new QLabel(toQString(group));
+        const QString note = knob.highlight < 0 ? QString() : highlights[knob.highlight];
+        auto* heading = new QLabel(note.isEmpty() ? toQString(group) : tr("%1 (%2)").arg(toQString(group), note));
+        heading->setWordWrap(true);
         heading->setProperty("role", "group");
         grid->addWidget(heading, row++, 0, 1, 4);
       }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <QScrollArea>
+#include <QStringList>
 #include <functional>
 #include <optional>
 #include <string>
@@ -19,8 +20,9 @@ class QToolButton;
 
 namespace glint::gui {
 
-/// Highlights of the selected frame that there are knobs for: those of the newest results.
-int highlightsToMove(const Document& document);
+/// Highlights of the selected frame that there are knobs for, of the newest results: those before edits by hand, then those that
+/// were made by hand. Of each what edits did to it, "" = nothing.
+QStringList highlightsToMove(const Document& document);
 /// One step of undo; equal positive gestures merge. @param value  in the unit of the knob.
 void turnKnob(Document& document, const WhatIfKnob& knob, double value, int gesture = 0);
 
@@ -57,7 +59,8 @@ class WhatIfPanel : public QScrollArea {
   QWidget* knobs_ = nullptr;
   std::vector<Row> rows_;
   const Scene* builtFor_ = nullptr;
-  int builtFrame_ = -1, builtHighlights_ = -1;
+  int builtFrame_ = -1;
+  QStringList builtHighlights_;
   double builtRoughness_ = 0;
   std::optional<FittedLobe> fitted_;  ///< on the scene as captured; stays while its contours are synthesised
   std::string whyNotFitted_;          ///< "" before the first results

@@ -4,7 +4,9 @@
 #include <QAbstractScrollArea>
 #include <QAction>
 #include <QDockWidget>
+#include <QLayout>
 #include <QMenu>
+#include <QScrollArea>
 #include <QStringList>
 #include <algorithm>
 #include <utility>
@@ -18,8 +20,18 @@ namespace {
 constexpr int kNarrow = 1100, kLow = 740;  // below these, px, columns of docks would leave the views too little
 constexpr int kTimeline = 150;             // px: its rows and an axis that is read
 constexpr int kBeside = 330;               // px: sliders with their names
+constexpr double kErrors = 0.32;           // of the height: summary, choice of rows and four rows of the table
 constexpr QSize kLeastContent(150, 80);
 constexpr QSize kAsTabs(800, 500);  // what every layout fits into then
+
+/// What a dock of this width needs to show all of its content, px.
+int wholeHeight(const QDockWidget& dock, int width) {
+  const auto* scroll = qobject_cast<const QScrollArea*>(dock.widget());
+  const QLayout* layout = scroll && scroll->widget() ? scroll->widget()->layout() : nullptr;
+  const int height = dock.sizeHint().height();
+  if (!layout || !layout->hasHeightForWidth()) return height;
+  return height - scroll->sizeHint().height() + layout->totalHeightForWidth(width);
+}
 }  // namespace
 
 QDockWidget* Docks::add(const char* name, const QString& title, QWidget* content, Qt::DockWidgetArea area, const char* behind) {
@@ -123,18 +135,19 @@ void Docks::apply(const Layout& layout) {
   }
   for (const char* front : {"errors", "tree", "parameters"}) at(QLatin1String(front))->raise();
   for (const QString& front : layout.front) at(front)->raise();
-  const int width = window_->width(), height = window_->height(), right = std::min(380, width * 32 / 100);
+  const int width = window_->width(), height = window_->height(), right = std::min(380, width * 32 / 100),
+            left = std::min(260, width * 18 / 100);
   if (room_->narrow)
     window_->resizeDocks({at("parameters")}, {right}, Qt::Horizontal);
   else
-    window_->resizeDocks({at("setup"), at("parameters")}, {std::min(260, width * 18 / 100), right}, Qt::Horizontal);
+    window_->resizeDocks({at("setup"), at("parameters")}, {left, right}, Qt::Horizontal);
   if (room_->low) {
     const bool timelineAlone = at("errors")->isHidden() && at("plots")->isHidden();
     return window_->resizeDocks({at(timelineAlone ? QStringLiteral("timeline") : QStringLiteral("errors"))},
                                 {timelineAlone ? kTimeline : height * 3 / 10}, Qt::Vertical);
   }
-  window_->resizeDocks({at("timeline"), at("errors")}, {kTimeline, height * 3 / 10}, Qt::Vertical);
-  if (!room_->narrow) window_->resizeDocks({at("setup"), at("layers")}, {300, 240}, Qt::Vertical);
+  window_->resizeDocks({at("timeline"), at("errors")}, {kTimeline, int(height * kErrors)}, Qt::Vertical);
+  if (!room_->narrow) window_->resizeDocks({at("setup")}, {wholeHeight(*at("setup"), left)}, Qt::Vertical);
   // The reason below the verdicts is in sight, with two lights, too.
   window_->resizeDocks({at("parameters"), at("conditioning"), at("numbers")}, {350, 350, 200}, Qt::Vertical);
   if (!room_->narrow) window_->resizeDocks({at("errors"), at("plots")}, {1, 1}, Qt::Horizontal);

@@ -108,7 +108,7 @@ void addAssignments(QList<PaletteItem>& items, const QString& value, Document& d
 
 std::vector<WhatIfKnob> knobsOf(const Document& document) {
   if (document.frameCount() == 0) return {};
-  return whatIfKnobs(*document.scene(), document.selection().frame, highlightsToMove(document));
+  return whatIfKnobs(*document.scene(), document.selection().frame, int(highlightsToMove(document).size()));
 }
 
 PaletteItem itemOf(const WhatIfKnob& knob, const QString& detail, bool enabled, std::function<void()> run) {

@@ -13,6 +13,7 @@
 #include <QPlainTextEdit>
 #include <QProgressBar>
 #include <QScrollBar>
+#include <QSet>
 #include <QTabBar>
 #include <QTextEdit>
 #include <QToolButton>
@@ -129,6 +130,45 @@ class AccessibilityTest : public QObject {
     QTRY_VERIFY(window_->idle());
     const QStringList missing = missingIn(*window_);
     QVERIFY2(missing.isEmpty(), qPrintable("\n" + missing.join('\n')));
+  }
+
+  /// Whatever the keyboard can go to shows that it is there: more of its pixels change than a text cursor has.
+  void everyStopOfTheKeyboardIsSeen() {
+    QApplication::setActiveWindow(window_.get());
+    QTRY_COMPARE(QApplication::activeWindow(), static_cast<QWidget*>(window_.get()));
+    window_->setAttribute(Qt::WA_KeyboardFocusChange);  // as the Tab key sets it
+    QSet<QWidget*> seen;
+    QStringList unseen;
+    QList<QWidget*> places{window_.get()};
+    for (QDockWidget* dock : window_->findChildren<QDockWidget*>()) places << dock;
+    for (QWidget* place : places) {
+      if (auto* dock = qobject_cast<QDockWidget*>(place)) {
+        dock->show();
+        dock->raise();
+      }
+      QTRY_VERIFY(window_->idle());
+      for (QWidget* w : place->findChildren<QWidget*>()) {
+        if (seen.contains(w) || !(w->focusPolicy() & Qt::TabFocus) || w->focusProxy() || !w->isVisible() || !w->isEnabled() ||
+            w->window() != window_.get() || w->size().isEmpty() || w->visibleRegion().isEmpty())
+          continue;
+        seen.insert(w);
+        window_->setFocus(Qt::OtherFocusReason);
+        const QImage before = w->grab().toImage();
+        w->setFocus(Qt::TabFocusReason);
+        if (!w->hasFocus()) {
+          unseen << whereIs(w) + QStringLiteral(": takes no focus");
+          continue;
+        }
+        const QImage after = w->grab().toImage();
+        int changed = 0;
+        for (int y = 0; y < std::min(before.height(), after.height()); ++y)
+          for (int x = 0; x < std::min(before.width(), after.width()); ++x) changed += before.pixel(x, y) != after.pixel(x, y);
+        if (changed < (w->width() + w->height()) / 2)
+          unseen << whereIs(w) + QStringLiteral(": %1 px of %2 x %3").arg(changed).arg(w->width()).arg(w->height());
+      }
+    }
+    QVERIFY2(seen.size() > 60, qPrintable(QString::number(seen.size())));
+    QVERIFY2(unseen.isEmpty(), qPrintable(QStringLiteral("of %1\n").arg(seen.size()) + unseen.join('\n')));
   }
 
   void everyControlOfADialogHasAName() {

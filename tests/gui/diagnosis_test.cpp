@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What is wrong and what helps, by clicks: a fault is put into exact contours, and the dock must lead out of it.
 #include <QPushButton>
+#include <QRegularExpression>
 #include <QSignalSpy>
 #include <QTreeWidget>
 
@@ -95,6 +96,16 @@ class DiagnosisTest : public QObject {
     QTest::mouseClick(ask, Qt::LeftButton);
     QTRY_VERIFY(!panel.busy());
     QVERIFY2(!lines(panel).filter(QStringLiteral("against it: frame v2")).isEmpty(), qPrintable(lines(panel).join("\n")));
+    // Causes, then what helps, then the evidence, and the list of wrong frames at the end.
+    const QTreeWidgetItem* top = panel.list()->topLevelItem(0);
+    QStringList kinds;
+    for (int i = 0; i < top->childCount(); ++i) {
+      const QString text = top->child(i)->text(0);
+      const QString kind =
+          panel.list()->itemWidget(top->child(i), 0) ? QStringLiteral("remedy") : text.section(QRegularExpression("[ :]"), 0, 0);
+      if (kinds.isEmpty() || kinds.back() != kind) kinds << kind;
+    }
+    QCOMPARE(kinds, (QStringList{"because", "remedy", "against", "fit", "what"}));
     // A click on the highlight selects it.
     const QList<QTreeWidgetItem*> against =
         panel.list()->findItems(QStringLiteral("against it: frame v2"), Qt::MatchStartsWith | Qt::MatchRecursive);

@@ -87,7 +87,8 @@ class PaletteTest : public QObject {
   }
 
   void everyKnobOfTheWhatIfIsFoundAndGetsTheKeyboard() {
-    const std::vector<WhatIfKnob> knobs = whatIfKnobs(*window_->document().scene(), 0, highlightsToMove(window_->document()));
+    const std::vector<WhatIfKnob> knobs =
+        whatIfKnobs(*window_->document().scene(), 0, int(highlightsToMove(window_->document()).size()));
     QVERIFY(knobs.size() > 10);
     WhatIf synthetic;
     for (const bool synthesise : {false, true}) {

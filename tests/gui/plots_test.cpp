@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Plots and the conditioning strip: real clicks, files that can be read, work off the interface thread.
+#include <QAccessible>
 #include <QAction>
 #include <QApplication>
 #include <QClipboard>
@@ -93,6 +94,67 @@ class PlotsTest : public QObject {
     QVERIFY(!document_->selection().direction.has_value());
     panel_->renderNow();
     QVERIFY(toQString(dial->plot().title).contains(QStringLiteral("0003")));
+  }
+
+  /// From point to point by the arrow keys, with the ring of the keyboard on it and its words for who does not see it.
+  void theArrowKeysGoFromPointToPoint() {
+    PlotCanvas* canvas = panel_->canvas(0);
+    QApplication::setActiveWindow(panel_.get());
+    panel_->renderNow();
+    canvas->setFocus(Qt::TabFocusReason);
+    QTRY_VERIFY(canvas->hasFocus());
+    const auto said = [&] { return QAccessible::queryAccessibleInterface(canvas)->text(QAccessible::Description); };
+    const auto key = [&](Qt::Key k, Qt::KeyboardModifiers with = {}) { QTest::keyClick(canvas, k, with); };
+    QVERIFY2(!said().contains("At point"), qPrintable(said()));
+    const QImage before = canvas->grab().toImage();
+    key(Qt::Key_End);
+    key(Qt::Key_Home);
+    QVERIFY2(said().contains("At point 1 of "), qPrintable(said()));
+    QVERIFY(canvas->grab().toImage() != before);
+    key(Qt::Key_Left);  // there is nothing before the first
+    QVERIFY(said().contains("At point 1 of "));
+    // All points, each once and none to the left of the one before.
+    const int all = said().section("At point 1 of ", 1).section(':', 0, 0).toInt();
+    int points = 0;
+    for (const draw::PlotSeries& s : canvas->plot().series)
+      for (const draw::PlotPoint& p : s.points) points += std::isfinite(p.y);
+    QCOMPARE(all, points);
+    for (int i = 2; i <= all; ++i) {
+      key(Qt::Key_Right);
+      QVERIFY2(said().contains(QStringLiteral("At point %1 of ").arg(i)), qPrintable(said()));
+    }
+    key(Qt::Key_Return);
+    QCOMPARE(document_->selection().frame, document_->frameCount() - 1);  // the last one by x is of the last frame
+    key(Qt::Key_Escape);
+    QVERIFY(!said().contains("At point"));
+  }
+
+  void shiftAndTheArrowKeysBrush() {
+    document_->setOption("plots/first", std::string("scatter"), QStringLiteral("x"));
+    document_->setOption("plots/scatter-x", std::string("frame"), QStringLiteral("x"));
+    PlotCanvas* canvas = panel_->canvas(0);
+    QApplication::setActiveWindow(panel_.get());
+    panel_->renderNow();
+    canvas->setFocus(Qt::TabFocusReason);
+    QTRY_VERIFY(canvas->hasFocus());
+    const auto said = [&] { return QAccessible::queryAccessibleInterface(canvas)->text(QAccessible::Description); };
+    const auto key = [&](Qt::Key k, Qt::KeyboardModifiers with = {}) {
+      QTest::keyClick(canvas, k, with);
+      canvas->renderNow();  // those that are not brushed are drawn in grey, as another series
+    };
+    key(Qt::Key_Home);
+    QVERIFY(document_->brushed().empty());
+    for (int i = 0; i < 3; ++i) key(Qt::Key_Right, Qt::ShiftModifier);
+    QCOMPARE(int(document_->brushed().size()), 4);
+    QVERIFY2(said().contains("At point 4 of "), qPrintable(said()));
+    key(Qt::Key_Left, Qt::ShiftModifier);
+    QCOMPARE(int(document_->brushed().size()), 3);
+    for (const RowKey& k : document_->brushed()) QVERIFY(k.frame <= 2);
+    key(Qt::Key_Right);  // goes on without brushing
+    QCOMPARE(int(document_->brushed().size()), 3);
+    key(Qt::Key_Escape);
+    QVERIFY(document_->brushed().empty());
+    QVERIFY(!said().contains("At point"));
   }
 
   void theListChoosesThePlotAndUndoTakesItBack() {

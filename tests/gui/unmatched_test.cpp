@@ -2,18 +2,26 @@
 // Missed and spurious highlights by mouse, and highlights changed by hand. An observed contour is moved away from the exact one, so that
 // the exact prediction is spurious and the moved contour is missed.
 #include <QAction>
+#include <QDoubleSpinBox>
 #include <QMenu>
+#include <QRegularExpression>
 #include <QSignalSpy>
+#include <QSlider>
+#include <QSortFilterProxyModel>
 #include <QTableView>
+#include <QTreeView>
 #include <QTreeWidget>
 #include <QTreeWidgetItemIterator>
 
 #include "gui/frame/frame_canvas.h"
 #include "gui/frame/frame_panel.h"
+#include "gui/frame/highlight_edits.h"
 #include "gui/panels/diagnosis_panel.h"
 #include "gui/panels/error_model.h"
 #include "gui/panels/error_table.h"
 #include "gui/panels/selection_text.h"
+#include "gui/scene/scene_tree.h"
+#include "gui/whatif/what_if_panel.h"
 #include "tests/core/inspect/exact_scene.h"
 #include "tests/gui/fixture.h"
 
@@ -147,6 +155,49 @@ class UnmatchedTest : public QObject {
     QCOMPARE(spurious, 1);
   }
 
+  void theTreeListsBothAndSelectsTheSame() {
+    SceneTree tree(*document_);
+    tree.resize(300, 600);
+    tree.show();
+    QVERIFY(QTest::qWaitForWindowExposed(&tree));
+    const QModelIndex camera = tree.model().indexOf({SceneObject::Kind::Camera, kFrame, -1, {}, {}});
+    QCOMPARE(tree.model().rowCount(camera), 2);
+    QCOMPARE(tree.model().rowCount(tree.model().indexOf({SceneObject::Kind::Camera, kFrame - 1, -1, {}, {}})), 1);
+    const QModelIndex missed = tree.model().index(0, 0, camera), spurious = tree.model().index(1, 0, camera);
+    QCOMPARE(missed.data().toString(), QStringLiteral("□ highlight 1, missed by limit-angle"));
+    QCOMPARE(spurious.data().toString(), QStringLiteral("△ limit-angle 1, spurious"));
+    QVERIFY(missed.data(Qt::ToolTipRole).toString().contains(QStringLiteral("the nearest predicted highlight is")));
+    QVERIFY(spurious.data(Qt::ToolTipRole).toString().contains(QStringLiteral("the nearest observed highlight is")));
+    const auto* shown = qobject_cast<const QSortFilterProxyModel*>(tree.view()->model());
+    tree.view()->expand(shown->mapFromSource(camera));
+    const auto clickRow = [&](const QModelIndex& row) {
+      tree.view()->scrollTo(shown->mapFromSource(row));
+      QTest::mouseClick(tree.view()->viewport(), Qt::LeftButton, {}, tree.view()->visualRect(shown->mapFromSource(row)).center());
+    };
+    clickRow(spurious);
+    QCOMPARE(document_->selection().predicted, 0);
+    QCOMPARE(document_->selection().highlight, -1);
+    QCOMPARE(document_->selection().model, std::string("limit-angle"));
+    QCOMPARE(document_->undoStack()->undoText(),
+             QStringLiteral("Select limit-angle, light lamp, spurious highlight 1 in frame v7"));
+    clickRow(missed);
+    QCOMPARE(document_->selection().predicted, -1);
+    QCOMPARE(document_->selection().highlight, 0);
+    // And back: what the photograph selects is marked.
+    const auto marked = [&] { return tree.selected().empty() ? SceneObject{} : tree.selected().front(); };
+    click(exact_.points[10]);
+    QCOMPARE(marked().predicted, 0);
+    document_->selectFrame(3);
+    QCOMPARE(marked().kind, SceneObject::Kind::Camera);
+    document_->undoStack()->undo();
+    QCOMPARE(marked().predicted, 0);
+    // Where nothing is wrong any more, nothing is listed.
+    point(centroid(exact_) + Pixel(kAway, 0));
+    actions_->find("frame.ignore-highlight")->trigger();
+    compute();
+    QCOMPARE(tree.model().rowCount(camera), 1);  // the prediction beside it, where nothing is ignored
+  }
+
   /// One step of undo; then nothing of the frame is wrong.
   void ignoringUnderThePointer() {
     const int steps = document_->undoStack()->index();
@@ -179,6 +230,64 @@ class UnmatchedTest : public QObject {
     QVERIFY2(numbers().contains(QStringLiteral("merged by hand")), qPrintable(numbers()));
     actions_->find("frame.highlights-as-found")->trigger();
     QVERIFY(document_->request().whatIf.none());
+  }
+
+  /// An entry that cannot work now is grey and says why; the action itself stays, for the palette and scripts.
+  void theMenuOffersWhatCanBeDone() {
+    QMenu menu;
+    frame_->edits()->offerIn(&menu);
+    const auto open = [&](const Pixel& at) {
+      point(at);
+      menu.popup(frame_->mapToGlobal(QPoint(0, 0)));
+      QStringList can;
+      for (const char* id :
+           {"ignore-highlight", "merge-highlights", "split-highlight", "grow-highlight", "highlights-as-found"}) {
+        const QAction* action = actions_->find(QLatin1String("frame.") + QLatin1String(id));
+        if (action->isEnabled()) can << QLatin1String(id);
+      }
+      return can;
+    };
+    const Pixel inside = centroid(exact_) + Pixel(kAway, 0);
+    QCOMPARE(open(inside), (QStringList{"ignore-highlight", "split-highlight", "grow-highlight"}));
+    const QAction* merge = actions_->find("frame.merge-highlights");
+    QVERIFY2(merge->toolTip().startsWith("This frame shows no other highlight"), qPrintable(merge->toolTip()));
+    QVERIFY(actions_->find("frame.highlights-as-found")->toolTip().startsWith("No highlight of this frame was changed"));
+    menu.close();
+    QVERIFY(merge->isEnabled() && !merge->toolTip().startsWith("This frame"));
+    QCOMPARE(open({5, 5}), QStringList{"grow-highlight"});
+    menu.close();
+    point(inside);
+    actions_->find("frame.split-highlight")->trigger();
+    compute();
+    QCOMPARE(open(inside + Pixel(3, 3)).size(), 5);
+    menu.close();
+  }
+
+  /// Before and after edits by hand there is a slider for each, and its heading says which is which.
+  void whatWasMadeByHandHasSliders() {
+    WhatIfPanel panel(*document_);
+    panel.resize(400, 600);
+    panel.show();
+    const auto sliders = [&] { return panel.findChildren<QSlider*>(QRegularExpression("^slider:highlight\\..*scale$")).size(); };
+    QTRY_COMPARE(sliders(), 1);
+    point(centroid(exact_) + Pixel(kAway, 0));
+    actions_->find("frame.split-highlight")->trigger();
+    compute();
+    QTRY_COMPARE(sliders(), 2);
+    QCOMPARE(highlightsToMove(*document_), (QStringList{"split by hand", "split by hand"}));
+    const double area = document_->inspection()->evidence[kFrame].highlights[1].areaPx2;
+    auto* box = panel.findChild<QDoubleSpinBox*>(QStringLiteral("value:highlight.1.scale"));
+    QVERIFY(box);
+    box->setValue(1.5);
+    compute();
+    QVERIFY(std::abs(document_->inspection()->evidence[kFrame].highlights[1].areaPx2 / area - 2.25) < 1e-6);
+    document_->undoStack()->undo();
+    compute();
+    actions_->find("frame.merge-highlights")->trigger();
+    compute();
+    QStringList after = highlightsToMove(*document_);  // which part keeps its number is where the pointer is
+    after.sort();
+    QCOMPARE(after, (QStringList{"merged by hand", "not there now"}));
   }
 
   void whatCannotBeDoneSaysSo() {

@@ -9,6 +9,7 @@
 #include <QScreen>
 #include <QScrollArea>
 #include <QScrollBar>
+#include <QTableView>
 #include <QToolButton>
 #include <QVBoxLayout>
 #include <filesystem>
@@ -81,7 +82,8 @@ class WindowSizeTest : public QObject, WindowFixture {
     QTRY_VERIFY(window.idle() && window.document().inspection() && !window.document().stale());
     window.applyLayout(QStringLiteral("debug"));
     QTest::qWait(50);
-    for (const char* name : {"train", "trainingCounts", "conditioningReason"}) {
+    for (const char* name :
+         {"train", "trainingCounts", "autoModel", "goodEnough", "source", "conditioningReason", "errorWarnings"}) {
       const auto* widget = window.findChild<QWidget*>(QLatin1String(name));
       QVERIFY2(widget && widget->isVisible(), name);
       QVERIFY2(widget->visibleRegion().boundingRect().size() == widget->size(), name);
@@ -89,6 +91,11 @@ class WindowSizeTest : public QObject, WindowFixture {
     const auto* models = window.findChild<QListWidget*>(QStringLiteral("models"));
     for (int i = 0; i < models->count(); ++i)
       QVERIFY2(models->viewport()->rect().contains(models->visualItemRect(models->item(i))), qPrintable(models->item(i)->text()));
+    // Warnings, search and summary leave the table of errors at least four whole rows.
+    const auto* table = window.findChild<QTableView*>(QStringLiteral("errorTable"));
+    for (int row = 0; row < 4; ++row)
+      QVERIFY2(table->viewport()->height() > table->rowViewportPosition(row) + table->rowHeight(row) - 1,
+               qPrintable(QStringLiteral("row %1 of a table of %2 px").arg(row).arg(table->viewport()->height())));
   }
 
   void aSmallWindowKeepsDocksAsTabsAndALargeOneSpreadsThemAgain() {

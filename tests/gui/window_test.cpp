@@ -215,10 +215,17 @@ class WindowTest : public QObject, WindowFixture {
     show(window);
     openAndWait(window);
     const auto offers = [&](const QWidget* view, const char* id) {
-      return view->contextMenuPolicy() == Qt::ActionsContextMenu && view->actions().contains(window.actions().find(id));
+      return view->contextMenuPolicy() != Qt::NoContextMenu && view->actions().contains(window.actions().find(id));
     };
     for (const FrameCanvas* canvas : window.findChild<FramePanel*>()->findChildren<FrameCanvas*>())
       QVERIFY(offers(canvas, "frame.highlight"));
+    auto* photograph = window.findChild<FramePanel*>()->canvas();
+    QContextMenuEvent there(QContextMenuEvent::Mouse, {20, 20}, photograph->mapToGlobal(QPoint(20, 20)));
+    QApplication::sendEvent(photograph, &there);
+    auto* frameMenu = photograph->findChild<QMenu*>(QStringLiteral("frameMenu"));
+    QVERIFY(frameMenu && frameMenu->isVisible() && frameMenu->toolTipsVisible());
+    QVERIFY(frameMenu->actions().contains(window.actions().find("frame.grow-highlight")));
+    frameMenu->close();
     const QList<PlotCanvas*> plots = window.findChildren<PlotCanvas*>();
     QVERIFY(!plots.isEmpty());
     // A menu that opens is closed again by a timer: it runs an event loop of its own.

@@ -31,6 +31,7 @@
 namespace glint::viz {
 namespace {
 
+using test::heldOutInput;
 using test::smallInspection;
 using test::TemporaryFolder;
 
@@ -211,18 +212,6 @@ TEST(Layers, ContoursCastOntoTheSurfaceLieOnIt) {
   for (const Points& chain : castContour(camera, **surface, wide, scale, 0)) {
     for (const Eigen::Vector3d& p : chain) EXPECT_NEAR(p.norm(), 0.4, 1e-9);
   }
-}
-
-/// The small scene with frame 5 selected, which does not train.
-LayerInput heldOutInput(const Inspection& inspection) {
-  LayerInput input;
-  input.inspection = &inspection;
-  input.selection.frame = 5;
-  input.models = {"dual", "canonical"};
-  input.surface = *inspection.surfaces->surfaceOf(5, NormalPolicy::Interpolated);
-  input.surfaceKey = inspection.surfaces->keyOf(5);
-  input.scale = sceneScale(inspection, input.surface.get(), {0, 1, 2, 3, 4, 5}, 1);
-  return input;
 }
 
 Eigen::Vector3d carried(vtkMatrix4x4* by, const Eigen::Vector3d& p) {
@@ -482,36 +471,6 @@ TEST(TangentPlanes, AloneTheyReachTheCanonicalContour) {
   EXPECT_GE(alone, 0.99 * reach);
   input.solo = false;
   EXPECT_LT(widest(), 0.8 * alone);
-}
-
-/// A step about one frame shows that frame alone, and its camera alone may look down so steeply that the image's upwards is nearly
-/// level: what is up must not follow from how many cameras are shown.
-TEST(Framing, WhatIsUpDoesNotDependOnHowManyCamerasAreShown) {
-  const TemporaryFolder folder;
-  const auto inspection = smallInspection(folder.path());
-  LayerInput input = heldOutInput(*inspection);
-  const std::optional<Framing> all = highlightFraming(input, 0, HighlightLook::Section, {});
-  input.frames = {input.selection.frame};
-  input.solo = true;
-  const std::optional<Framing> alone = highlightFraming(input, 0, HighlightLook::Section, {});
-  ASSERT_TRUE(all && alone);
-  EXPECT_LT((all->up - alone->up).norm(), 1e-12);
-}
-
-TEST(Layers, TheSelectedModelLiesOnTopOfTheOthers) {
-  const TemporaryFolder folder;
-  const auto inspection = smallInspection(folder.path());
-  LayerInput input = heldOutInput(*inspection);
-  ASSERT_GE(input.models.size(), 2u);
-  for (const std::string& model : input.models) {
-    input.selection.model = model;
-    double own = 0, others = 0;
-    for (const Drawn& d : predictedContoursLayer(input).drawn)
-      if (d.nearerPx > 0) (d.info.model == model ? own : others) = std::max(d.info.model == model ? own : others, d.nearerPx);
-    if (own > 0) {
-      EXPECT_GT(own, others) << model;
-    }
-  }
 }
 
 TEST(Framing, HoldsTheWholeTangentPlaneThatIsDrawn) {

@@ -222,4 +222,15 @@ std::shared_ptr<Inspection> smallInspection(const std::filesystem::path& folder,
   return inspection;
 }
 
+viz::LayerInput heldOutInput(const Inspection& inspection) {
+  viz::LayerInput input;
+  input.inspection = &inspection;
+  input.selection.frame = 5;
+  input.models = {"dual", "canonical"};
+  input.surface = *inspection.surfaces->surfaceOf(5, NormalPolicy::Interpolated);
+  input.surfaceKey = inspection.surfaces->keyOf(5);
+  input.scale = viz::sceneScale(inspection, input.surface.get(), {0, 1, 2, 3, 4, 5}, 1);
+  return input;
+}
+
 }  // namespace glint::test

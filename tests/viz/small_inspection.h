@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "core/inspect/inspection.h"
+#include "viz/layers.h"
 #include "viz/walk_story.h"
 
 namespace glint::test {
@@ -26,6 +27,9 @@ class TemporaryFolder {
  private:
   std::filesystem::path path_;
 };
+
+/// What layers show of it with frame 5 selected, which does not train.
+viz::LayerInput heldOutInput(const Inspection& inspection);
 
 /// A walk of three places on S and on T, in frame 0, above the ball.
 viz::WalkStory shortWalk(const Inspection& inspection);

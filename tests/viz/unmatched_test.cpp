@@ -73,6 +73,20 @@ TEST(Unmatched, IsMissedOnlyByTheSelectedModel) {
   EXPECT_EQ(lineOf(frameOverlay(*r, kFrame, options), OverlayRole::ObservedContour)->dash, Dash::Dashed);
 }
 
+/// By one pass over all frames the same as frame by frame; a model that refuses everywhere misses nothing.
+TEST(Unmatched, OfAllFramesAtOnce) {
+  const TemporaryFolder folder;
+  const auto r = apart(folder);
+  const std::map<int, draw::FrameUnmatched> all = draw::unmatchedByFrame(*r);
+  ASSERT_EQ(all.size(), 1u);
+  const draw::FrameUnmatched& here = all.at(kFrame);
+  EXPECT_EQ(here.missedBy, (std::map<int, std::vector<std::string>>{{0, {"canonical"}}}));
+  ASSERT_EQ(here.spurious.size(), 1u);
+  EXPECT_EQ(here.spurious[0], (draw::FrameUnmatched::Spurious{"canonical", "lamp", 0}));
+  for (int f = 0; f < 6; ++f)
+    EXPECT_EQ(draw::missedBy(*r, f, 0, [](const std::string&) { return true; }).empty(), !all.count(f)) << f;
+}
+
 TEST(Unmatched, AClickSelectsEither) {
   const TemporaryFolder folder;
   const auto r = apart(folder);

@@ -207,19 +207,24 @@ class GrownByHand : public testing::Test {
     return scene;
   }
   static double radiusOf(const Highlight& h) { return std::sqrt(h.areaPx2 / pi); }
+  /// The frame's evidence, at first none, with a highlight grown at a place.
+  static FrameEvidence grownAt(const Scene& scene, const Pixel& place) {
+    InspectionRequest request;
+    const Outcome<HighlightEdit> edit = seedEdit(scene, request, 0, place, "lamp");
+    EXPECT_TRUE(edit) << edit.failure().message();
+    if (edit) request.whatIf.edits = {*edit};
+    FrameEvidence e;
+    e.frame = 0;
+    e.failure = Failure{Reason::NoHighlight, "none"};
+    applyEdits(e, scene, request);
+    return e;
+  }
   std::filesystem::path folder_;
 };
 
 TEST_F(GrownByHand, FindsASpotThatDetectionLeavesOut) {
   const Scene scene = photographed({{200, 200, 1}, {420.3, 300.6, 0.2}});
-  FrameEvidence e;
-  e.frame = 0;
-  InspectionRequest request;
-  const Outcome<HighlightEdit> edit = seedEdit(scene, request, 0, {422, 299}, "lamp");
-  ASSERT_TRUE(edit) << edit.failure().message();
-  request.whatIf.edits = {*edit};
-  e.failure = Failure{Reason::NoHighlight, "none"};
-  applyEdits(e, scene, request);
+  const FrameEvidence e = grownAt(scene, {422, 299});
   ASSERT_EQ(e.highlights.size(), 1u);
   EXPECT_FALSE(e.failure);
   EXPECT_EQ(e.highlights[0].light, "lamp");
@@ -230,14 +235,8 @@ TEST_F(GrownByHand, FindsASpotThatDetectionLeavesOut) {
 TEST_F(GrownByHand, IsTheSameAtAnyExposure) {
   for (const double scale : {1e-4, 1e4}) {
     const Scene scene = photographed({{200, 200, 1}, {420.3, 300.6, 0.2}}, scale);
-    InspectionRequest request;
-    const Outcome<HighlightEdit> edit = seedEdit(scene, request, 0, {422, 299}, "lamp");
-    ASSERT_TRUE(edit) << scale;
-    request.whatIf.edits = {*edit};
-    FrameEvidence e;
-    e.frame = 0;
-    applyEdits(e, scene, request);
-    ASSERT_EQ(e.highlights.size(), 1u);
+    const FrameEvidence e = grownAt(scene, {422, 299});
+    ASSERT_EQ(e.highlights.size(), 1u) << scale;
     EXPECT_NEAR(radiusOf(e.highlights[0]), kSigma * std::sqrt(2 * std::log(2)), 0.1) << scale;
   }
 }
@@ -245,14 +244,8 @@ TEST_F(GrownByHand, IsTheSameAtAnyExposure) {
 TEST_F(GrownByHand, StandsNoise) {
   for (unsigned seed = 1; seed <= 5; ++seed) {
     const Scene scene = photographed({{200, 200, 1}, {420.3, 300.6, 0.2}}, 1, 0.004, seed);
-    InspectionRequest request;
-    const Outcome<HighlightEdit> edit = seedEdit(scene, request, 0, {421, 300}, "lamp");
-    ASSERT_TRUE(edit) << seed;
-    request.whatIf.edits = {*edit};
-    FrameEvidence e;
-    e.frame = 0;
-    applyEdits(e, scene, request);
-    ASSERT_EQ(e.highlights.size(), 1u);
+    const FrameEvidence e = grownAt(scene, {421, 300});
+    ASSERT_EQ(e.highlights.size(), 1u) << seed;
     EXPECT_NEAR(radiusOf(e.highlights[0]), kSigma * std::sqrt(2 * std::log(2)), 0.35) << seed;
   }
 }
