@@ -21,7 +21,9 @@
 #include "core/geometry/light.h"
 #include "core/surface/mesh_policy.h"
 #include "viz/annotations.h"
+#include "viz/layer_state.h"
 #include "viz/layers.h"
+#include "viz/lit_parts.h"
 #include "viz/photograph_stand.h"
 #include "viz/scene_legend.h"
 #include "viz/scene_questions.h"
@@ -32,21 +34,6 @@ namespace glint::viz {
 namespace {
 
 constexpr unsigned kEverything = ~0u;
-
-struct LayerState {
-  LayerContent content;
-  unsigned stale = kEverything;  ///< changes since the last build
-  bool visible = true;
-  bool built = false;
-  int builds = 0;
-};
-
-std::size_t layerIndex(const std::string& name) {
-  const std::vector<Layer>& layers = sceneLayers();
-  const auto found = std::find_if(layers.begin(), layers.end(), [&](const Layer& layer) { return layer.name == name; });
-  require(found != layers.end(), "SceneView: no layer named \"" + name + "\"");
-  return static_cast<std::size_t>(found - layers.begin());
-}
 
 }  // namespace
 
@@ -233,6 +220,7 @@ struct SceneView::Impl {
         ++layer.builds;
         for (Drawn& drawn : layer.content.drawn) {
           place(drawn, true);
+          nameLayer(drawn.prop, recipe.layer.name);
           renderer->AddViewProp(drawn.prop);
         }
         annotationsStale = true;

@@ -104,6 +104,11 @@ void DualityWindow::showEvent(QShowEvent* e) {
   refresh();
 }
 
+void DualityWindow::hideEvent(QHideEvent* e) {
+  QDialog::hideEvent(e);
+  emit litChanged();
+}
+
 void DualityWindow::refresh() {
   duality_.reset();
   const std::shared_ptr<const Inspection> inspection = document_.inspection();
@@ -125,6 +130,7 @@ void DualityWindow::refresh() {
   if (!has(lit_)) lit_ = {};
   picture_->update();
   showWords();
+  emit litChanged();
 }
 
 /// That of the selected frame, else the first.
@@ -172,6 +178,7 @@ void DualityWindow::light(const viz::DualityPlane& plane) {
   lit_ = plane;
   picture_->update();
   showWords();
+  emit litChanged();
 }
 
 void DualityWindow::keyPressEvent(QKeyEvent* e) {

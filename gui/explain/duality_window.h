@@ -25,8 +25,12 @@ class DualityWindow : public QDialog {
   viz::DualityPicture picture() const;
   QWidget* canvas() const;
 
+ signals:
+  void litChanged();  ///< what lit() or duality() says, or whether it is on screen
+
  protected:
   void showEvent(QShowEvent* e) override;
+  void hideEvent(QHideEvent* e) override;
   void keyPressEvent(QKeyEvent* e) override;
 
  private:

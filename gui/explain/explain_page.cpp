@@ -3,10 +3,12 @@
 
 #include <QCoreApplication>
 #include <QRegularExpression>
+#include <algorithm>
 
 #include "core/model/model.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
+#include "gui/explain/equations.h"
 #include "gui/explain/explain_texts.h"
 #include "gui/explain/glossary.h"
 
@@ -16,15 +18,6 @@ namespace {
 QString said(const char* text) { return QCoreApplication::translate("ExplainPage", text); }
 
 QString escaped(const std::string& s) { return toQString(s).toHtmlEscaped(); }
-
-QString numbersTable(const std::vector<ExplainNumber>& numbers) {
-  if (numbers.empty()) return {};
-  QString html = QStringLiteral("<table class='numbers' cellspacing=0 cellpadding=2>");
-  for (const ExplainNumber& n : numbers)
-    html += QStringLiteral("<tr><td><i>%1</i>&nbsp;&nbsp;</td><td>%2&nbsp;&nbsp;</td><td><b>%3</b></td></tr>")
-                .arg(escaped(n.symbol), escaped(n.name), valuesHtml(n));
-  return html + QStringLiteral("</table>");
-}
 
 QString box(const QColor& colour, const QString& content) {
   return QStringLiteral(
@@ -60,16 +53,39 @@ const ExplainText* stepById(const QString& id) {
 
 QString ExplainPage::html() const { return withGlossary(step < 0 ? overview() : stepPage(), palette.color(QPalette::Text)); }
 
+/// With the equations of a lesson's texts.
+QString ExplainPage::typeset(const QString& html) const { return withEquations(html, palette.color(QPalette::Base)); }
+
+/// The symbol of a row leads to its place in the step's equation: the one that stands there, where several have such a number.
+QString ExplainPage::numbersTable(const std::vector<ExplainNumber>& numbers) const {
+  if (numbers.empty()) return {};
+  const ExplainText& text = explainTexts().steps[step];
+  const QString plainForm = text.words(explanation ? toQString(explanation->model) : QString()).equation;
+  const auto& all = equations();
+  const auto equation = std::find_if(all.begin(), all.end(), [&](const Equation& e) { return e.plain == plainForm; });
+  QString html = QStringLiteral("<table class='numbers' cellspacing=0 cellpadding=2>");
+  for (const ExplainNumber& n : numbers) {
+    QString symbol = escaped(n.symbol);
+    for (const EquationSymbol& s : equationSymbols())
+      if (equation != all.end() && equation->has(s.id) && s.numbers.contains(toQString(n.symbol)))
+        symbol = QStringLiteral("<a href='symbol:%1' style='color:%2; text-decoration:none'>%3</a>")
+                     .arg(s.id, palette.color(QPalette::Text).name(), escaped(n.symbol));
+    html += QStringLiteral("<tr><td><i>%1</i>&nbsp;&nbsp;</td><td>%2&nbsp;&nbsp;</td><td><b>%3</b></td></tr>")
+                .arg(symbol, escaped(n.name), valuesHtml(n));
+  }
+  return html + QStringLiteral("</table>");
+}
+
 QString ExplainPage::questions() const {
   QString html = QStringLiteral("<h4>%1</h4><ul>").arg(said("Try"));
   for (int i = 0; i < lesson->questions.size(); ++i) {
     const Lesson::Question& q = lesson->questions[i];
     const bool open = unfolded.contains(i);
     html += QStringLiteral("<li>%1 <a href='unfold:%2'>%3</a>%4</li>")
-                .arg(q.ask)
+                .arg(typeset(q.ask))
                 .arg(i)
                 .arg(open ? said("Hide the answer") : said("Show the answer"),
-                     open ? QStringLiteral("<br>%1<br>").arg(q.answer) : QString());
+                     open ? QStringLiteral("<br>%1<br>").arg(typeset(q.answer)) : QString());
   }
   return html + QStringLiteral("</ul>");
 }
@@ -91,8 +107,8 @@ QString ExplainPage::overview() const {
     for (const Lesson& l : lessons()) html += QStringLiteral("<p>%1</p>").arg(lessonLink(l));
     return html;
   }
-  QString html =
-      QStringLiteral("<h3>%1</h3><p>%2</p><h4>%3</h4>").arg(numberedTitle(*lesson).toHtmlEscaped(), lesson->see, said("Steps"));
+  QString html = QStringLiteral("<h3>%1</h3><p>%2</p><h4>%3</h4>")
+                     .arg(numberedTitle(*lesson).toHtmlEscaped(), typeset(lesson->see), said("Steps"));
   for (int i = 0; i < lesson->steps.size(); ++i)
     if (const ExplainText* const text = stepById(lesson->steps[i]))
       html += QStringLiteral("<p style='margin:3px 0 3px 12px'>%1. <a href='action:explain.step-%2'>%3</a></p>")
@@ -107,14 +123,13 @@ QString ExplainPage::wordsOf(const ExplainText& text) const {
   const QString remark = lesson ? lesson->remarks.value(text.id) : QString();
   if (plain()) return QStringLiteral("<h3>%1</h3><p>%2</p>").arg(title, remark);
   const ExplainText::Words words = text.words(explanation ? toQString(explanation->model) : QString());
-  QString html =
-      QStringLiteral("<h3>%1</h3><p>%2</p><p style='margin-left:8px'><tt>%3</tt><br><span style='color:%4'>%5</span></p>")
-          .arg(title, words.text.toHtmlEscaped(), words.equation.toHtmlEscaped(), palette.color(QPalette::PlaceholderText).name(),
-               sectionLinks(text.section));
+  QString html = QStringLiteral("<h3>%1</h3><p>%2</p><p style='margin-left:8px'>%3<br><span style='color:%4'>%5</span></p>")
+                     .arg(title, words.text.toHtmlEscaped(), equationHtml(words.equation, palette.color(QPalette::Base)),
+                          palette.color(QPalette::PlaceholderText).name(), sectionLinks(text.section));
   if (!remark.isEmpty())
     html += box(accentColour(),
                 (asOpened ? said("<b>In this lesson.</b> %1") : said("<b>In this lesson as opened</b> (changed since then). %1"))
-                    .arg(remark));
+                    .arg(typeset(remark)));
   return html;
 }
 

@@ -25,7 +25,8 @@ struct ExplainPage {
   QSet<int> unfolded;                        ///< questions whose answers are shown
   QPalette palette;
 
-  /// Links: "action:ID" runs an action, "unfold:N" shows or hides an answer, "glossary:WORD" and "method:SECTION" are read elsewhere.
+  /// Links: "action:ID" runs an action, "unfold:N" shows or hides an answer, "glossary:WORD" and "method:SECTION" are read elsewhere,
+  /// "symbol:ID" is a symbol of the equation.
   QString html() const;
 
  private:
@@ -36,6 +37,8 @@ struct ExplainPage {
   QString subject() const;
   QString whereFrom(const QString& id, bool trains) const;
   QString stepPage() const;
+  QString numbersTable(const std::vector<ExplainNumber>& numbers) const;
+  QString typeset(const QString& html) const;
   bool plain() const { return lesson && lesson->plain; }
 };
 

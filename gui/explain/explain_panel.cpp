@@ -9,7 +9,6 @@
 #include <QScrollBar>
 #include <QSignalBlocker>
 #include <QSplitter>
-#include <QTextBrowser>
 #include <QToolButton>
 #include <QUrl>
 #include <QVBoxLayout>
@@ -24,6 +23,7 @@
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
 #include "gui/explain/duality_window.h"
+#include "gui/explain/equation_browser.h"
 #include "gui/explain/explain_page.h"
 #include "gui/explain/explain_texts.h"
 #include "gui/explain/lessons.h"
@@ -59,7 +59,7 @@ ExplainPanel::ExplainPanel(Document& document, QWidget* parent)
       walk_(new WalkPlayer(document, this)),
       walkView_(new WalkView(document, *walk_)),
       steps_(new QListWidget),
-      text_(new QTextBrowser),
+      text_(new EquationBrowser),
       place_(new QLabel),
       back_(new QToolButton),
       next_(new QToolButton),
@@ -183,6 +183,7 @@ void ExplainPanel::openLesson(const QString& id) {
 
 void ExplainPanel::openDuality() {
   if (!duality_) duality_ = new DualityWindow(document_, window());
+  emit dualityOpened(duality_);
   duality_->open();
 }
 
@@ -193,6 +194,7 @@ void ExplainPanel::follow(const QUrl& link) {
     return showText();
   }
   if (scheme == QLatin1String("glossary") || scheme == QLatin1String("method")) return emit readRequested(scheme, path);
+  if (scheme == QLatin1String("symbol")) return emit readRequested(QStringLiteral("notation"), {});
   if (!actions_ || scheme != QLatin1String("action")) return;
   if (QAction* action = actions_->find(path)) action->trigger();
 }
@@ -321,7 +323,7 @@ void ExplainPanel::showText() {
   if (now == std::exchange(shown_, now)) return;  // else it would scroll back
   const QString place = QStringLiteral("%1/%2").arg(lesson ? lesson->id : QString()).arg(step());
   const int at = place == std::exchange(shownPlace_, place) ? text_->verticalScrollBar()->value() : 0;
-  text_->setHtml(now);
+  text_->showPage(now);
   text_->verticalScrollBar()->setValue(at);
 }
 

@@ -18,13 +18,13 @@
 class QLabel;
 class QListWidget;
 class QSplitter;
-class QTextBrowser;
 class QToolButton;
 class QUrl;
 
 namespace glint::gui {
 
 class DualityWindow;
+class EquationBrowser;
 class WalkPlayer;
 class WalkView;
 
@@ -41,6 +41,7 @@ class ExplainPanel : public QWidget {
   const Explanation* explanation() const { return explanation_.get(); }
   bool busy() const;
   WalkPlayer& walk() { return *walk_; }
+  EquationBrowser& text() { return *text_; }
 
  public slots:
   void start();
@@ -57,6 +58,7 @@ class ExplainPanel : public QWidget {
   void lessonRequested(const QString& session);
   /// A link leads to a page of the documentation. @param page  "glossary" or "method". @param place  a word or section there.
   void readRequested(const QString& page, const QString& place);
+  void dualityOpened(glint::gui::DualityWindow* window);  ///< every time
   void problem(const QString& oneLine);
 
  protected:
@@ -93,7 +95,7 @@ class ExplainPanel : public QWidget {
   QSplitter* split_;
   QListWidget* steps_;
   std::array<int, 3> fitted_{};  ///< panel, list, walk: heights that the parts were last given for
-  QTextBrowser* text_;
+  EquationBrowser* text_;
   QString shown_, shownPlace_;  ///< by it, and of which lesson and step
   QList<int> track_;            ///< steps to go through, as indices of explainTexts().steps; never empty
   QStringList rows_;            ///< of the list

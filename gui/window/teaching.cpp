@@ -8,15 +8,19 @@
 #include <QMenu>
 #include <utility>
 
+#include "gui/explain/duality_window.h"
+#include "gui/explain/equation_browser.h"
 #include "gui/explain/explain_panel.h"
 #include "gui/explain/walk_player.h"
 #include "gui/frame/frame_panel.h"
 #include "gui/scene/scene_panel.h"
+#include "gui/scene/scene_views.h"
 #include "gui/window/about.h"
 #include "gui/window/docks.h"
 #include "gui/window/present.h"
 #include "gui/window/reader.h"
 #include "gui/window/shortcut_dialog.h"
+#include "gui/window/symbol_links.h"
 #include "gui/window/window_layout.h"
 
 namespace glint::gui {
@@ -33,6 +37,8 @@ Teaching::Teaching(const Parts& parts) : QObject(parts.window), parts_(parts) {
     parts_.scene.showWalk(walk.story(), walk.step(), walk.playing());
     parts_.frame.showWalk(walk.story(), walk.step());
   });
+  auto* links = new SymbolLinks(explain.text(), parts_.scene.views(), this);
+  connect(&explain, &ExplainPanel::dualityOpened, links, [links](DualityWindow* window) { links->follow(*window); });
   connect(&parts_.document, &Document::sceneOpened, this, [this] {
     viewsBefore_.clear();
     explained_ = parts_.document.sharedScene();  // by now the panel has left the one before

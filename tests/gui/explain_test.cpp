@@ -7,6 +7,7 @@
 #include <QDockWidget>
 #include <QLabel>
 #include <QListWidget>
+#include <QScrollBar>
 #include <QTextBrowser>
 #include <QToolButton>
 #include <QWheelEvent>
@@ -15,6 +16,7 @@
 #include "gui/base/text.h"
 #include "gui/base/vtk_canvas.h"
 #include "gui/explain/duality_window.h"
+#include "gui/explain/equation_browser.h"
 #include "gui/explain/explain_panel.h"
 #include "gui/explain/explain_texts.h"
 #include "gui/explain/walk_view.h"
@@ -24,6 +26,7 @@
 #include "gui/scene/scene_panel.h"
 #include "gui/scene/scene_views.h"
 #include "gui/window/main_window.h"
+#include "gui/window/symbol_links.h"
 #include "tests/gui/fixture.h"
 
 namespace glint::gui {
@@ -91,6 +94,7 @@ class ExplainTest : public QObject {
     QCOMPARE(shown->lit().plane, 0);
     QTest::keyClick(shown->canvas(), Qt::Key_Left);
     QCOMPARE(shown->lit().plane, int(shown->duality()->views.front().planes.size()) - 1);
+    QVERIFY(window_->findChild<SymbolLinks*>()->lit().planeShown());  // in the 3D view, too
     const int view = shown->lit().view;
     QTest::keyClick(shown->canvas(), Qt::Key_Down);
     QVERIFY(shown->lit().view != view);
@@ -101,6 +105,7 @@ class ExplainTest : public QObject {
     QCOMPARE(QString::fromStdString(shown->duality() ? shown->duality()->model : selection.model),
              QString::fromStdString(selection.model));
     shown->close();
+    QVERIFY(!window_->findChild<SymbolLinks*>()->lit().planeShown());
   }
 
   void everyStepIsReachedForwardsAndBackAndIsOneStepOfUndo() {
@@ -474,6 +479,45 @@ class ExplainTest : public QObject {
       QVERIFY2(shownText().contains(trains ? "not new to the model" : "is new to the model"), qPrintable(shownText()));
     }
     QVERIFY(both[0] && both[1]);
+  }
+
+  /// A symbol and its arrow, whichever is pointed at; a number's symbol as well.
+  void aSymbolAndItsArrowLightUpTogether() {
+    select(0, "canonical");
+    goTo("tangent-plane");
+    settle();
+    EquationBrowser& page = panel_->text();
+    auto* links = window_->findChild<SymbolLinks*>();
+    QTRY_VERIFY(page.hasEquations());
+    page.verticalScrollBar()->setValue(0);
+    const QRectF place = page.placeOf("normal");
+    page.verticalScrollBar()->setValue(int(place.top()) - 20);
+    QTest::mouseMove(page.viewport(), QPoint(2, 2));
+    QTest::mouseMove(page.viewport(), page.placeOf("normal").center().toPoint());
+    QTRY_COMPARE(page.lit(), QSet<QString>{"normal"});
+    auto* scene = window_->findChild<ScenePanel*>();
+    scene->renderNow();
+    QVERIFY(links->lit().litCount() > 0);
+    QTest::mouseMove(page.viewport(), QPoint(2, 2));
+    QTRY_VERIFY(page.lit().isEmpty());
+    QCOMPARE(links->lit().litCount(), 0);
+    emit page.highlighted(QUrl("symbol:brightest-point"));
+    QCOMPARE(page.lit(), QSet<QString>{"brightest-point"});
+    emit page.highlighted(QUrl());
+    QVERIFY(page.lit().isEmpty());
+    // The arrow N goes up from the middle of the view.
+    bool found = false;
+    QWidget* canvas = scene->views().widget();
+    for (int y = 10; y < canvas->height() && !found; y += 6)
+      for (int x = 10; x < canvas->width() && !found; x += 6) {
+        links->pointAt(QPoint(x, y));
+        found = page.lit().contains("normal");
+      }
+    QVERIFY(found);
+    scene->renderNow();
+    QVERIFY(links->lit().litCount() > 0);
+    links->pointAt(QPoint(1, 1));
+    QVERIFY(page.lit().isEmpty());
   }
 
   void aClickInTheListGoesThere() {

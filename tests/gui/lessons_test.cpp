@@ -4,7 +4,9 @@
 
 #include <QAction>
 #include <QApplication>
+#include <QClipboard>
 #include <QDockWidget>
+#include <QFontInfo>
 #include <QLabel>
 #include <QListWidget>
 #include <QMessageBox>
@@ -20,6 +22,8 @@
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
 #include "gui/base/vtk_canvas.h"
+#include "gui/explain/equation_browser.h"
+#include "gui/explain/equations.h"
 #include "gui/explain/explain_panel.h"
 #include "gui/explain/explain_texts.h"
 #include "gui/explain/glossary.h"
@@ -186,6 +190,64 @@ class LessonsTest : public QObject {
     reader->open("notation");
     QVERIFY(page->toPlainText().contains("virtual camera"));
     reader->close();
+  }
+
+  /// In the ink of either theme; a symbol that is lit has another colour in its place, and nothing else has it.
+  void equationsAreInOneInkAndASymbolLightsUpAlone() {
+    const QColor lit(255, 0, 0);
+    for (const Equation& e : equations()) {
+      QVERIFY2(!e.size.isEmpty() && !e.places.isEmpty(), qPrintable(e.id));
+      for (const QColor ink : {QColor(Qt::black), QColor(Qt::white)}) {
+        const QString symbol = e.places.front().symbol;
+        const QImage plain = e.image((3 * e.size).toSize(), ink, {}, lit),
+                     bright = e.image((3 * e.size).toSize(), ink, {symbol}, lit);
+        int inked = 0, reddened = 0;
+        for (int y = 0; y < plain.height(); ++y)
+          for (int x = 0; x < plain.width(); ++x) {
+            if (plain.pixelColor(x, y).alpha() == 255) QCOMPARE(plain.pixelColor(x, y).rgb(), ink.rgb());
+            inked += plain.pixelColor(x, y).alpha() == 255;
+            if (bright.pixel(x, y) == plain.pixel(x, y)) continue;
+            ++reddened;
+            const QPointF at(x / 3.0, y / 3.0);
+            QVERIFY2(std::any_of(e.places.begin(), e.places.end(),
+                                 [&](const Equation::Place& p) {
+                                   return p.symbol == symbol && p.box.adjusted(-1, -1, 1, 1).contains(at);
+                                 }),
+                     qPrintable(e.id));
+          }
+        QVERIFY2(inked > 200 && reddened > 10 && reddened < inked, qPrintable(e.id));
+      }
+      for (const Equation::Place& place : e.places) {
+        QVERIFY2(QRectF(QPointF(), e.size).contains(place.box), qPrintable(e.id));
+        QCOMPARE(e.symbolAt(place.box.center()), place.symbol);
+        for (const QString& shown : symbolById(place.symbol)->shows) {
+          const auto& all = viz::sceneLayers();
+          QVERIFY2(std::any_of(all.begin(), all.end(),
+                               [&](const viz::Layer& l) { return toQString(l.name) == shown.section('/', 0, 0); }),
+                   qPrintable(shown));
+        }
+      }
+    }
+  }
+
+  /// Nobody sees the plain form, but it is found, read aloud and copied; the picture is as large as the text.
+  void equationsGrowWithTheTextAndAreCopiedInPlainForm() {
+    EquationBrowser page;
+    page.resize(900, 300);
+    const QString plain = explainTexts().steps[1].equation;
+    page.showPage("<p>before</p><p>" + equationHtml(plain, Qt::white) + "</p>");
+    page.show();
+    const double before = page.placeOf("normal").height();
+    QVERIFY(before > 0.5 * QFontInfo(page.font()).pixelSize() && before < 1.5 * QFontInfo(page.font()).pixelSize());
+    QFont large = page.font();
+    large.setPointSizeF(2 * large.pointSizeF());
+    page.setFont(large);
+    QTRY_VERIFY(std::abs(page.placeOf("normal").height() / before - 2) < 0.2);
+    page.resize(150, 300);  // never wider than the page
+    QVERIFY(page.placeOf("brightest-point").right() < 150);
+    page.selectAll();
+    page.copy();
+    QCOMPARE(QApplication::clipboard()->text(), "before\n" + plain);
   }
 
   void aTermIsLinkedOnceAndNotWithinLinksOrEquations() {

@@ -3,6 +3,7 @@
 
 #include "viz/glyphs.h"
 #include "viz/layers.h"
+#include "viz/lit_parts.h"
 
 namespace glint::viz {
 namespace {
@@ -28,9 +29,10 @@ LayerContent peaksLayer(const LayerInput& in) {
   LayerContent content;
   const auto add = [&](const BrightestPoint& b, const Camera& camera, double size, const Colour& colour, const Picked& info) {
     const SurfacePoint p = facing(b.point, camera.centreInWorld());
-    content.add(sphereActor({p.position}, size * in.scale.point, colour), info);
-    content.add(arrowActor({{p.position, p.position + size * in.scale.arrow * p.normal}}, 0.22 * size * in.scale.point,
-                           info.model.empty() ? in.ink() : colour),  // white would not be seen on a light ground
+    content.add(named(sphereActor({p.position}, size * in.scale.point, colour), "point"), info);
+    content.add(named(arrowActor({{p.position, p.position + size * in.scale.arrow * p.normal}}, 0.22 * size * in.scale.point,
+                                 info.model.empty() ? in.ink() : colour),  // white would not be seen on a light ground
+                      "normal"),
                 info);
     if (in.solo && info.model.empty())
       content.labels.push_back({p.position + 1.2 * size * in.scale.arrow * p.normal, "N", in.ink()});

@@ -6,6 +6,7 @@
 
 #include "viz/glyphs.h"
 #include "viz/layers.h"
+#include "viz/lit_parts.h"
 
 namespace glint::viz {
 namespace {
@@ -37,8 +38,8 @@ void addRay(LayerContent& content, const LayerInput& in, const TrainingView& vie
     if (elsewhere) actor->GetProperty()->SetOpacity(kElsewhere);
     content.add(actor, info, widthPx);
   };
-  add(segmentActor(dashed(eye, p.position, 0.015 * in.scale.sceneSize), kHeldOut, 1.0), 1.0);
-  add(segmentActor({{p.position, p.position + reach * r}}, kLightColour, width), width);
+  add(named(segmentActor(dashed(eye, p.position, 0.015 * in.scale.sceneSize), kHeldOut, 1.0), "view"), 1.0);
+  add(named(segmentActor({{p.position, p.position + reach * r}}, kLightColour, width), "reflected"), width);
   if (!in.solo || !selected) return;
   content.labels.push_back({p.position + 1.3 * in.scale.arrow * v, "V", in.ink()});
   content.labels.push_back({p.position + 1.3 * in.scale.arrow * r, "L", in.ink()});

@@ -5,6 +5,7 @@
 #include "core/base/angle.h"
 #include "viz/glyphs.h"
 #include "viz/layers.h"
+#include "viz/lit_parts.h"
 #include "viz/walk_story.h"
 
 namespace glint::viz {
@@ -62,7 +63,7 @@ LayerContent walkLayer(const LayerInput& in) {
               line("reach on T", story.trace.reachOnPlane, "m");
   const Eigen::Vector3d origin = story.trace.onPlane.front().position + lift;
   const double disc = 1.12 * size;
-  content.drawn.push_back({discActor(origin, story.normal, disc, kVirtualCamera, 0.16), info, 0, false});
+  content.drawn.push_back({named(discActor(origin, story.normal, disc, kVirtualCamera, 0.16), "plane"), info, 0, false});
   const Eigen::Vector3d across = story.normal.cross(story.along);
   content.add(lineActor({circle(origin, disc * story.along, disc * across)}, kVirtualCamera, 1.0), info, 1.0);
   // Seen from above, S hardly lies under T: the wider trail shows beside the other.
@@ -73,12 +74,15 @@ LayerContent walkLayer(const LayerInput& in) {
   const Eigen::Vector3d at = place.position + lift, half = story.half(place);
   const Colour& own = now.onSurface ? surface : plane;
   const double arrow = 0.75 * size, shaft = 0.012 * size;
-  content.add(segmentActor(dashed(at, at + 1.3 * size * story.toEye(place), 0.05 * size), kVirtualCamera, 1.2), info, 1.2);
-  content.add(segmentActor(dashed(at, at + 1.3 * size * story.toLight(place), 0.05 * size), kLightColour, 1.2), info, 1.2);
+  content.add(named(segmentActor(dashed(at, at + 1.3 * size * story.toEye(place), 0.05 * size), kVirtualCamera, 1.2), "camera"),
+              info, 1.2);
+  content.add(named(segmentActor(dashed(at, at + 1.3 * size * story.toLight(place), 0.05 * size), kLightColour, 1.2), "light"),
+              info, 1.2);
   content.add(sphereActor({at}, 0.045 * size, own), info);
-  content.drawn.push_back({sheetActor(sector(at, place.normal, half, 0.9 * arrow), kFailed, 0.55), info, 0, false});
-  content.add(arrowActor({{at, at + arrow * place.normal}}, shaft, own), info);
-  content.add(arrowActor({{at, at + arrow * half}}, shaft, kLightColour), info);
+  content.drawn.push_back(
+      {named(sheetActor(sector(at, place.normal, half, 0.9 * arrow), kFailed, 0.55), "angle"), info, 0, false});
+  content.add(named(arrowActor({{at, at + arrow * place.normal}}, shaft, own), "normal"), info);
+  content.add(named(arrowActor({{at, at + arrow * half}}, shaft, kLightColour), "half"), info);
   content.labels.push_back({at + 1.05 * arrow * place.normal, walkText(story, in.walkStep), in.ink()});
   return content;
 }

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <QColor>
+
+#include "core/draw/lit_colour.h"
+#include "gui/base/theme.h"
+
+namespace glint::gui {
+
+/// Of a symbol that is pointed at, and of what it stands for in the 3D view.
+inline QColor litColour() { return toQColor(currentTheme() == Theme::Dark ? draw::kLitOnDark : draw::kLitOnLight); }
+
+}  // namespace glint::gui
