@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "core/base/atomic_file.h"
@@ -56,6 +57,27 @@ void fitMissingEllipse(Highlight& h) {
   if (const Outcome<Ellipse> e = fitEllipse(h.contour.points)) h.ellipse = *e;
 }
 
+/// The value of each pixel by the combination of the nearest region.
+void takeSpecularPart(const Image& linear, const std::vector<PartedRegion>& parted, LinearPixels& pixels) {
+  require(linear.channels == 3, "parted pixels: 3 channels");
+  std::vector<Eigen::Matrix2d> inverse;
+  for (const PartedRegion& region : parted) inverse.push_back(region.footprint.shape.inverse());
+  for (int y = 0; y < linear.height; ++y)
+    for (int x = 0; x < linear.width; ++x) {
+      std::size_t nearest = 0;
+      double least = std::numeric_limits<double>::infinity();
+      for (std::size_t k = 0; k < parted.size(); ++k) {
+        const Eigen::Vector2d d = Pixel(x, y) - parted[k].footprint.centre;
+        if (const double squared = d.dot(inverse[k] * d); squared < least) {
+          least = squared;
+          nearest = k;
+        }
+      }
+      const double s = parted[nearest].channels.dot(Eigen::Vector3d(linear.at(x, y, 0), linear.at(x, y, 1), linear.at(x, y, 2)));
+      pixels.value.at(x, y) = std::isfinite(s) ? static_cast<float>(s) : 0.f;
+    }
+}
+
 std::filesystem::path truthFile(const std::string& folder, const Frame& frame) {
   return std::filesystem::path(folder) / (fileNameOf(frame.id) + ".json");
 }
@@ -83,12 +105,16 @@ DetectOptions detectOptionsFor(const Frame& frame, FrameSource source, const Set
   return options;
 }
 
-Outcome<LinearPixels> pixelsOf(const Frame& frame, FrameSource source, const Settings& settings) {
+Outcome<LinearPixels> pixelsOf(const Frame& frame, FrameSource source, const Settings& settings,
+                               const std::vector<PartedRegion>& parted) {
   const Outcome<Image> linear = readLinear(frame, source);
   if (!linear) return linear.failure();
   const Outcome<std::optional<Image>> mask = readMask(frame);
   if (!mask) return mask.failure();
-  return linearPixels(*linear, mask->has_value() ? &**mask : nullptr, detectOptionsFor(frame, source, settings).clipValue);
+  LinearPixels pixels =
+      linearPixels(*linear, mask->has_value() ? &**mask : nullptr, detectOptionsFor(frame, source, settings).clipValue);
+  if (!parted.empty()) takeSpecularPart(*linear, parted, pixels);
+  return pixels;
 }
 
 FrameEvidence gatherEvidence(const Scene& scene, int index, FrameSource source, const Settings& settings,

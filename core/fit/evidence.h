@@ -23,7 +23,10 @@ struct SeparateLights {
 DetectOptions detectOptionsFor(const Frame& frame, FrameSource source, const Settings& settings);
 
 /// The image that detection sees, as evidence. FrameUnreadable.
-Outcome<LinearPixels> pixelsOf(const Frame& frame, FrameSource source, const Settings& settings);
+/// @param parted  how highlights of the frame were parted (FrameEvidence::parted): each pixel then holds the specular part by the combination of the
+///                nearest one, counted in its footprints, below 0 where noise says so. Empty: the mean of the channels
+Outcome<LinearPixels> pixelsOf(const Frame& frame, FrameSource source, const Settings& settings,
+                               const std::vector<PartedRegion>& parted = {});
 
 /// Contours at other levels, to the highlight of the same light whose peak they enclose. One around several peaks is evidence once.
 void addOtherLevels(const std::vector<Highlight>& given, std::vector<Highlight>& highlights);

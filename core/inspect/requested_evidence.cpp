@@ -20,8 +20,11 @@ FrameEvidence evidenceFor(const Scene& scene, int frame, const InspectionRequest
   }
   evidence = gatherEvidence(scene, frame, request.source, request.settings);
   const bool detected = !evidence.highlights.empty() && !evidence.highlights.front().fromScene;
-  if (detected && request.settings.text("detect.background") == "colours")
-    evidence.notParted = partEvidence(scene, frame, request.source, request.settings, evidence).reason;
+  if (detected && request.settings.text("detect.background") == "colours") {
+    Parting parting = partEvidence(scene, frame, request.source, request.settings, evidence);
+    evidence.notParted = std::move(parting.reason);
+    evidence.parted = std::move(parting.regions);
+  }
   if (request.truthFolder.empty()) return evidence;
   evidence.againstTruth = true;
   Outcome<std::vector<Highlight>> truth = readTruth(request.truthFolder, scene, frame, request.settings.number("detect.level"));
