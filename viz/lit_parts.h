@@ -19,7 +19,7 @@ class vtkProp;
 
 namespace glint::viz {
 
-/// Says what of its layer a thing shows: "normal". @return the thing.
+/// Says what of its layer a thing shows: "normal". Gives the thing back.
 vtkSmartPointer<vtkActor> named(vtkSmartPointer<vtkActor> thing, const std::string& part);
 /// Says which layer a thing is of, once it is known. What has a part is "layer/part" from then on.
 void nameLayer(vtkProp* thing, const std::string& layer);
@@ -32,10 +32,10 @@ class LitParts {
   ~LitParts();
   LitParts(const LitParts&) = delete;
   LitParts& operator=(const LitParts&) = delete;
-  /// @param names  "layer" (all of it) or "layer/part"; empty = nothing is lit.
+  /// Names are "layer" (all of it) or "layer/part"; none = nothing is lit.
   void light(const std::set<std::string>& names, const Colour& colour);
-  /// A plane that touches something, seen from `apex`: a strip from there over the place of touch, and the line between.
-  /// @param normal  unit. @param halfWidth  of the strip at that place, m.
+  /// A plane that touches something, seen from `apex`: a strip from there over the place of touch, and the line between. The normal is
+  /// of unit length; `halfWidth` (m) is that of the strip at the place of touch.
   void lightPlane(const Eigen::Vector3d& apex, const Eigen::Vector3d& touch, const Eigen::Vector3d& normal, double halfWidth,
                   const Colour& colour);
   void clearPlane();

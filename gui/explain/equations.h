@@ -36,7 +36,7 @@ struct Equation {
   bool has(const QString& symbol) const;
   /// The symbol nearest to a point, not farther than a third of an em; "" = none.
   QString symbolAt(const QPointF& unit) const;
-  /// In one ink. @param lit  symbols that have the other ink.
+  /// In one ink, but for the symbols that are lit.
   QImage image(const QSize& pixels, const QColor& ink, const QSet<QString>& lit, const QColor& litInk) const;
 };
 constexpr double kEquationEm = 20;  ///< EM of docs/make_equations.py
@@ -49,7 +49,7 @@ const Equation* equationById(const QString& id);
 const EquationSymbol* symbolById(const QString& id);
 
 /// An equation's picture in HTML for an EquationBrowser, and its plain form, too small to be seen, for who searches, copies or
-/// listens. What has no picture stands in plain form. @param base  colour of the page.
+/// listens. What has no picture stands in plain form. `base` is the colour of the page.
 QString equationHtml(const QString& plain, const QColor& base);
 /// HTML in which the plain forms of equations have become that.
 QString withEquations(QString html, const QColor& base);

@@ -208,11 +208,12 @@ void ExplainPanel::goTo(int wanted) {
     soloBefore_ = document_.option(kSolo, std::string());
     linesBefore_ = document_.option(kLines, std::string());
   }
+  const ExplainText::Shown shown = text.shown(toQString(document_.selection().model));
   std::map<std::string, bool> layers = document_.state().layers;
-  for (const viz::Layer& layer : viz::sceneLayers()) layers[layer.name] = text.layers.contains(toQString(layer.name));
+  for (const viz::Layer& layer : viz::sceneLayers()) layers[layer.name] = shown.layers.contains(toQString(layer.name));
   // Overlays that no step names (what the user laid over the frame) stay as they are.
   for (const ExplainText& any : steps)
-    for (const QString& name : any.frameLayers) layers[name.toStdString()] = text.frameLayers.contains(name);
+    for (const QString& name : any.frameLayers) layers[name.toStdString()] = shown.frameLayers.contains(name);
   std::map<std::string, std::string> options = document_.state().options;
   options[kStep] = text.id.toStdString();
   set(options, kSolo, text.solo ? "1" : soloBefore_);

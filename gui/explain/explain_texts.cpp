@@ -32,14 +32,17 @@ ExplainTexts read() {
   for (const QJsonValue& v : root["steps"].toArray()) {
     const QJsonObject s = v.toObject();
     QMap<QString, ExplainText::Words> ofModels;
+    QMap<QString, ExplainText::Shown> shownOfModels;
     const QJsonObject models = s["models"].toObject();
     for (auto it = models.begin(); it != models.end(); ++it) {
       const QJsonObject o = it.value().toObject();
       ofModels.insert(it.key(), {o["text"].toString(), o["equation"].toString()});
+      if (o.contains("layers"))
+        shownOfModels.insert(it.key(), {names(o["layers"]), names(o["frame_layers"], QStringLiteral("frame/"))});
     }
     texts.steps.append({s["id"].toString(), s["title"].toString(), s["text"].toString(), s["equation"].toString(),
                         s["section"].toString(), names(s["layers"]), names(s["frame_layers"], QStringLiteral("frame/")),
-                        s["look"].toString(), s["solo"].toBool(), s["epipolar"].toBool(), ofModels});
+                        s["look"].toString(), s["solo"].toBool(), s["epipolar"].toBool(), ofModels, shownOfModels});
   }
   const QJsonObject broken = root["broken"].toObject();
   for (auto it = broken.begin(); it != broken.end(); ++it) texts.broken.insert(it.key(), it.value().toString());

@@ -15,6 +15,9 @@ struct ExplainText {
   struct Words {
     QString text, equation;
   };
+  struct Shown {
+    QStringList layers, frameLayers;
+  };
   QString id, title, text, equation, section;
   QStringList layers;             ///< of the scene, that show it
   QStringList frameLayers;        ///< "frame/NAME"
@@ -24,6 +27,9 @@ struct ExplainText {
   QMap<QString, Words> ofModels;  ///< where a model does something else: by its id, "" = as for the others
   /// @param model  "" = none. Of a model that no step has words for: what the model assumes, where others have words of their own.
   Words words(const QString& model) const;
+  QMap<QString, Shown> shownOfModels;  ///< where the picture of a model has other parts: by its id
+  /// What the step shows when that model is explained.
+  Shown shown(const QString& model) const { return shownOfModels.value(model, {layers, frameLayers}); }
 };
 
 struct ExplainTexts {

@@ -35,6 +35,8 @@ void Present::start() {
   QFont large = font_;
   large.setPointSizeF(kLarger * font_.pointSizeF());
   QApplication::setFont(large);
+  // Where the application has a style sheet, its font reaches no widget that there is.
+  window_->setStyleSheet(QStringLiteral("QWidget { font-size: %1pt }").arg(large.pointSizeF()));
   docks_ = window_->saveState();
   arrange_();
   window_->setWindowState(state_ | Qt::WindowFullScreen);
@@ -48,6 +50,7 @@ void Present::leave() {
   setBlack(false);
   window_->setWindowState(state_);
   QApplication::setFont(font_);
+  window_->setStyleSheet(QString());
   for (auto it = barsShown_.cbegin(); it != barsShown_.cend(); ++it) it.key()->setVisible(it.value());
   window_->restoreState(docks_);
   emit changed(false);

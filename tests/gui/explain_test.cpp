@@ -54,11 +54,25 @@ class ExplainTest : public QObject {
     for (const std::string& id : explainSteps()) expected << toQString(id);
     QCOMPARE(ids, expected);
     for (const ExplainText& t : explainTexts().steps) {
-      for (const QString& layer : t.layers) {
+      QStringList layers = t.layers;
+      for (const ExplainText::Shown& shown : t.shownOfModels) layers += shown.layers;
+      for (const QString& layer : layers) {
         const auto& all = viz::sceneLayers();
         QVERIFY2(std::any_of(all.begin(), all.end(), [&](const viz::Layer& l) { return toQString(l.name) == layer; }),
                  qPrintable(layer));
       }
+    }
+  }
+
+  /// The cones of primal and dual go through the observed ellipses: canonical ones would be no part of their picture.
+  void theConesOfAModelStandWithItsOwnEllipses() {
+    for (const auto& [model, canonical] : {std::pair("canonical", true), std::pair("primal", false), std::pair("dual", false)}) {
+      select(1, model);
+      goTo("ellipsoid");
+      QCOMPARE(window_->document().layerVisible("canonical-ellipses"), canonical);
+      QCOMPARE(window_->document().layerVisible("observed-contours"), !canonical);
+      QCOMPARE(window_->document().layerVisible("frame/canonical"), canonical);
+      QVERIFY(window_->document().layerVisible("cones"));
     }
   }
 
