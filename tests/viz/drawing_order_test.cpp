@@ -8,6 +8,7 @@
 
 #include "tests/viz/small_inspection.h"
 #include "viz/layers.h"
+#include "viz/scene_questions.h"
 
 namespace glint::viz {
 namespace {

@@ -11,21 +11,16 @@
 #include "core/draw/contrast.h"
 #include "core/draw/overlay_painter.h"
 #include "core/scene/scene.h"
+#include "tests/viz/image_checks.h"
 #include "tests/viz/small_inspection.h"
 #include "viz/annotations.h"
 
 namespace glint::viz {
 namespace {
 
+using test::isNear;
 using test::smallInspection;
 using test::TemporaryFolder;
-
-bool isNear(const Image& image, int x, int y, const Colour& colour, double tolerance) {
-  for (int c = 0; c < 3; ++c) {
-    if (std::abs(image.at(x, y, c) - colour[static_cast<std::size_t>(c)]) > tolerance) return false;
-  }
-  return true;
-}
 
 /// Of texts about what failed, on the panel of dark pictures.
 const Colour kFailedText = draw::readableOn({0.15, 0.16, 0.18}, kFailed);
