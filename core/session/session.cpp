@@ -16,6 +16,7 @@
 #include "core/scene/scene_files.h"
 #include "core/scene/scene_json.h"
 #include "core/scene/session_input.h"
+#include "core/session/session_plugins.h"
 #include "core/session/session_rights.h"
 #include "core/what_if/json.h"
 
@@ -188,6 +189,16 @@ SessionView readView(const JsonNode& node) {
   return view;
 }
 
+std::vector<SessionPlugin> readPlugins(const JsonNode& node) {
+  std::vector<SessionPlugin> plugins;
+  for (std::size_t i = 0; i < node.size(); ++i) {
+    plugins.push_back({node.at(i).at("name").text(), node.at(i).at("version").text(), {}});
+    if (const auto adds = node.at(i).find("adds")) plugins.back().adds = texts(*adds);
+    if (plugins.back().name.empty()) node.at(i).at("name").fail("the name is empty");
+  }
+  return plugins;
+}
+
 std::string readHash(const JsonNode& node) {
   if (node.isNull()) return "";
   const std::string hash = node.text();
@@ -215,7 +226,8 @@ Session parseSession(const std::string& json, const fs::path& file) {
   if (const auto n = input.find("files"))
     for (std::size_t i = 0; i < n->size(); ++i)
       session.files.push_back({absolutePath(n->at(i).at("path"), folder), readHash(n->at(i).at("sha256"))});
-  session.request = readRequest(root.at("request"), folder);
+  if (const auto n = root.find("plugins")) session.plugins = readPlugins(*n);
+  session.request = namingMissingPlugins(missingPlugins(session), [&] { return readRequest(root.at("request"), folder); });
   if (version == 1) migrateFrom1(root.at("request"), session.request.settings);
   migrateFromBeforePixels(root.at("request"), session.request.settings);
   const bool oneSetOfWalks = isBeforeWalksOfTheFit(root.at("request"));
@@ -242,8 +254,8 @@ Session parseSession(const std::string& json, const fs::path& file) {
     session.digest = readHash(n->at("digest"));
   }
   Json unknown = Json::object();
-  for (const std::string& key :
-       root.unknownKeys({"glint_session", "input", "request", "frames", "view", "notes", "tradeoff", "results", "recovery"})) {
+  for (const std::string& key : root.unknownKeys(
+           {"glint_session", "input", "request", "frames", "view", "notes", "tradeoff", "results", "recovery", "plugins"})) {
     session.warnings.push_back(key + ": unknown key, kept");
     json_dom::append(unknown, key, json_dom::parse(root.at(key).dump(), file.string()));
   }
@@ -290,6 +302,8 @@ std::string sessionText(const Session& session, const fs::path& file) {
   root["view"]["selection"] = {{"frame", v.frame}, {"model", v.model}, {"light", v.light}, {"highlight", v.highlight}};
   if (v.predicted >= 0) root["view"]["selection"]["predicted"] = v.predicted;
   if (session.recovery) root["recovery"] = {{"of", relative(session.recovery->of)}, {"session", session.recovery->isSession}};
+  for (const SessionPlugin& p : pluginsToRecord(session.plugins))
+    root["plugins"].push_back({{"name", p.name}, {"version", p.version}, {"adds", p.adds}});
   root["notes"] = session.notes;
   if (session.tradeoff) root["tradeoff"] = Json::parse(tradeoffJson(*session.tradeoff));
   if (!session.keyResults.empty()) {
@@ -372,6 +386,7 @@ std::string relinkMeshes(Session& session, const Scene& scene) {
 OpenedSession openSession(Session given, const Relinked& instead) {
   OpenedSession opened{std::move(given), nullptr, ""};
   Session& session = opened.session;
+  requirePlugins(session);
   const fs::path sceneWas = session.input;
   if (!instead.scene.empty()) session.input = fs::absolute(instead.scene).lexically_normal();
   std::error_code ignored;
@@ -392,9 +407,12 @@ OpenedSession openSession(Session given, const Relinked& instead) {
   options.choices = session.choices;
   for (const FilesFolder& f : session.folders)
     if (f.kind == FrameFile::Photograph) options.photographs.push_back(f.folder);
-  Scene scene = withFilesIn(readSceneOfSession(session.input, options), session.folders);
+  Scene scene = namingMissingPlugins(missingPlugins(session),
+                                     [&] { return withFilesIn(readSceneOfSession(session.input, options), session.folders); });
   if (!session.allowOutsidePaths) requirePermittedFiles(scene, session.folders, session.file.string(), options.folders);
   if (instead.any()) opened.warning = takeOver(session, scene, sceneWas, !instead.scene.empty());
+  if (const std::string plugins = pluginWarning(session); !plugins.empty())
+    opened.warning += (opened.warning.empty() ? "" : "; ") + plugins;
   session.meshes = scene.meshes;
   opened.scene = std::make_shared<const Scene>(std::move(scene));
   return opened;

@@ -41,6 +41,12 @@ struct SessionFile {
   std::string sha256;          ///< 64 hexadecimal digits; "" = the file was missing or unreadable when the session was saved
 };
 
+/// A plugin that was loaded when the session was saved.
+struct SessionPlugin {
+  std::string name, version;
+  std::vector<std::string> adds;  ///< as LoadedPlugin::added: "model flat-mirror", "lobe student-t"
+};
+
 /// A number of the results under a stable name ("canonical.contour_error_pct.mean"). NaN = not defined.
 using KeyResults = std::vector<std::pair<std::string, double>>;
 
@@ -60,7 +66,8 @@ struct Session {
   InputChoices choices;                                 ///< how a capture of another program is read
   /// The session and its scene may name files outside their folders. The caller says so, never the file: reading leaves it false.
   bool allowOutsidePaths = false;
-  std::vector<SessionFile> files;  ///< the scene file first, then everything that it names
+  std::vector<SessionFile> files;      ///< the scene file first, then everything that it names
+  std::vector<SessionPlugin> plugins;  ///< as read; what is written names those that are loaded, too
   InspectionRequest request;
   std::vector<std::string> training, heldOut;  ///< frame ids that `request.train` meant when it was saved
   SessionView view;
@@ -94,9 +101,10 @@ class MissingScene : public InputError {
 struct OpenedSession {
   Session session;
   std::shared_ptr<const Scene> scene;
-  std::string warning;  ///< what was given instead is another file than the session was made with; "" = it is not
+  std::string
+      warning;  ///< what was given instead is another file than the session was made with; plugins that it was saved with and are not loaded; "" = neither
 };
-/// Reads a session and its scene. InputError; MissingScene, MissingMesh, OutsidePath. Does not check the files' contents: see `changedFiles`.
+/// Reads a session and its scene. InputError, also where a model of the request is from a plugin that is not loaded; MissingScene, MissingMesh, OutsidePath. Does not check the files' contents: see `changedFiles`.
 /// @param instead  where inputs are now that are not where the session says. The session then names them.
 OpenedSession openSession(const std::filesystem::path& file, const Relinked& instead = {});
 OpenedSession openSession(Session session, const Relinked& instead = {});

@@ -124,6 +124,7 @@ void addState(Session& session, const Opened& opened) {
   if (opened.session) {
     session.notes = opened.session->notes;
     session.unknownJson = opened.session->unknownJson;
+    session.plugins = opened.session->plugins;
   }
   session.view = viewOf(opened);
 }

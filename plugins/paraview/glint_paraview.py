@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Glint in ParaView: a reader of sessions (*.glint) and scenes (scene.json), and a filter that predicts highlights on a mesh.
 
-One file, because ParaView loads a Python plugin as one file and finds no modules beside it.
+One file, longer than others of the project, because ParaView loads a Python plugin as one file and finds no modules beside it.
 
 Load it under Tools > Manage Plugins, or with LoadPlugin("glint_paraview.py"); with a server, on the server. All numbers are those of the Python
 module glint, which must be installed where the server runs. docs/paraview.md describes the blocks, arrays and units.

@@ -18,7 +18,7 @@ if(GLINT_GUI)
   list(APPEND CPACK_COMPONENTS_ALL inspector)
 endif()
 if(TARGET glint_python)
-  list(APPEND CPACK_COMPONENTS_ALL python)
+  list(APPEND CPACK_COMPONENTS_ALL python paraview)
 endif()
 
 # glint_package(COMPONENT NAME SECTION DEPENDS SUMMARY TEXT): what Debian's control file says of it. TEXT: lines are wrapped here, by hand.
@@ -43,6 +43,11 @@ glint_package(inspector glint-inspector science "glint ${same}, libglint${GLINT_
   "Every step from photographs to predicted highlights in 3D and in the\nphotographs: cameras and mirrored cameras, tangent planes, ellipsoids, lamps.")
 glint_package(python python3-glint python "libglint${GLINT_SOVERSION} ${same}, python3 (>= 3.11), python3 (<< 3.12), python3-numpy" "Python module of Glint"
   "Find specular highlights, fit models, predict and measure lamps from Python,\nwith NumPy arrays in and out.")
+glint_package(paraview glint-paraview science "python3-glint ${same}" "Glint in ParaView"
+  "A plugin of ParaView: a reader of sessions and scenes, and a filter that\npredicts highlights on a mesh of a pipeline. Load\n/usr/share/glint/paraview/glint_paraview.py under Tools > Manage Plugins.")
+set(CPACK_DEBIAN_PARAVIEW_PACKAGE_ARCHITECTURE all)
+set(CPACK_DEBIAN_PARAVIEW_PACKAGE_SHLIBDEPS OFF)
+set(CPACK_DEBIAN_PARAVIEW_PACKAGE_RECOMMENDS "paraview, python3-paraview")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_RECOMMENDS "libvtk9-dev, libopencv-dev, libx11-dev")  # Glint::viz
 set(CPACK_DEBIAN_LIBRARIES_PACKAGE_CONTROL_EXTRA ${PROJECT_BINARY_DIR}/package/triggers ${PROJECT_BINARY_DIR}/package/shlibs)
 

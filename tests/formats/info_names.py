@@ -2,9 +2,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Whether `glint info` names the mistake of a scene that has one (write_scene.py --wrong), and none for the right scene.
 
-info_names.py GLINT FOLDER MISTAKE    FOLDER: what --wrong wrote for this mistake; MISTAKE "none": any folder of a right scene
+info_names.py GLINT FOLDER MISTAKE    FOLDER: what --wrong wrote for this mistake; MISTAKE "none": any folder of a right scene. What the command needs
+beside the folder (truth.json says it) is given.
 """
 import json
+import pathlib
 import subprocess
 import sys
 
@@ -22,9 +24,18 @@ FINDINGS = {
 }
 
 
+def question(folder):
+    """The arguments of `glint info` for this folder."""
+    cases = json.loads((folder.parent / "truth.json").read_text())["cases"] if (folder.parent / "truth.json").exists() else {}
+    case = cases.get(folder.name)
+    if case is None:
+        return [str(folder)]
+    return [str(folder.parent / case["input"])] + [str(folder.parent / a["file"]) if isinstance(a, dict) else str(a) for a in case["arguments"]]
+
+
 def main():
     glint, folder, mistake = sys.argv[1:]
-    run = subprocess.run([glint, "info", folder, "--json", "-"], capture_output=True, text=True, timeout=300)
+    run = subprocess.run([glint, "info", *question(pathlib.Path(folder)), "--json", "-"], capture_output=True, text=True, timeout=300)
     if not run.stdout.startswith("{"):
         print(f"glint info ended with {run.returncode}: {run.stderr.strip()}")
         return 1

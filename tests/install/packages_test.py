@@ -22,6 +22,7 @@ HOLDS = {  # package -> patterns of files that it must contain
                         r"metainfo/glint-inspector\.metainfo\.xml", r"icons/hicolor/scalable/apps/glint\.svg"],
 }
 PYTHON = [r"dist-packages/glint/_glint\..*\.so$", r"dist-packages/glint/__init__\.py$", r"dist-packages/glint/py\.typed$"]
+PARAVIEW = [r"share/glint/paraview/glint_paraview\.py$", r"share/glint/paraview/setup_paraview\.py$"]
 EVERY = [r"share/doc/{name}/copyright", r"share/doc/{name}/changelog\.gz"]
 
 
@@ -78,6 +79,15 @@ def check_use(packages, folder):
         if str(modules) not in told:
             sys.exit(f"python3 imports another glint: {told}")
         print("python3 imports the package's module")
+    setup = root / "usr/share/glint/paraview/setup_paraview.py"
+    if setup.exists():  # mends the loader in the user's own folder alone, and takes it back
+        home = folder / "home"
+        home.mkdir()
+        for step in "--mend-loader", "--undo":
+            run("/usr/bin/python3", setup, step, env=dict(environment, HOME=str(home)))
+            if (step == "--undo") == bool(list(home.rglob("glint_paraview_loader.pth"))):
+                sys.exit(f"setup_paraview.py {step}: did nothing")
+        print("the package mends ParaView's loader, and takes it back")
     # Double click: the system's table leads from *.glint to the inspector.
     if shutil.which("update-mime-database"):
         run("update-mime-database", root / "usr/share/mime")
@@ -101,6 +111,7 @@ def main():
         sys.exit(SKIPPED)
     if (options.build / "python/glint").is_dir():  # the module is part of this build
         HOLDS["python3-glint"] = PYTHON
+        HOLDS["glint-paraview"] = PARAVIEW
     folder = pathlib.Path(tempfile.mkdtemp(prefix="glint_packages_"))
     try:
         packages = packed(options.build.resolve(), folder / "first")
