@@ -89,7 +89,18 @@ class Shipped(InFolder):
 
     def test_sessions_that_tests_read(self):
         self.check((root / "tests/core/session/fixtures").glob("*.glint"), 4)
-        self.check((root / "tests/fuzz/corpus/session").glob("*.json"), 6)
+        self.check([p for p in (root / "tests/fuzz/corpus/session").glob("*.json") if "-damaged" not in p.name], 8)
+
+    def test_damaged_sessions_of_the_corpus_are_refused(self):
+        damaged = sorted((root / "tests/fuzz/corpus/session").glob("*-damaged*.json"))
+        self.assertGreaterEqual(len(damaged), 5)
+        for path in damaged:
+            with self.subTest(path=path.name):
+                self.assertNotEqual(complaints(read(path)), [])
+                shutil.copy(path, self.folder / "damaged.glint")
+                done = glint("replay", "damaged.glint", cwd=self.folder)
+                self.assertEqual(done.returncode, 2, done.stderr)
+                self.assertRegex(done.stderr, r"damaged\.glint: (request\.what_if\.edits|plugins)")
 
 
 class Page(InFolder):
