@@ -13,12 +13,17 @@
 #include "gui/lamps/save_lamps.h"
 
 namespace glint::gui {
+namespace {
+constexpr const char* kMeasured = "lamps/measured";
+}  // namespace
 
 SceneLamps::SceneLamps(const Engine& engine, Document& document, QWidget* window)
     : QObject(window), engine_(engine), document_(document), window_(window), panel_(new LampsPanel) {
   connect(&document_, &Document::sceneOpened, this, &SceneLamps::forget);
   connect(&document_, &Document::requestChanged, this, &SceneLamps::markStale);
   connect(&document_, &Document::selectionChanged, this, &SceneLamps::selectFromDocument);
+  connect(&document_, &Document::optionsChanged, this, &SceneLamps::remember);
+  connect(&document_, &Document::inspectionChanged, this, &SceneLamps::measureAgain);
   connect(panel_->table(), &LampTable::lampSelected, this, &SceneLamps::selectFromTable);
   connect(panel_, &LampsPanel::measureRequested, this, &SceneLamps::measure);
   connect(panel_, &LampsPanel::stopRequested, this, &SceneLamps::cancel);
@@ -45,10 +50,25 @@ void SceneLamps::forget() {
   panel_->setStale(false);
   panel_->show(nullptr, tr("Not measured yet."));
   emit changed(nullptr);
+  again_ = scene_ && engine_.lamps && document_.option(kMeasured, 0.0) > 0;
+  if (again_)
+    panel_->show(nullptr, tr("This session was saved with measured lamps. They are measured again once its results are there."));
+}
+
+/// An option of the view that an undone step does not take back.
+void SceneLamps::remember() {
+  if (lamps_) document_.showOption(kMeasured, 1);
+}
+
+void SceneLamps::measureAgain() {
+  if (!again_ || !document_.inspection()) return;
+  again_ = false;
+  measure();
 }
 
 void SceneLamps::measure() {
   if (!document_.scene() || !engine_.lamps || jobs_.busy()) return;
+  again_ = false;
   const auto show = [this](const StageEvent& e) { panel_->setProgress(toQString(e.stage), e.done, e.total); };
   jobs_.start(
       [measure = engine_.lamps, scene = document_.sharedScene(), request = document_.request(), previous = document_.inspection(),
@@ -75,6 +95,7 @@ void SceneLamps::take(const LampsPtr& lamps, const InspectionRequest& measuredFo
   const std::optional<Failure> nothing = nothingMeasured(*lamps_);
   emit message(nothing ? tr("Lamps: %1").arg(toQString(nothing->message())) : tr("Lamps measured: %1").arg(lamps_->lamps.size()));
   selectFromDocument();
+  remember();
 }
 
 /// Models and training frames make no difference to lamps.

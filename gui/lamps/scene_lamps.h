@@ -20,7 +20,8 @@ using LampsPtr = std::shared_ptr<const LampsReport>;
 
 /// The lamps of the open scene: measured in the background when a person asks, shown in a dock and in the 3D views, saved as
 /// `glint lights` writes them. Measured with the settings, frames and what-if on screen; once these change, they are out of
-/// date. Not stored in sessions.
+/// date. A session keeps that they were measured (option "lamps/measured"), as it keeps no fit either: once its results are there, they
+/// are measured again.
 class SceneLamps : public QObject {
   Q_OBJECT
  public:
@@ -45,6 +46,8 @@ class SceneLamps : public QObject {
 
  private:
   void forget();
+  void remember();
+  void measureAgain();
   void take(const LampsPtr& lamps, const InspectionRequest& measuredFor);
   void markStale();
   void selectFromDocument();
@@ -57,6 +60,7 @@ class SceneLamps : public QObject {
   std::shared_ptr<const Scene> scene_;  ///< whose they are
   InspectionRequest measuredFor_;
   bool selecting_ = false;
+  bool again_ = false;  ///< the session was saved with lamps, and waits for its results
   JobQueue jobs_;
 };
 

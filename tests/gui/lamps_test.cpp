@@ -11,6 +11,8 @@
 #include <QPushButton>
 #include <QTimer>
 
+#include "gui/base/text.h"
+#include "gui/document/session_file.h"
 #include "gui/lamps/lamp_table.h"
 #include "gui/lamps/lamps_in_window.h"
 #include "gui/lamps/lamps_panel.h"
@@ -81,6 +83,25 @@ class LampsTest : public QObject {
     }
     selectsBothWays(window);
     becomesStale(window);
+  }
+
+  void aSessionThatWasSavedWithLampsMeasuresThemAgain() {
+    const std::string file = folder_->filePath(QStringLiteral("lamps.glint")).toStdString();
+    Opened opened = openInput(kTwoLamps.toStdString());
+    opened.options["lamps/measured"] = "1";
+    saveSession(opened, nullptr, file);
+    MainWindow window(coreEngine());
+    window.resize(1500, 950);
+    window.show();
+    window.open(toQString(file));
+    QTRY_VERIFY_WITH_TIMEOUT(window.lamps()->ofScene()->lamps() && window.idle(), 120000);
+    QVERIFY(window.document().inspection());
+    // It is said again in the next file, whatever is undone; a scene that is opened then has none.
+    QCOMPARE(QString::fromStdString(window.document().toSave().options.at("lamps/measured")), QStringLiteral("1"));
+    window.open(kTwoLamps);
+    QTRY_VERIFY_WITH_TIMEOUT(window.document().inspection() && window.idle(), 120000);
+    QVERIFY(!window.lamps()->ofScene()->lamps());
+    QVERIFY(!window.document().toSave().options.count("lamps/measured"));
   }
 
   void stoppingLeavesNothing() {
