@@ -210,18 +210,33 @@ std::string meantOption(const CLI::App& app) {
 
 /// What a command line that cannot be parsed ends with: a page that was asked for, or one line that says what is wrong.
 int answer(const CLI::App& app, const CLI::ParseError& e, const std::string& first, const std::vector<Command>& commands) {
-  if (e.get_exit_code() == 0) {  // --help, --version
-    std::ostringstream page;
-    app.exit(e, page, page);
-    Context().print(page.str());
+  const bool known = std::any_of(commands.begin(), commands.end(), [&](const Command& c) { return c.name == first; });
+  const bool page = known || first.empty() || first[0] == '-';  // there is none of a command that does not exist
+  if (page && e.get_exit_code() == 0) {                         // --help, --version
+    std::ostringstream text;
+    app.exit(e, text, text);
+    Context().print(text.str());
     return kDone;
   }
-  const bool known = std::any_of(commands.begin(), commands.end(), [&](const Command& c) { return c.name == first; });
   if (!known && !first.empty() && first[0] != '-')
     return fail("'" + first + "' is not a command" + didYouMean(first, namesOf(commands)) + " (see glint --help)", kWrongInput);
+  if (!known && first.rfind("--", 0) == 0 && first.size() > 2 && !app.get_option_no_throw(first.substr(0, first.find('=')))) {
+    std::vector<std::string> flags;
+    for (const CLI::Option* option : app.get_options())
+      for (const std::string& name : option->get_lnames()) flags.push_back("--" + name);
+    return fail("'" + first + "' is not an option" + didYouMean(first, flags) + " (see glint --help)", kWrongInput);
+  }
   std::string who;
   for (const CLI::App* sub : app.get_subcommands()) who = sub->get_name() + " ";
   return fail(std::string(e.what()) + meantOption(app) + " (see glint " + who + "--help)", kWrongInput);
+}
+
+/// `glint help` and `glint help COMMAND`, as other programs have them, mean the pages of --help.
+std::vector<std::string> wordsFrom(int argc, char** argv) {
+  std::vector<std::string> words(argv + 1, argv + argc);
+  if (words.empty() || words[0] != "help") return words;
+  if (words.size() == 1) return {"--help"};
+  return {words[1], "--help"};
 }
 
 int run(int argc, char** argv, const std::vector<Command>& commands) {
@@ -254,10 +269,11 @@ int run(int argc, char** argv, const std::vector<Command>& commands) {
     Context().print(app.help());
     return kDone;
   }
+  const std::vector<std::string> words = wordsFrom(argc, argv);
   try {
-    app.parse(argc, argv);
+    app.parse(std::vector<std::string>(words.rbegin(), words.rend()));  // CLI11 takes them from the back
   } catch (const CLI::ParseError& e) {
-    return answer(app, e, argc > 1 ? argv[1] : "", commands);
+    return answer(app, e, words.front(), commands);
   }
   for (const std::string& limit : everywhere.limits) setLimit(limit);
   showEachWarning(everywhere.allWarnings);

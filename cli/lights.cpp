@@ -7,6 +7,7 @@
 #include "cli/inspection_arguments.h"
 #include "cli/scene_arguments.h"
 #include "core/base/number_text.h"
+#include "core/capture/capture.h"
 #include "core/report/lamps_on_csv.h"
 #include "core/report/measured_lamps.h"
 #include "core/scene/frame_spec.h"
@@ -87,11 +88,24 @@ std::string writeOn(const LightsArguments& a, const Inspection& inspection, Lamp
   return lampsOnSummary(on);
 }
 
+/// Who has photographs of mirror balls is not helped by being asked for poses.
+Scene sceneOf(const LightsArguments& a) {
+  try {
+    return a.places.read(a.input);
+  } catch (const UndecidedInput& e) {
+    if (e.question() != UndecidedInput::Question::Poses) throw;
+    throw InputError("", "",
+                     std::string(e.what()) +
+                         "; or, for photographs of mirror balls by one fixed camera, the outline of each ball by "
+                         "--ball CX,CY,R");
+  }
+}
+
 LampsReport ofScene(const LightsArguments& a, const Context& context) {
   InspectionRequest request;
   if (a.source == "image") request.source = FrameSource::Image;
   applyEach(request.settings, a.set);
-  const auto scene = std::make_shared<const Scene>(a.places.read(a.input));
+  const auto scene = std::make_shared<const Scene>(sceneOf(a));
   for (const std::string& w : scene->warnings) context.warn(w);
   if (!a.exclude.empty()) request.excluded = parseFrames(a.exclude, *scene, "--exclude");
   if (request.excluded.size() == scene->frames.size()) throw InputError("", "--exclude " + a.exclude, "excludes every frame");

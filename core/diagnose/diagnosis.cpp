@@ -52,16 +52,23 @@ class ModelCase {
     d_.model = name;
   }
 
-  ModelDiagnosis run() {
+  /// Causes, and remedies that cost next to nothing once the other models' errors are known.
+  void start() {
     d_.unseen = errors_.of(d_.model);
     d_.evidence = highlightEvidence(r_, model_);
     judge();
-    if (d_.status == ModelDiagnosis::Status::Ok) return std::move(d_);
+    if (d_.status == ModelDiagnosis::Status::Ok) return;
     explain();
+    otherModels(false);
+    leaveOutOfScore();
+  }
+
+  /// The rest, each of which is a fit of its own.
+  ModelDiagnosis finish() {
+    if (d_.status == ModelDiagnosis::Status::Ok) return std::move(d_);
     const std::vector<CandidateChange> candidates = candidateChanges(r_, model_, d_.evidence);
     d_.known += static_cast<int>(candidates.size());
-    otherModels();
-    leaveOutOfScore();
+    otherModels(true);
     changes(candidates, false);
     changes(candidates, true);
     d_.fits = traceFits(r_, model_);  // after the remedies: it fits once more, and the first remedy must not wait for that
@@ -70,6 +77,8 @@ class ModelCase {
     });
     return std::move(d_);
   }
+
+  const ModelDiagnosis& soFar() const { return d_; }
 
  private:
   void judge() {
@@ -147,12 +156,12 @@ class ModelCase {
     d_.remedies.push_back(std::move(remedy));
   }
 
-  void otherModels() {
+  /// @param richest  that one alone, which takes seconds, or all but that
+  void otherModels(bool richest) {
     for (const std::string& other : modelIds()) {
-      if (other == d_.model) continue;
+      if (other == d_.model || richest != (other == modelIds().back())) continue;
       ++d_.known;
-      if (other == modelIds().back() && solved() && !options_.slowToo && !errors_.has(other))
-        continue;  // the richest takes seconds
+      if (richest && solved() && !options_.slowToo && !errors_.has(other)) continue;
       keep({{.model = other}, modelByName(other).assumption()}, errors_.of(other));
     }
   }
@@ -277,10 +286,28 @@ InspectionRequest with(InspectionRequest request, const Change& change, const Sc
 }
 
 Diagnosis diagnose(const Inspection& inspection, const DiagnoseOptions& options, const ProgressFn& progress) {
-  Diagnosis all;
   ErrorsOfModels errors(inspection, progress);
-  for (const std::string& model : inspection.request.models)
-    all.models.push_back(ModelCase(inspection, model, errors, options, progress).run());
+  std::vector<ModelCase> cases;
+  cases.reserve(inspection.request.models.size());
+  std::vector<std::size_t> quick, slow;
+  for (const std::string& model : inspection.request.models) {
+    (model == modelIds().back() ? slow : quick).push_back(cases.size());
+    cases.emplace_back(inspection, model, errors, options, progress);
+  }
+  // Somebody may wait: first what every model answers at once, then the rest, beginning with the model that is nearest to being good.
+  for (const std::size_t i : quick) cases[i].start();
+  std::stable_sort(quick.begin(), quick.end(), [&](std::size_t a, std::size_t b) {
+    const LeftOutError &x = cases[a].soFar().unseen, &y = cases[b].soFar().unseen;
+    if (x.views.empty() || y.views.empty()) return x.views.size() > y.views.size();
+    return std::pair(-x.answered(), x.meanPct()) < std::pair(-y.answered(), y.meanPct());
+  });
+  Diagnosis all;
+  all.models.resize(cases.size());
+  for (const std::size_t i : quick) all.models[i] = cases[i].finish();
+  for (const std::size_t i : slow) {
+    cases[i].start();
+    all.models[i] = cases[i].finish();
+  }
   return all;
 }
 

@@ -214,12 +214,13 @@ class Findings {
     std::string reason =
         formatted("%d training highlights count as %.2g different views (those within 5\u00b0 of each other count in part): ",
                   int(rays_.size()), effective);
-    reason += model_.hasOutlines() ? chosen(v, "three or more determine an ellipsoid with a free centre.",
-                                            "fewer than three, which an ellipsoid with a free centre needs.",
-                                            "fewer than two, which determine neither the light's distance nor an ellipsoid.")
-                                   : chosen(v, "three or more determine the light and leave data to check it.",
-                                            "fewer than three: two determine the light, but no data is left to check it.",
-                                            "fewer than two, which do not determine the light's distance.");
+    reason += model_.hasOutlines()
+                  ? chosen(v, "three or more determine an ellipsoid with a free centre.",
+                           "fewer than three, which an ellipsoid with a free centre needs.",
+                           "fewer than two: what the light's distance and an ellipsoid stand on is the contours' shape alone.")
+                  : chosen(v, "three or more determine the light and leave data to check it.",
+                           "fewer than three: two determine the light, but no data is left to check it.",
+                           "fewer than two: what the light's distance stands on is the contours' shape alone.");
     add("views", "effective views", effective, formatted("%.2g of %d", effective, int(rays_.size())), v, reason);
   }
 

@@ -53,6 +53,7 @@ PlotData errorPlot(const Inspection& inspection, const ErrorPlotOptions& options
   plot.id = "error";
   plot.title = "Contour error per frame";
   plot.x.title = "frame";
+  plot.x.counts = true;
   plot.y.title = "contour error (%)";
   plot.y.floor = kSmallestPct;
   plot.noValue = "missed a highlight";

@@ -152,9 +152,11 @@ std::vector<std::pair<double, std::string>> ticksOf(const PlotAxis& axis, double
   // 1, 2 or 5 times a power of ten; on a short logarithmic axis the same between the values at its ends.
   const double low = axis.log ? std::pow(10.0, from) : from, high = axis.log ? std::pow(10.0, to) : to;
   const double rough = (high - low) / most, power = std::pow(10.0, std::floor(std::log10(rough)));
-  const double step = power * (rough / power <= 1.0001 ? 1 : rough / power <= 2 ? 2 : rough / power <= 5 ? 5 : 10);
+  double step = power * (rough / power <= 1.0001 ? 1 : rough / power <= 2 ? 2 : rough / power <= 5 ? 5 : 10);
+  if (axis.counts) step = std::max(1.0, step);
   for (double k = std::ceil(low / step); k * step <= high; ++k) {
     const double value = k == 0 ? 0 : k * step;
+    if (axis.counts && value < 0) continue;
     ticks.emplace_back(axis.log ? std::log10(value) : value, numberText(value, "%.6g"));
     if (int(ticks.size()) > 4 * most) break;
   }

@@ -55,6 +55,7 @@ struct PlotAxis {
   double floor = 1e-6;
   std::optional<double> from, to;                       ///< else the data's range with a margin
   std::vector<std::pair<double, std::string>> names{};  ///< instead of numbers: (position, text)
+  bool counts = false;                                  ///< whole numbers from 0, as frames: no tick between them, none below 0
 };
 
 /// A range of x that is tinted over the whole height: the training frames, the excluded ones.

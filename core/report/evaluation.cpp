@@ -9,13 +9,19 @@ namespace {
 
 std::optional<Failure> noModelAnswered(const Inspection& inspection) {
   std::string reasons;
+  bool fitted = false;
   for (const auto& [name, model] : inspection.models) {
     const ModelSummary s = summarise(inspection, model);
     if (s.answered) return std::nullopt;
+    for (const ModelResult::Fit& fit : model.fits) fitted = fitted || fit.fit;
     reasons += (reasons.empty() ? "" : "; ") + name + ": " + s.reason;
   }
   if (std::optional<Failure> none = noUsableView(inspection)) return none;
   if (inspection.models.empty()) return std::nullopt;  // none was asked for
+  // Nothing is wrong with the models then: there is nothing to compare their predictions with.
+  if (fitted && heldOutFrames(inspection).all == 0)
+    return Failure{Reason::NotReached,
+                   "every frame is used for training: none is held out to compare predictions with (see --train)"};
   return Failure{Reason::NotReached, "no model answered; " + reasons};
 }
 

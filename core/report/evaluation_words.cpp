@@ -83,6 +83,8 @@ std::string nextInWords(const Inspection& inspection, const Summaries& models, c
         ": over the %d highlights that both found, its error is larger by %.2g %% with a standard error of %.2g %%, "
         "so this run does not tell which of the two is better",
         d.highlights, d.meanPct, d.standardErrorPct);
+  else if (of(next).missed == of(best).missed && percent(of(next).contourErrorPct.mean) == percent(of(best).contourErrorPct.mean))
+    text += ", which is the same to three digits: there is nothing to choose between them by this error";
   return text + ".";
 }
 

@@ -68,8 +68,10 @@ fs::path meshOf(const Capture& capture, const InputChoices& choices) {
     throw undecidedSurface(capture.folder, "contains several meshes (" + listOf(meshes) + "); choose one by --surface FILE",
                            meshes);
   if (anyDepth) return {};
-  throw undecidedSurface(
-      capture.file, "names no surface, and there is no mesh in " + capture.folder.string() + "; name one by --surface FILE", {});
+  throw undecidedSurface(capture.file,
+                         "names no surface, and there is no mesh in " + capture.folder.string() +
+                             "; name one by --surface FILE, or try --surface points (the sparse points)",
+                         {});
 }
 
 /// Names without folder and ending; with the folder where they repeat; as they are where they still do.

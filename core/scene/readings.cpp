@@ -95,6 +95,24 @@ std::string whatIsUnderstood() {
                        UndecidedInput::Question::Reading, std::move(answers));
 }
 
+/// "; its folder 'text' holds a COLMAP model": one level below, where people often stand one level too high. "" where there is none.
+std::string recognisedBelow(const fs::path& folder) {
+  constexpr int kMostLooked = 200;  // entries: a folder of photographs has thousands, and each costs reads
+  std::vector<fs::path> inside;
+  std::error_code error;
+  int looked = 0;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end && looked < kMostLooked; it.increment(error), ++looked)
+    if (std::error_code ignored; it->is_directory(ignored)) inside.push_back(it->path());
+  std::sort(inside.begin(), inside.end());
+  for (const fs::path& sub : inside) {
+    const std::vector<Reading> readings = readingsOf(sub);
+    if (readings.empty()) continue;
+    const std::string& words = readings.front().description;
+    return "; its folder '" + sub.filename().string() + "' is: " + words.substr(0, std::min(words.find(" ("), words.find(", ")));
+  }
+  return "";
+}
+
 [[noreturn]] void refuseUnknown(const fs::path& input) {
   std::error_code error;
   const fs::file_status status = fs::status(input, error);
@@ -111,7 +129,7 @@ std::string whatIsUnderstood() {
   const bool empty = folder ? fs::is_empty(input, error) : fs::file_size(input, error) == 0;
   const std::string what = folder ? (empty ? "the folder is empty" : "nothing in this folder is recognised")
                                   : (empty ? "the file is empty" : "the content is not recognised");
-  throw InputError(input.string(), "", what + "; supported: " + whatIsUnderstood());
+  throw InputError(input.string(), "", what + (folder ? recognisedBelow(input) : "") + "; supported: " + whatIsUnderstood());
 }
 
 /// Of images or a video, because poses are given.

@@ -4,6 +4,8 @@
 #include <QAbstractItemView>
 #include <QHelpEvent>
 #include <QToolTip>
+#include <QTreeView>
+#include <algorithm>
 
 #include "gui/base/tips.h"
 
@@ -25,6 +27,17 @@ bool ElidingDelegate::helpEvent(QHelpEvent* event, QAbstractItemView* view, cons
     return true;
   }
   return QStyledItemDelegate::helpEvent(event, view, option, index);
+}
+
+QSize WrappingDelegate::sizeHint(const QStyleOptionViewItem& option, const QModelIndex& index) const {
+  const auto* tree = qobject_cast<const QTreeView*>(option.widget);
+  if (!tree) return QStyledItemDelegate::sizeHint(option, index);
+  int depth = tree->rootIsDecorated() ? 1 : 0;
+  for (QModelIndex parent = index.parent(); parent.isValid(); parent = parent.parent()) ++depth;
+  QStyleOptionViewItem wrapped = option;
+  wrapped.features |= QStyleOptionViewItem::WrapText;
+  wrapped.rect = QRect(0, 0, std::max(1, tree->columnWidth(index.column()) - depth * tree->indentation()), 1);
+  return QStyledItemDelegate::sizeHint(wrapped, index);
 }
 
 }  // namespace glint::gui

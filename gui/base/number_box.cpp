@@ -2,6 +2,7 @@
 #include "gui/base/number_box.h"
 
 #include <QHelpEvent>
+#include <QLineEdit>
 #include <QLocale>
 #include <QSignalBlocker>
 #include <QStyle>
@@ -40,6 +41,7 @@ QString bare(QString text, const QString& suffix) {
 }  // namespace
 
 NumberBox::NumberBox(const ParamSpec& spec, QWidget* parent) : QDoubleSpinBox(parent) {
+  lineEdit()->installEventFilter(this);
   setLocale(QLocale::c());
   setKeyboardTracking(false);
   setFocusPolicy(Qt::StrongFocus);
@@ -93,6 +95,13 @@ bool NumberBox::event(QEvent* e) {
   const QString more = hasRichTip(this) ? QStringLiteral("<br>") : QStringLiteral("\n");
   const QString all = toolTip().isEmpty() ? exact : toolTip() + more + exact;
   QToolTip::showText(static_cast<QHelpEvent*>(e)->globalPos(), hasRichTip(this) ? all : plainTip(all), this);
+  return true;
+}
+
+/// A double click is to replace the number: Qt would mark the digits on one side of the point.
+bool NumberBox::eventFilter(QObject* watched, QEvent* e) {
+  if (watched != lineEdit() || e->type() != QEvent::MouseButtonDblClick) return QDoubleSpinBox::eventFilter(watched, e);
+  selectAll();
   return true;
 }
 

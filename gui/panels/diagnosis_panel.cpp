@@ -15,6 +15,7 @@
 #include "core/inspect/summary.h"
 #include "core/report/diagnosis_report.h"
 #include "core/selection/selection.h"
+#include "gui/base/eliding_delegate.h"
 #include "gui/base/text.h"
 #include "viz/solver_runs.h"
 
@@ -77,6 +78,22 @@ void append(QTreeWidgetItem* parent, QTreeWidgetItem* item, ProblemLine place) {
   int at = parent->childCount();
   while (at > 0 && parent->child(at - 1)->data(0, kPlace).toInt() > int(place)) --at;
   parent->insertChild(at, item);
+}
+
+bool hasLine(const QTreeWidgetItem* parent, const QString& text) {
+  for (int i = 0; i < parent->childCount(); ++i)
+    if (parent->child(i)->text(0) == text) return true;
+  return false;
+}
+
+/// What a button does, in the words of the window instead of the flags of the command line.
+QString wordsOf(const Change& change) {
+  QStringList words;
+  if (change.model) words << QObject::tr("use %1").arg(toQString(*change.model));
+  if (change.train) words << QObject::tr("train on %1").arg(toQString(*change.train));
+  if (change.set) words << QObject::tr("set %1").arg(toQString(*change.set).replace(QLatin1String("="), QLatin1String(" = ")));
+  if (change.exclude) words << QObject::tr("leave out %1").arg(toQString(*change.exclude));
+  return words.join(QObject::tr(" and "));
 }
 
 QTreeWidgetItem* addLine(QTreeWidgetItem* parent, const QString& text, ProblemLine place) {
@@ -152,6 +169,7 @@ DiagnosisPanel::DiagnosisPanel(Document& document, QWidget* parent) : QWidget(pa
   list_->setHeaderHidden(true);
   list_->setWordWrap(true);
   list_->setUniformRowHeights(false);
+  list_->setItemDelegate(new WrappingDelegate(list_));
   list_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
   list_->header()->setSectionResizeMode(0, QHeaderView::Stretch);
   // Lines wrap at another place then.
@@ -161,7 +179,10 @@ DiagnosisPanel::DiagnosisPanel(Document& document, QWidget* parent) : QWidget(pa
   connect(list_, &QTreeWidget::itemClicked, this, [this](QTreeWidgetItem* item) { choose(item); });
   connect(list_, &QTreeWidget::itemActivated, this, [this](QTreeWidgetItem* item) { choose(item); });
   connect(&document_, &Document::inspectionChanged, this, &DiagnosisPanel::refresh);
-  connect(&document_, &Document::staleChanged, this, [this] { showState(); });
+  connect(&document_, &Document::staleChanged, this, [this](bool stale) {
+    if (stale) queue_.stop();  // of a state that is no more; the new one's results wait for the processor
+    showState();
+  });
   connect(&document_, &Document::sceneOpened, this, [this] {
     queue_.drop();
     queue_.stop();
@@ -218,9 +239,14 @@ void DiagnosisPanel::refresh() {
   showState();
 }
 
+/// The same question about the same scene: undo leads back to it.
+bool DiagnosisPanel::isOf(const Inspection& inspection) const {
+  return of_ && of_->given == inspection.given && of_->request == inspection.request;
+}
+
 void DiagnosisPanel::tellRuns() {
   std::shared_ptr<std::vector<viz::DrawnRuns>> runs;
-  if (diagnosis_ && of_ == document_.inspection()) {
+  if (diagnosis_ && document_.inspection() && isOf(*document_.inspection())) {
     runs = std::make_shared<std::vector<viz::DrawnRuns>>();
     for (const ModelDiagnosis& d : diagnosis_->models)
       for (const FitTrace& fit : d.fits) runs->push_back({d.model, fit.key.light, fit.runs});
@@ -249,7 +275,7 @@ void DiagnosisPanel::fillProblems() {
              : tr("%1: no answer").arg(toQString(name))});
     top->setData(0, kModel, toQString(name));
     top->setExpanded(true);
-    const bool explained = diagnosis_ && of_ == inspection;  // its causes say it
+    const bool explained = diagnosis_ && isOf(*inspection);  // its causes say it
     for (const ModelResult::Fit& fit : result->second.fits)
       if (fit.failure() && !explained)
         addLine(top, tr("because light %1: %2").arg(toQString(textOf(fit.key())), toQString(fit.failure()->message())),
@@ -274,7 +300,8 @@ void DiagnosisPanel::addShared(QTreeWidgetItem* top, const Inspection& inspectio
 void DiagnosisPanel::fillDiagnosis(const ModelDiagnosis& d) {
   if (d.status == ModelDiagnosis::Status::Ok) return;
   QTreeWidgetItem* const top = itemOf(d.model, tr("%1: %2").arg(toQString(d.model), QLatin1String(nameOf(d.status))));
-  for (const std::string& cause : d.causes) addLine(top, tr("because %1").arg(toQString(cause)), ProblemLine::Cause);
+  for (const std::string& cause : d.causes)
+    if (const QString line = tr("because %1").arg(toQString(cause)); !hasLine(top, line)) addLine(top, line, ProblemLine::Cause);
   for (const Remedy& remedy : d.remedies) addRemedy(d.model, remedy);
   if (d.remedies.empty()) addLine(top, tr("nothing helps: %1 changes were tried").arg(d.tried), ProblemLine::Help);
   std::vector<const HighlightEvidence*> against;
@@ -321,10 +348,12 @@ void DiagnosisPanel::addRemedy(const std::string& model, const Remedy& remedy) {
   button->setAccessibleName(tr("Try %1").arg(flags));
   button->setToolTip(tr("Makes this change; undo takes it back"));
   row->addWidget(button);
-  auto* label = new QLabel(toQString(effectText(remedy)).replace(QStringLiteral("->"), QStringLiteral("\u2192")) +
-                           QStringLiteral("    ") + flags);
+  const QString effect = toQString(effectText(remedy)).replace(QStringLiteral("->"), QStringLiteral("\u2192"));
+  auto* label = new QLabel(tr("%1: error %2").arg(wordsOf(remedy.change), effect));
   label->setTextFormat(Qt::PlainText);
-  label->setToolTip(tr("%1\n%2\nThe error is the mean over views that the fit did not see.").arg(flags, toQString(remedy.why)));
+  label->setToolTip(tr("%1\n%2\nThe error is the mean over views that the fit did not see; "
+                       "\"6 of 22 views\": the others were not predicted, and count as 100 %.")
+                        .arg(flags, toQString(remedy.why)));
   row->addWidget(label, 1);
   list_->setItemWidget(line, 0, holder);
   connect(button, &QPushButton::clicked, this, [this, model, change = remedy.change] { tryRemedy(model, change); });
@@ -343,12 +372,12 @@ void DiagnosisPanel::tryRemedy(const std::string& model, const Change& change) {
     return;
   }
   if (!std::count(request.models.begin(), request.models.end(), use)) request.models.push_back(use);
-  const QString text = tr("Try %1").arg(toQString(flagsOf(change)));
+  const QString text = tr("Try: %1").arg(wordsOf(change));
   if (request != document_.request()) document_.setRequest(request, text);
   draw::Selection selection = document_.selection();
   selection.model = use;
   document_.select(selection);
-  emit message(tr("%1: undo takes it back").arg(text));
+  emit message(tr("%1. Undo takes it back").arg(text));
 }
 
 void DiagnosisPanel::choose(QTreeWidgetItem* item) {
@@ -373,9 +402,10 @@ void DiagnosisPanel::showState(const QString& stage) {
   const bool ready = document_.inspection() && !document_.stale();
   ask_->setText(queue_.busy() ? tr("Stop") : tr("Find out why"));
   ask_->setEnabled(queue_.busy() || ready);
-  if (queue_.busy()) return state_->setText(stage.isEmpty() ? tr("Measuring what helps…") : stage);
+  if (queue_.busy())
+    return state_->setText(stage.isEmpty() ? tr("Measuring what helps…") : tr("Measuring what helps: %1…").arg(stage));
   if (!document_.inspection()) return state_->setText(document_.scene() ? tr("Computing…") : tr("No scene"));
-  if (diagnosis_ && of_ != document_.inspection())
+  if (diagnosis_ && !isOf(*document_.inspection()))
     return state_->setText(tr("These remedies are of an earlier state; ask again for those of the new one"));
   if (problems_ == 0) return state_->setText(tr("Every model answers, and no frame is wrong"));
   state_->setText(diagnosis_ ? tr("Best first. Remedies are measured in views that the fit did not see")

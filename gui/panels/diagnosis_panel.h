@@ -48,6 +48,7 @@ class DiagnosisPanel : public QWidget {
   void fillProblems();
   /// What the highlights that this model gets wrong have in common.
   void addShared(QTreeWidgetItem* top, const Inspection& inspection, const std::string& model);
+  bool isOf(const Inspection& inspection) const;
   void fillDiagnosis(const ModelDiagnosis& model);
   void tellRuns();
   /// The line of a model, made with this text where there is none.

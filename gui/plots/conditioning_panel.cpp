@@ -224,7 +224,13 @@ ConditioningPanel::ConditioningPanel(Document& document, QWidget* parent) : QWid
       dirty_ = true;
       refresh();
     } else {
-      follow(document_.selection().light);
+      const draw::Selection& s = document_.selection();
+      std::string light = s.light;
+      if (light.empty() && s.highlight >= 0 && inspection && s.frame < int(inspection->evidence.size())) {
+        const auto& highlights = inspection->evidence[std::size_t(s.frame)].highlights;
+        if (s.highlight < int(highlights.size())) light = highlights[std::size_t(s.highlight)].light;
+      }
+      follow(light);
     }
   });
 }

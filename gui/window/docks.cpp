@@ -98,6 +98,11 @@ void Docks::keepVisible(const QString& name, std::function<bool()> needed) {
   needed_ = std::move(needed);
 }
 
+void Docks::keepLow(const QString& name) {
+  window_->layout()->activate();
+  window_->resizeDocks({at(name)}, {kTimeline + 4 * window_->fontMetrics().lineSpacing()}, Qt::Vertical);
+}
+
 void Docks::hideAll() {
   for (QDockWidget* dock : std::as_const(docks_)) dock->hide();
 }
@@ -122,8 +127,14 @@ void Docks::bring(const QString& name) {
       window_->resizeDocks({dock}, {std::min(kBeside, window_->width() * 22 / 100)}, Qt::Horizontal);
     }
   }
+  const bool appears = dock->isHidden();
   dock->show();
   dock->raise();
+  if (!appears || dock->isFloating() || window_->dockWidgetArea(dock) != Qt::BottomDockWidgetArea) return;
+  // A layout without this dock has left it the height of nothing.
+  window_->layout()->activate();
+  if (const int height = window_->height() * 3 / 10; name != QLatin1String("timeline") && dock->height() < height * 2 / 3)
+    window_->resizeDocks({at("timeline"), dock}, {kTimeline, height}, Qt::Vertical);
 }
 
 void Docks::apply(const Layout& layout) {

@@ -26,6 +26,8 @@ class Docks {
   /// Shows a dock and puts it before its tabs; where it would cover the dock that is to stay visible, beside the views instead.
   /// std::invalid_argument for an unknown name.
   void bring(const QString& name);
+  /// The views get the height that this dock does not need.
+  void keepLow(const QString& name);
   /// @param needed  whether this dock must stay visible now, when another one is brought.
   void keepVisible(const QString& name, std::function<bool()> needed);
   /// Until a layout is applied.

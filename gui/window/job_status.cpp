@@ -13,8 +13,16 @@
 namespace glint::gui {
 
 namespace {
-constexpr int kShownAfterMs = 200;  // what ends sooner would only flicker, and take the time of laying out and painting
+/// What a stage does, where the name that core gives it does not say so.
+QString stageWords(const QString& stage) {
+  if (stage == QLatin1String("hash")) return QObject::tr("checking input files");
+  if (stage == QLatin1String("detect")) return QObject::tr("finding highlights");
+  if (stage == QLatin1String("lobe")) return QObject::tr("fitting reflectance (the slowest model)");
+  return stage;
 }
+
+constexpr int kShownAfterMs = 200;  // what ends sooner would only flicker, and take the time of laying out and painting
+}  // namespace
 
 JobStatus::JobStatus(Document& document, Runner& runner, QWidget* parent)
     : QWidget(parent), document_(document), runner_(runner) {
@@ -61,7 +69,7 @@ JobStatus::JobStatus(Document& document, Runner& runner, QWidget* parent)
   connect(&document_, &Document::sceneOpened, this, &JobStatus::refresh);
   connect(&runner_, &Runner::progressed, this, [this](const QString& stage, int done, int total) {
     if (!bar_->isVisible()) return;
-    const QString words = stage == QStringLiteral("hash") ? tr("checking input files") : stage;
+    const QString words = stageWords(stage);
     text_->setText(total > 0 ? tr("%1 %2/%3").arg(words).arg(done).arg(total) : words);
     bar_->setRange(0, total);
     bar_->setValue(done);

@@ -16,13 +16,21 @@ namespace glint::gui {
 
 namespace {
 constexpr double kLarger = 1.5;  // texts that are read from the other end of a room
+
+/// Where a style sheet has given a widget a font of its own (bold titles of docks), Qt does not take the application's to what is
+/// inside of it; the sheet is read again for that.
+void setTextFont(const QFont& font) {
+  QApplication::setFont(font);
+  qApp->setStyleSheet(qApp->styleSheet());
 }
+}  // namespace
 
 Present::Present(QMainWindow* window, std::function<void()> arrange)
     : QObject(window), window_(window), arrange_(std::move(arrange)) {}
 
 void Present::start() {
   if (std::exchange(on_, true)) return;
+  docks_ = window_->saveState();  // of the tool bar, too: before it is hidden
   barsShown_.clear();
   QList<QWidget*> bars{window_->menuBar(), window_->statusBar()};
   for (QToolBar* bar : window_->findChildren<QToolBar*>(QString(), Qt::FindDirectChildrenOnly)) bars << bar;
@@ -34,10 +42,7 @@ void Present::start() {
   font_ = QApplication::font();
   QFont large = font_;
   large.setPointSizeF(kLarger * font_.pointSizeF());
-  QApplication::setFont(large);
-  // Where the application has a style sheet, its font reaches no widget that there is.
-  window_->setStyleSheet(QStringLiteral("QWidget { font-size: %1pt }").arg(large.pointSizeF()));
-  docks_ = window_->saveState();
+  setTextFont(large);
   arrange_();
   window_->setWindowState(state_ | Qt::WindowFullScreen);
   qApp->installEventFilter(this);
@@ -49,8 +54,7 @@ void Present::leave() {
   qApp->removeEventFilter(this);
   setBlack(false);
   window_->setWindowState(state_);
-  QApplication::setFont(font_);
-  window_->setStyleSheet(QString());
+  setTextFont(font_);
   for (auto it = barsShown_.cbegin(); it != barsShown_.cend(); ++it) it.key()->setVisible(it.value());
   window_->restoreState(docks_);
   emit changed(false);

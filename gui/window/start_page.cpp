@@ -25,7 +25,7 @@ namespace glint::gui {
 namespace {
 constexpr QSize kPicture(176, 110);  // px: six in a row of a window as wide as a usual screen
 constexpr int kBorder = 6;           // px around a tile's picture
-constexpr int kTitleLines = 2;
+constexpr int kTitleLines = 3;       // of the longest title of a lesson
 }  // namespace
 
 Tile::Tile(const QString& title, const QString& picture, QWidget* parent) : QAbstractButton(parent) {

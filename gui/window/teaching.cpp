@@ -49,6 +49,7 @@ Teaching::Teaching(const Parts& parts) : QObject(parts.window), parts_(parts) {
     parts_.docks.hideAll();
     parts_.docks.bring(QStringLiteral("timeline"));
     if (teaches()) parts_.docks.bring(QStringLiteral("explain"));
+    parts_.docks.keepLow(QStringLiteral("timeline"));
   });
   connect(present_, &Present::step, this, [this](int by) {
     if (parts_.explain.step() < 0 && parts_.document.option("explain/lesson", std::string()).empty())

@@ -27,13 +27,15 @@ std::string quoted(const fs::path& p) {
 
 TEST(CommandLine, VersionAndHelpAreDone) {
   EXPECT_EQ(runGlint("--version").out, "glint 0.1.0\n");
-  for (const char* arguments : {"", "--help", "info --help", "convert --help", "settings --help"}) {
+  for (const char* arguments : {"", "--help", "info --help", "convert --help", "settings --help", "help", "help convert"}) {
     const ProgramRun run = runGlint(arguments);
     EXPECT_EQ(run.code, 0) << arguments;
     EXPECT_EQ(run.err, "") << arguments;
     EXPECT_THAT(run.out, HasSubstr("Usage: ")) << arguments;
     EXPECT_THAT(run.out, HasSubstr("Exit codes: ")) << arguments;
   }
+  EXPECT_EQ(runGlint("help convert").out, runGlint("convert --help").out);
+  EXPECT_EQ(runGlint("help convrt").code, 2);
 }
 
 TEST(CommandLine, WrongRequestsAreCodeTwoAndOneLine) {
@@ -50,6 +52,8 @@ TEST(CommandLine, WrongRequestsAreCodeTwoAndOneLine) {
 TEST(CommandLine, AMistypedNameIsAnsweredWithTheNearestOne) {
   for (const auto& [arguments, meant] : std::initializer_list<std::pair<const char*, const char*>>{
            {"evalaute x", "'evalaute' is not a command; did you mean 'evaluate'? (see glint --help)"},
+           {"help evalaute", "'evalaute' is not a command; did you mean 'evaluate'?"},
+           {"--versoin", "'--versoin' is not an option; did you mean '--version'? (see glint --help)"},
            {"evaluate x --modles=dual", "did you mean '--models'?"},
            {"evaluate x --models canonicl", "unknown model; did you mean 'canonical'? Known: primal, dual, canonical"},
            {"evaluate x --set predict.direction=9", "unknown setting; did you mean 'predict.directions'?"}}) {

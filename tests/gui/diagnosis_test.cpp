@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What is wrong and what helps, by clicks: a fault is put into exact contours, and the dock must lead out of it.
+#include <QLabel>
 #include <QPushButton>
 #include <QRegularExpression>
+#include <QSet>
 #include <QSignalSpy>
 #include <QTreeWidget>
 
@@ -126,6 +128,43 @@ class DiagnosisTest : public QObject {
     QCOMPARE(panel.problems(), 0);
     document.undoStack()->undo();
     QVERIFY(document.request() == before);
+  }
+
+  /// Sentences are read without hovering, in the words of the window, and once each; an undo brings back what is known of that state.
+  void whatItSaysCanBeRead() {
+    Document document(parseTrainSpec);
+    DiagnosisPanel panel(document);
+    panel.resize(300, 400);
+    panel.show();
+    QVERIFY(QTest::qWaitForWindowExposed(&panel));
+    open(document, faulty());
+    panel.diagnose();
+    QTRY_VERIFY(!panel.busy());
+    const QList<QTreeWidgetItem*> against =
+        panel.list()->findItems(QStringLiteral("against it: frame v2"), Qt::MatchStartsWith | Qt::MatchRecursive);
+    QVERIFY(!against.isEmpty());
+    const QRect row = panel.list()->visualItemRect(against.at(0));
+    const QFontMetrics metrics(panel.list()->font());
+    QVERIFY(metrics.horizontalAdvance(against.at(0)->text(0)) > row.width());  // it does not fit into one line
+    QVERIFY2(row.height() >= 2 * metrics.lineSpacing(), qPrintable(QString::number(row.height())));
+    QVERIFY(tryOf(panel, QStringLiteral("--exclude 2")));
+    bool words = false;
+    for (const QLabel* label : panel.list()->findChildren<QLabel*>())
+      words = words || label->text().startsWith(QStringLiteral("leave out 2: error "));
+    QVERIFY(words);
+    const QStringList before = lines(panel);
+    tryOf(panel, QStringLiteral("--exclude 2"))->click();
+    QCOMPARE(document.undoStack()->undoText(), QStringLiteral("Try: leave out 2"));
+    compute(document);
+    const auto* state = panel.findChild<QLabel*>(QStringLiteral("diagnoseState"));
+    QVERIFY2(state->text().contains(QStringLiteral("earlier state")), qPrintable(state->text()));
+    QStringList said = lines(panel);
+    said.removeAll(QString());
+    QCOMPARE(QSet<QString>(said.begin(), said.end()).size(), said.size());
+    document.undoStack()->undo();
+    compute(document);
+    QVERIFY2(!state->text().contains(QStringLiteral("earlier state")), qPrintable(state->text()));
+    QCOMPARE(lines(panel), before);
   }
 
   void anotherModelIsAddedAndSelected() {

@@ -6,6 +6,7 @@
 #include <QMenuBar>
 #include <QPushButton>
 #include <QScrollArea>
+#include <QToolBar>
 
 #include "gui/explain/explain_panel.h"
 #include "gui/explain/lessons.h"
@@ -92,11 +93,20 @@ class StartPageTest : public QObject, WindowFixture {
     const QStringList before = names();
     const QFont font = QApplication::font();
     const QSize size = window.size();
+    auto* const tools = window.findChild<QToolBar*>("tools");
+    auto* const timeline = window.findChild<QDockWidget*>("timeline");
+    QVERIFY(tools && !tools->isHidden() && timeline);
+    QWidget* const text = timeline->widget();
+    const double small = QFontInfo(text->font()).pointSizeF();
     QAction* present = window.actions().find("view.present");
     present->trigger();
     QTRY_VERIFY(window.isFullScreen() && present->isChecked());
     QVERIFY(QApplication::font().pointSizeF() > 1.3 * font.pointSizeF());
-    QVERIFY(window.menuBar()->isHidden() && names() == QStringList{"timeline"});
+    QVERIFY(window.menuBar()->isHidden() && tools->isHidden() && names() == QStringList{"timeline"});
+    // What stands in a dock, whose title has a font of its own, grows, too; and the views have most of the screen.
+    QVERIFY2(QFontInfo(text->font()).pointSizeF() > 1.3 * small,
+             qPrintable(QString::number(QFontInfo(text->font()).pointSizeF())));
+    QTRY_VERIFY2(timeline->height() < window.height() * 2 / 5, qPrintable(QString::number(timeline->height())));
     const int frame = window.document().selection().frame;
     QTest::keyClick(window.focusWidget() ? window.focusWidget() : &window, Qt::Key_PageDown);
     QCOMPARE(window.document().selection().frame, frame + 1);
@@ -109,7 +119,9 @@ class StartPageTest : public QObject, WindowFixture {
     QTest::keyClick(&window, Qt::Key_Escape);
     QTRY_VERIFY(!window.isFullScreen() && !present->isChecked());
     QCOMPARE(QApplication::font(), font);
+    QCOMPARE(QFontInfo(text->font()).pointSizeF(), small);
     QVERIFY(!window.menuBar()->isHidden());
+    QTRY_VERIFY(!tools->isHidden());
     QTRY_COMPARE(names(), before);
     QTRY_COMPARE(window.size(), size);
   }

@@ -89,6 +89,10 @@ class TypingTest : public QObject, WindowFixture {
       QCOMPARE(document.request().settings.number("detect.level"), 0.37);
       QVERIFY2(box->text().startsWith("0.37"), qPrintable(box->text()));
       QCOMPARE(complaint(box), QString());
+      // A double click marks the whole number, not the digits on one side of its point.
+      auto* const line = box->findChild<QLineEdit*>();
+      QTest::mouseDClick(line, Qt::LeftButton, {}, QPoint(line->width() / 4, line->height() / 2));
+      QCOMPARE(line->selectedText(), box->text());
       type(box, "half");
       QCOMPARE(document.request().settings.number("detect.level"), 0.37);
       QVERIFY2(complaint(box).contains("\"half\" is not a number") && complaint(box).contains("keeping 0.37"),

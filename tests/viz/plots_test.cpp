@@ -66,6 +66,10 @@ TEST(PlotData, Ticks) {
   };
   EXPECT_EQ(texts(ticksOf({}, 0, 1, 5)), "0 0.2 0.4 0.6 0.8 1 ");
   EXPECT_EQ(texts(ticksOf({}, -1, 11, 4)), "0 5 10 ");
+  EXPECT_EQ(texts(ticksOf({}, -0.5, 2.5, 6)), "-0.5 0 0.5 1 1.5 2 2.5 ");
+  PlotAxis frames;
+  frames.counts = true;
+  EXPECT_EQ(texts(ticksOf(frames, -0.5, 2.5, 6)), "0 1 2 ") << "there is no frame half-way, and none before the first";
   PlotAxis log;
   log.log = true;
   EXPECT_EQ(texts(ticksOf(log, -2, 2, 6)), "0.01 0.1 1 10 100 ");

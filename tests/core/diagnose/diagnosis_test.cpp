@@ -148,6 +148,27 @@ TEST(Diagnosis, WithoutAUsableViewItSaysSo) {
   EXPECT_NE(diagnosisText(inspection, diagnose(inspection)).find("failed"), std::string::npos);
 }
 
+/// Somebody waits: what costs next to nothing comes first for every model, and what costs fits first for the model that is nearest to being
+/// good. The answer is in the order of the request all the same.
+TEST(Diagnosis, WhatIsQuickComesFirstThenTheNearestModel) {
+  std::vector<std::pair<std::string, bool>> found;  // model; the remedy is another model, or frames left out of the score
+  DiagnoseOptions options;
+  options.mostTried = 4;
+  options.found = [&](const std::string& model, const Remedy& r) { found.emplace_back(model, r.change.model || !r.measured); };
+  const Diagnosis all = diagnose(inspected(withMovedContour(2), {"primal", "limit-angle"}), options);
+  ASSERT_EQ(all.models.size(), 2U);
+  EXPECT_EQ(all.models[0].model, "primal");
+  EXPECT_EQ(all.models[1].model, "limit-angle");
+  ASSERT_FALSE(found.empty());
+  EXPECT_EQ(found.front(), std::pair(std::string("primal"), true));
+  const auto slow = std::find_if(found.begin(), found.end(), [](const auto& f) { return !f.second; });
+  ASSERT_NE(slow, found.end());
+  EXPECT_EQ(slow->first, "limit-angle");
+  std::size_t remedies = 0;
+  for (const ModelDiagnosis& d : all.models) remedies += d.remedies.size();
+  EXPECT_EQ(found.size(), remedies);
+}
+
 /// A held-out frame that shows something else: leaving it out makes the score better by definition, so that it must not stand before what was
 /// measured, and says what it is.
 TEST(Diagnosis, LeavingAFrameOutOfTheScoreIsNoMeasuredRemedy) {

@@ -71,6 +71,16 @@ TEST(EvaluationWords, DoNotCallAnOrderByChanceABetterModel) {
       errorDifference(runWith({{"primal", {2.3, 1.9, 2.2, 1.8, 2.3}}, {"dual", {1, 1, 1, 1, 1}}}), "dual", "primal").isClear());
 }
 
+TEST(EvaluationWords, DoNotPraiseADifferenceThatTheNumbersDoNotShow) {
+  const EvaluationWords same =
+      evaluationWords(runWith({{"primal", {1, 1, 1, 1, 1}}, {"dual", {1.0001, 1.0001, 1.0001, 1.0001, 1.0001}}}), {});
+  EXPECT_EQ(same.best, "primal");
+  EXPECT_THAT(joined(same.inShort), HasSubstr("The next is dual with 1 % on average, which is the same to three digits"));
+  const EvaluationWords other =
+      evaluationWords(runWith({{"primal", {1, 1, 1, 1, 1}}, {"dual", {1.01, 1.01, 1.01, 1.01, 1.01}}}), {});
+  EXPECT_THAT(joined(other.inShort), Not(HasSubstr("the same to three digits")));
+}
+
 TEST(EvaluationWords, NameWhatTheBestMissedAndInvented) {
   Inspection run = runWith({{"primal", {2, 3, 4, 3, 3}}, {"dual", {1, 1, 1, 1, 1}}});
   FrameComparison::Row& missed = heldOut(run, "dual", 6).rows.at(0);

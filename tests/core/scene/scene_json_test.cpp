@@ -230,7 +230,11 @@ TEST(ReadScene, WhatIsNotUnderstoodIsSaidWithAListOfWhatIs) {
               testing::AllOf(HasSubstr("the folder is empty"), HasSubstr("scene file")));
   folder.write("readme.txt", "hello");
   EXPECT_THAT(inputErrorOf([&] { readScene(folder.path()); }), HasSubstr("nothing in this folder is recognised"));
+  EXPECT_THAT(inputErrorOf([&] { readScene(folder.path()); }), testing::Not(HasSubstr("its folder")));
   EXPECT_THAT(inputErrorOf([&] { readScene(folder / "readme.txt"); }), HasSubstr("not recognised"));
+  fs::create_directory(folder / "inside");
+  folder.write("inside/scene.json", minimalScene());
+  EXPECT_THAT(inputErrorOf([&] { readScene(folder.path()); }), HasSubstr("is recognised; its folder 'inside' is: scene file"));
   EXPECT_THAT(inputErrorOf([&] { readScene(folder / "nothing"); }), HasSubstr("no such file"));
   EXPECT_THAT(inputErrorOf([&] { readScene(folder.write("empty.json", "")); }), HasSubstr("the file is empty"));
 }
