@@ -2,6 +2,7 @@
 #include "gui/plots/plot_cursor.h"
 
 #include <algorithm>
+#include <cmath>
 #include <tuple>
 #include <utility>
 
@@ -34,7 +35,10 @@ std::vector<draw::PlotSample> PlotCursor::inOrder(const draw::PlotData& plot, co
 
 std::optional<draw::PlotSample> PlotCursor::find(const draw::PlotData& plot, const std::optional<Point>& point) {
   if (!point) return std::nullopt;
-  const auto is = [&](const draw::PlotPoint* p) { return p && p->x == point->x && p->y == point->y && p->label == point->label; };
+  const auto same = [](double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); };  // a cross has no y
+  const auto is = [&](const draw::PlotPoint* p) {
+    return p && same(p->x, point->x) && same(p->y, point->y) && p->label == point->label;
+  };
   if (is(pointAt(plot, point->sample))) return point->sample;
   for (int s = 0; s < int(plot.series.size()); ++s)
     for (int i = 0; i < int(plot.series[std::size_t(s)].points.size()); ++i)

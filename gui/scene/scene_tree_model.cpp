@@ -358,7 +358,10 @@ QString SceneTreeModel::nameOf(const SceneObject& o) const {
   switch (o.kind) {
     case Kind::Surface: return o.key == viz::HiddenObjects::kDepthMaps ? tr("depth maps") : tr("surface %1").arg(nameText(o.key));
     case Kind::Camera: return tr("camera %1").arg(nameText(scene->frames[std::size_t(o.frame)].id));
-    case Kind::Highlight: return tr("%1 of frame %2").arg(highlightName(o), nameText(scene->frames[std::size_t(o.frame)].id));
+    case Kind::Highlight:
+      return (o.predicted >= 0 ? tr("spurious highlight %1 of frame %2") : tr("highlight %1 of frame %2"))
+          .arg(o.predicted >= 0 ? o.predicted + 1 : o.highlight + 1)
+          .arg(nameText(scene->frames[std::size_t(o.frame)].id));
     case Kind::Light: return tr("light %1").arg(nameText(o.key));
     case Kind::Ellipsoid:
       return objectsOf(Kind::Light).size() < 2 ? nameText(o.key) : tr("%1 of light %2").arg(nameText(o.key), nameText(o.light));
@@ -376,13 +379,13 @@ std::vector<std::string> SceneTreeModel::missedBy(const SceneObject& o) const {
   return missed == found->second.missedBy.end() ? std::vector<std::string>() : missed->second;
 }
 
-/// As the frame view and the list of problems mark and count them.
+/// As the frame view and the list of problems mark and count them; what matters first, as the panel is narrow.
 QString SceneTreeModel::highlightName(const SceneObject& o) const {
-  if (o.predicted >= 0) return tr("△ %1 %2, spurious").arg(nameText(o.key)).arg(o.predicted + 1);
+  if (o.predicted >= 0) return tr("△ spurious %1, of %2").arg(o.predicted + 1).arg(nameText(o.key));
   const std::vector<std::string> models = missedBy(o);
   if (models.empty()) return tr("highlight %1").arg(o.highlight + 1);
-  return models.size() == 1 ? tr("□ highlight %1, missed by %2").arg(o.highlight + 1).arg(nameText(models.front()))
-                            : tr("□ highlight %1, missed by %2 models").arg(o.highlight + 1).arg(models.size());
+  return models.size() == 1 ? tr("□ missed %1, by %2").arg(o.highlight + 1).arg(nameText(models.front()))
+                            : tr("□ missed %1, by %2 models").arg(o.highlight + 1).arg(models.size());
 }
 
 QString SceneTreeModel::detailOf(const SceneObject& o) const {
@@ -529,7 +532,9 @@ QVariant SceneTreeModel::objectData(const SceneObject& o, const Group& group, in
         return effects_.count(o.frame) ? QVariant(effects_.at(o.frame)) : QVariant();
       if (column == Detail && o.kind == Kind::Camera) return int(document_.role(o.frame));
       return row;
-    case kFindRole: return nameOf(o) + QLatin1Char(' ') + detailOf(o);
+    case kFindRole:
+      return nameOf(o) + QLatin1Char(' ') + detailOf(o) +
+             (o.kind == Kind::Highlight ? QLatin1Char(' ') + highlightName(o) : QString());
     default: return {};
   }
 }

@@ -164,8 +164,8 @@ class UnmatchedTest : public QObject {
     QCOMPARE(tree.model().rowCount(camera), 2);
     QCOMPARE(tree.model().rowCount(tree.model().indexOf({SceneObject::Kind::Camera, kFrame - 1, -1, {}, {}})), 1);
     const QModelIndex missed = tree.model().index(0, 0, camera), spurious = tree.model().index(1, 0, camera);
-    QCOMPARE(missed.data().toString(), QStringLiteral("□ highlight 1, missed by limit-angle"));
-    QCOMPARE(spurious.data().toString(), QStringLiteral("△ limit-angle 1, spurious"));
+    QCOMPARE(missed.data().toString(), QStringLiteral("□ missed 1, by limit-angle"));
+    QCOMPARE(spurious.data().toString(), QStringLiteral("△ spurious 1, of limit-angle"));
     QVERIFY(missed.data(Qt::ToolTipRole).toString().contains(QStringLiteral("the nearest predicted highlight is")));
     QVERIFY(spurious.data(Qt::ToolTipRole).toString().contains(QStringLiteral("the nearest observed highlight is")));
     const auto* shown = qobject_cast<const QSortFilterProxyModel*>(tree.view()->model());
