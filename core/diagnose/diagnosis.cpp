@@ -8,6 +8,7 @@
 #include "core/base/angle.h"
 #include "core/base/number_text.h"
 #include "core/diagnose/candidates.h"
+#include "core/diagnose/spurious_note.h"
 #include "core/diagnostics/conditioning.h"
 #include "core/scene/frame_spec.h"
 #include "core/selection/selection.h"
@@ -57,6 +58,8 @@ class ModelCase {
     d_.unseen = errors_.of(d_.model);
     d_.evidence = highlightEvidence(r_, model_);
     judge();
+    if (const auto result = r_.models.find(d_.model); result != r_.models.end())
+      if (std::string note = spuriousNote(r_, result->second); !note.empty()) d_.notes.push_back(std::move(note));
     if (d_.status == ModelDiagnosis::Status::Ok) return;
     explain();
     otherModels(false);

@@ -43,6 +43,7 @@ struct ModelDiagnosis {
   std::string model;
   Status status = Status::Ok;
   std::vector<std::string> causes;  ///< in words, weightiest first; none where the status is Ok
+  std::vector<std::string> notes;   ///< whatever the status: what errors of contours do not show, see spuriousNote()
   LeftOutError unseen;              ///< as it is now: left-out training views and some held-out frames
   std::vector<HighlightEvidence> evidence;
   std::vector<FitTrace> fits;    ///< how they went; none where the status is Ok

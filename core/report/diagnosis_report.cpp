@@ -101,6 +101,7 @@ Ordered modelJson(const Inspection& inspection, const ModelDiagnosis& d) {
   return {{"status", nameOf(d.status)},
           {"cause", d.causes.empty() ? "" : d.causes.front()},
           {"causes", d.causes},
+          {"notes", d.notes},
           {"left_out", errorJson(ofTraining(d.unseen, true))},
           {"held_out", errorJson(ofTraining(d.unseen, false))},
           {"evidence", std::move(evidence)},
@@ -182,6 +183,7 @@ std::string diagnosisText(const Inspection& inspection, const Diagnosis& diagnos
   for (const ModelDiagnosis& d : diagnosis.models) {
     text += formatted("%-12s %-7s left-out training views: %s; held-out frames: %s\n", d.model.c_str(), nameOf(d.status),
                       errorText(ofTraining(d.unseen, true)).c_str(), errorText(ofTraining(d.unseen, false)).c_str());
+    for (const std::string& note : d.notes) text += "  note: " + note + "\n";
     if (d.status == ModelDiagnosis::Status::Ok) continue;
     for (const std::string& cause : d.causes) text += "  because " + cause + "\n";
     addEvidence(inspection, d, text);

@@ -6,6 +6,7 @@
 #include <QLabel>
 #include <QPushButton>
 #include <QTreeWidget>
+#include <QUndoStack>
 #include <QVBoxLayout>
 #include <algorithm>
 #include <set>
@@ -298,8 +299,10 @@ void DiagnosisPanel::addShared(QTreeWidgetItem* top, const Inspection& inspectio
 }
 
 void DiagnosisPanel::fillDiagnosis(const ModelDiagnosis& d) {
-  if (d.status == ModelDiagnosis::Status::Ok) return;
+  if (d.status == ModelDiagnosis::Status::Ok && d.notes.empty()) return;
   QTreeWidgetItem* const top = itemOf(d.model, tr("%1: %2").arg(toQString(d.model), QLatin1String(nameOf(d.status))));
+  for (const std::string& note : d.notes) addLine(top, toQString(note), ProblemLine::Shared);
+  if (d.status == ModelDiagnosis::Status::Ok) return;
   for (const std::string& cause : d.causes)
     if (const QString line = tr("because %1").arg(toQString(cause)); !hasLine(top, line)) addLine(top, line, ProblemLine::Cause);
   for (const Remedy& remedy : d.remedies) addRemedy(d.model, remedy);
@@ -373,10 +376,13 @@ void DiagnosisPanel::tryRemedy(const std::string& model, const Change& change) {
   }
   if (!std::count(request.models.begin(), request.models.end(), use)) request.models.push_back(use);
   const QString text = tr("Try: %1").arg(wordsOf(change));
-  if (request != document_.request()) document_.setRequest(request, text);
   draw::Selection selection = document_.selection();
+  if (request == document_.request() && selection.model == use) return;
   selection.model = use;
+  document_.undoStack()->beginMacro(text);  // one intention, one step
+  if (request != document_.request()) document_.setRequest(request, text);
   document_.select(selection);
+  document_.undoStack()->endMacro();
   emit message(tr("%1. Undo takes it back").arg(text));
 }
 
