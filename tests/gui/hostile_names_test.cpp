@@ -220,7 +220,9 @@ class HostileNamesTest : public QObject {
           checkTip(tabs->tabToolTip(i), where);
         }
       if (const auto* browser = qobject_cast<const QTextBrowser*>(widget)) {
-        QVERIFY2(!browser->toHtml().contains("<img"), qPrintable(where));
+        QString html = browser->toHtml();
+        html.remove(QRegularExpression(QStringLiteral("<img src=\"equation:[a-z-]+\"[^>]*>")));  // the program's own
+        QVERIFY2(!html.contains("<img"), qPrintable(where));
         checkText(browser->toPlainText(), where);
       }
       if (const auto* plain = qobject_cast<const QPlainTextEdit*>(widget)) checkText(plain->toPlainText(), where);

@@ -121,7 +121,8 @@ TEST_P(ColouredCyclesTest, ContoursOnTheSpecularPart) {
     std::fflush(stdout);
     EXPECT_EQ(r.coloursThere.missed, 0) << row.name;
     if (row.parts == Parts::Always) {
-      EXPECT_GE(r.parted, 0.5 * r.frames) << row.name;
+      // With noise half of the eight vases are parted (docs/real.md), of the three that CI takes one.
+      EXPECT_GE(r.parted, (row.noise > 0 ? 0.3 : 0.5) * r.frames) << row.name;
       if (row.noise == 0) {
         EXPECT_LT(r.coloursThere.mean(), 0.2) << row.name;
         EXPECT_GT(r.smoothThere.mean(), r.coloursThere.mean()) << row.name;
