@@ -2,6 +2,7 @@
 #include "core/diagnose/spurious_note.h"
 
 #include <algorithm>
+#include <set>
 
 #include "core/base/number_text.h"
 #include "core/inspect/prediction_filter.h"
@@ -35,21 +36,22 @@ Taken taken(const Inspection& inspection, const ModelResult& result, const Frame
 }  // namespace
 
 std::string spuriousNote(const Inspection& inspection, const ModelResult& result) {
-  int spurious = 0, frames = 0, matched = 0;
+  int spurious = 0, matched = 0;
+  std::set<int> frames;  // one may have several lights
   std::vector<const FrameComparison*> held;
   for (const FrameComparison& c : result.frames) {
     if (!inspection.isHeldOut(c.frame) || c.prediction.failure()) continue;
     held.push_back(&c);
     const auto count = std::count_if(c.rows.begin(), c.rows.end(), isSpurious);
     spurious += int(count);
-    frames += count > 0;
+    if (count > 0) frames.insert(c.frame);
     matched +=
         int(std::count_if(c.rows.begin(), c.rows.end(), [](const auto& r) { return r.predicted >= 0 && r.observed >= 0; }));
   }
   if (spurious == 0) return "";
   std::string text =
-      formatted("%d predicted %s in %d held-out %s no observed one", spurious, spurious == 1 ? "highlight" : "highlights", frames,
-                frames == 1 ? "comparison has" : "comparisons have");
+      formatted("%d predicted %s in %d held-out %s %s no observed one", spurious, spurious == 1 ? "highlight" : "highlights",
+                int(frames.size()), frames.size() == 1 ? "frame" : "frames", spurious == 1 ? "matches" : "match");
   bool helps = false;
   for (const char* key : {"predict.filter_area", "predict.filter_shadow"}) {
     const Settings& settings = inspection.request.settings;
@@ -65,7 +67,8 @@ std::string spuriousNote(const Inspection& inspection, const ModelResult& result
       all.matched += t.matched;
     }
     if (all.spurious == 0 || all.matched > 0) continue;
-    text += formatted("; --set %s=true leaves out %d of them and none of the %d that are observed", key, all.spurious, matched);
+    text += formatted("; with %s = true, %d %s left out, and none of the %d that match", key, all.spurious,
+                      all.spurious == 1 ? "is" : "are", matched);
     helps = true;
   }
   return text + (helps ? "" : "; no filter of predictions takes them alone");

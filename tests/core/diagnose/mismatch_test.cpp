@@ -4,23 +4,15 @@
 
 #include <gmock/gmock.h>
 
-#include "tests/core/inspect/exact_scene.h"
+#include "tests/core/diagnose/exact_sphere.h"
 
 namespace glint::mismatch_tests {
 
 using namespace testing_support;
 using testing::HasSubstr;
 
-class Mismatch : public testing::Test {
+class Mismatch : public testing_support::ExactSphere {
  protected:
-  static void SetUpTestSuite() {
-    InspectionRequest request;
-    request.models = {"limit-angle"};
-    request.train = "0-5";
-    inspection_ = std::make_unique<Inspection>(inspect(exactScene(sphere(0.5), 9), request));
-  }
-  static void TearDownTestSuite() { inspection_.reset(); }
-
   /// The exact prediction of frame 7, changed, as a spurious row.
   template <class Change>
   std::string whySpurious(const Change& change) const {
@@ -34,9 +26,7 @@ class Mismatch : public testing::Test {
     }
     return "no frame";
   }
-  static std::unique_ptr<Inspection> inspection_;
 };
-std::unique_ptr<Inspection> Mismatch::inspection_;
 
 TEST_F(Mismatch, OutsideOfTheImage) {
   EXPECT_EQ(whySpurious([](PredictedHighlight& h) {

@@ -5,24 +5,14 @@
 #include <gmock/gmock.h>
 
 #include "core/score/metrics.h"
-#include "tests/core/inspect/exact_scene.h"
+#include "tests/core/diagnose/exact_sphere.h"
 
 namespace glint::spurious_note_tests {
 
-using namespace testing_support;
-
 constexpr double kTinyPx = 1;  // radius: 3 px^2, below what detection takes (detect.min_area, 12 px^2)
 
-class SpuriousNote : public testing::Test {
+class SpuriousNote : public testing_support::ExactSphere {
  protected:
-  static void SetUpTestSuite() {
-    InspectionRequest request;
-    request.models = {"limit-angle"};
-    request.train = "0-5";
-    inspection_ = std::make_unique<Inspection>(inspect(exactScene(sphere(0.5), 9), request));
-  }
-  static void TearDownTestSuite() { inspection_.reset(); }
-
   static ModelResult result() { return inspection_->models.at("limit-angle"); }
   static FrameComparison& at(ModelResult& r, int frame) {
     return *std::find_if(r.frames.begin(), r.frames.end(), [&](const auto& c) { return c.frame == frame; });
@@ -38,9 +28,7 @@ class SpuriousNote : public testing::Test {
     const Pixel middle = centroid(h.contour);
     for (Pixel& p : h.contour.points) p = middle + kTinyPx * (p - middle).normalized();
   }
-  static std::unique_ptr<Inspection> inspection_;
 };
-std::unique_ptr<Inspection> SpuriousNote::inspection_;
 
 TEST_F(SpuriousNote, NoneWhereAllHaveAPartner) { EXPECT_EQ(spuriousNote(*inspection_, result()), ""); }
 
@@ -48,8 +36,8 @@ TEST_F(SpuriousNote, AFilterThatTakesOnlyThoseIsNamed) {
   ModelResult r = result();
   shrink(alone(r, 7));
   EXPECT_EQ(spuriousNote(*inspection_, r),
-            "1 predicted highlight in 1 held-out comparison has no observed one; --set predict.filter_area=true leaves out 1 of "
-            "them and none of the 2 that are observed");
+            "1 predicted highlight in 1 held-out frame matches no observed one; with predict.filter_area = true, "
+            "1 is left out, and none of the 2 that match");
 }
 
 TEST_F(SpuriousNote, NoFilterIsNamedWhereItWouldTakeAnObservedOne) {
@@ -57,7 +45,7 @@ TEST_F(SpuriousNote, NoFilterIsNamedWhereItWouldTakeAnObservedOne) {
   shrink(alone(r, 7));
   shrink(at(r, 8).prediction.editable()[0]);
   EXPECT_EQ(spuriousNote(*inspection_, r),
-            "1 predicted highlight in 1 held-out comparison has no observed one; no filter of predictions takes them alone");
+            "1 predicted highlight in 1 held-out frame matches no observed one; no filter of predictions takes them alone");
 }
 
 TEST_F(SpuriousNote, LargeOnesInTheLightAreOnlyCounted) {
@@ -65,17 +53,16 @@ TEST_F(SpuriousNote, LargeOnesInTheLightAreOnlyCounted) {
   alone(r, 6);
   alone(r, 7);
   EXPECT_EQ(spuriousNote(*inspection_, r),
-            "2 predicted highlights in 2 held-out comparisons have no observed one; no filter of predictions takes them alone");
+            "2 predicted highlights in 2 held-out frames match no observed one; no filter of predictions takes them alone");
 }
 
 TEST_F(SpuriousNote, InTheShadowOfTheObject) {
   ModelResult r = result();  // the ball touches z = 0 from below, and the cameras are above: no point they see is lit
   for (auto& fit : r.fits) fit.fit->lightEstimate = Light::at(Eigen::Vector3d(0, 0, -5));
   for (const int frame : {6, 7, 8}) alone(r, frame);
-  EXPECT_EQ(
-      spuriousNote(*inspection_, r),
-      "3 predicted highlights in 3 held-out comparisons have no observed one; --set predict.filter_shadow=true leaves out 3 of "
-      "them and none of the 0 that are observed");
+  EXPECT_EQ(spuriousNote(*inspection_, r),
+            "3 predicted highlights in 3 held-out frames match no observed one; with predict.filter_shadow = true, "
+            "3 are left out, and none of the 0 that match");
 }
 
 TEST_F(SpuriousNote, TrainingFramesDoNotCount) {
