@@ -80,6 +80,7 @@ FitInput fitInput(const HighlightModel& model, std::vector<TrainingView> views,
   FitInput input;
   input.views = std::move(views);
   input.pixelFit = std::move(pixelFit);
+  input.progress = progress;
   if (!model.needsLight() || !light) return input;
   if (!*light) {
     input.lightFailure = light->failure();

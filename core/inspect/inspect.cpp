@@ -77,6 +77,7 @@ bool sameObservation(const Inspection& r, int frame, int other) {
 struct Only {
   std::optional<std::vector<int>> frames;  ///< sorted; nothing = every frame
   bool wholeSurfaces = false;              ///< with every surface that they show they are all of its frames
+  bool withoutPixels = false;              ///< see firstLook()
   bool predicts(int frame) const { return !frames || std::binary_search(frames->begin(), frames->end(), frame); }
 };
 
@@ -99,7 +100,13 @@ class Run {
   void predictionsAndComparisons();
 
  private:
-  bool unchanged(Stage stage) const { return previous_ && r_.inputs.same(stage, previous_->inputs); }
+  bool unchanged(Stage stage) const {
+    // Pixels that are attached later lie on the surface as given: a corrected one is made again with them.
+    if (pixelsCome() && !previous_->corrections.empty() && stage != Stage::Evidence && stage != Stage::Lobes) return false;
+    return previous_ && r_.inputs.same(stage, previous_->inputs);
+  }
+  /// The earlier run left the pixels to this one.
+  bool pixelsCome() const { return previous_ && previous_->pixelsLeft && !only_.withoutPixels; }
   std::shared_ptr<const Surface> surfaceOf(int frame) const {
     const Outcome<std::shared_ptr<const Surface>> s = r_.surfaces->surfaceOf(frame, meshPolicy(r_.request.settings));
     return s ? *s : nullptr;
@@ -208,8 +215,10 @@ void Run::gather(const std::vector<int>& frames) {
 }
 
 void Run::lobes() {
+  r_.pixelsLeft = only_.withoutPixels;
+  if (r_.pixelsLeft) return;
   const SurfaceOfFrame surface = [this](int frame) { return surfaceOf(frame); };
-  if (unchanged(Stage::Lobes)) {
+  if (unchanged(Stage::Lobes) && !pixelsCome()) {
     r_.patches = previous_->patches;
     r_.pixelFits = previous_->pixelFits;
   } else {
@@ -378,6 +387,7 @@ void Run::canonicalContours() {
 }
 
 void Run::modelFits() {
+  if (pixelsCome()) attachPixels(r_);
   r_.inputs.set(Stage::Fits, inputsText(r_.request.settings, {"fit"}, r_.inputs.of(Stage::Lights)));
   const std::vector<Group> all = groups();
   int done = 0;
@@ -390,11 +400,13 @@ void Run::modelFits() {
       continue;
     }
     for (const Group& g : all) {
-      if (!report(progress_, {"fit " + name, done++, static_cast<int>(all.size() * r_.request.models.size())})) throw Stopped{};
+      const StageEvent now{"fit " + name, done++, static_cast<int>(all.size() * r_.request.models.size())};
+      if (!report(progress_, now)) throw Stopped{};
       ModelResult::Fit entry;
       entry.light = g.key.light;
       entry.surface = g.key.surface;
-      const FitInput input = fitInputOf(r_, model, g.key);
+      FitInput input = fitInputOf(r_, model, g.key);
+      input.progress = [&](const StageEvent&) { return report(progress_, now); };
       const auto start = std::chrono::steady_clock::now();
       Outcome<ModelFit> fit = model.fit(input, r_.request.settings);
       ++r_.work.fits;
@@ -515,7 +527,7 @@ std::shared_ptr<const Scene> whatIfScene(const std::shared_ptr<const Scene>& giv
 }
 
 Inspection run(std::shared_ptr<const Scene> scene, const InspectionRequest& request, int onlyFrame, const ProgressFn& progress,
-               const Inspection* previous, const Shard* shard = nullptr) {
+               const Inspection* previous, const Shard* shard = nullptr, bool withoutPixels = false) {
   require(scene != nullptr, "inspect: no scene");
   Inspection result;
   result.given = scene;
@@ -537,6 +549,7 @@ Inspection run(std::shared_ptr<const Scene> scene, const InspectionRequest& requ
   for (const std::string& m : request.models) modelByName(m);  // unknown names are refused before any work
   Only only;
   if (onlyFrame >= 0) only.frames = {onlyFrame};
+  only.withoutPixels = withoutPixels;
   if (shard) only = {framesOfShard(*shard, result), true};
   Run run(result, progress, previous, std::move(only));
   run.highlights();
@@ -560,6 +573,15 @@ Inspection inspectOneFrame(std::shared_ptr<const Scene> scene, const InspectionR
                            const ProgressFn& progress, const Inspection* previous) {
   require(scene && frame >= 0 && frame < static_cast<int>(scene->frames.size()), "inspectOneFrame: no such frame");
   return run(std::move(scene), request, frame, progress, previous);
+}
+
+std::optional<Inspection> firstLook(std::shared_ptr<const Scene> scene, const InspectionRequest& request, int frame,
+                                    const ProgressFn& progress, const Inspection* previous) {
+  require(scene && frame >= 0 && frame < static_cast<int>(scene->frames.size()), "firstLook: no such frame");
+  const std::optional<InspectionRequest> quick =
+      withoutPixels(*scene, request, previous && previous->given == scene ? previous : nullptr);
+  if (!quick) return std::nullopt;
+  return run(std::move(scene), *quick, frame, progress, previous, nullptr, true);
 }
 
 Inspection inspectShard(std::shared_ptr<const Scene> scene, const InspectionRequest& request, const Shard& shard,

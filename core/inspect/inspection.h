@@ -91,7 +91,8 @@ struct Inspection {
   std::map<int, TrainingView> viewsAsGiven;  ///< by index into `views`: of those, on the surface as given; see viewAsGiven()
   std::map<std::pair<int, int>, std::shared_ptr<const PixelPatch>> patches;  ///< pixels by (training frame, highlight as found)
   std::map<FitKey, Outcome<std::shared_ptr<const PixelFit>>> pixelFits;      ///< the lobe of the training frames' pixels
-  std::map<FitKey, Outcome<LightEstimate>> lights;                           ///< see lightOf(), lightFor()
+  bool pixelsLeft = false;                                 ///< patches and pixelFits are still to be made, see firstLook()
+  std::map<FitKey, Outcome<LightEstimate>> lights;         ///< see lightOf(), lightFor()
   std::map<FitKey, SurfaceCorrection> corrections;         ///< of the views' and predictions' surfaces, where there is one
   std::shared_ptr<CorrectedDepthMaps> correctedDepthMaps;  ///< recently used ones, for surfaceFor(); never null after a run
   std::map<std::string, ModelResult> models;
@@ -133,5 +134,13 @@ Inspection inspect(std::shared_ptr<const Scene> scene, const InspectionRequest& 
 /// failures; every frame is looked at where a light can only be told from all of them.
 Inspection inspectOneFrame(std::shared_ptr<const Scene> scene, const InspectionRequest& request, int frame,
                            const ProgressFn& progress = {}, const Inspection* previous = nullptr);
+
+/// What `inspectOneFrame` would say with those of the models alone that take no pixels: sooner, as a lobe's fit to the pixels is the longest
+/// part of many first runs. Given on as `previous` it leaves only the rest to be done.
+/// @return nothing where that is not worth a step of its own: no pixels are asked for, or every model takes them; the contours need the
+///         lobe (detect.background); `previous` has the lobe; or it shows a model that takes pixels, which would be gone for a moment.
+/// Failures as inspectOneFrame.
+std::optional<Inspection> firstLook(std::shared_ptr<const Scene> scene, const InspectionRequest& request, int frame,
+                                    const ProgressFn& progress = {}, const Inspection* previous = nullptr);
 
 }  // namespace glint

@@ -13,6 +13,7 @@
 #include "core/inspect/hand_edits.h"
 #include "core/inspect/requested_evidence.h"
 #include "core/inspect/stage_inputs.h"
+#include "core/model/model.h"
 #include "core/model/pixel_evidence.h"
 #include "core/model/reflectance_settings.h"
 #include "core/reflectance/lobe_contour.h"
@@ -61,6 +62,22 @@ InspectionRequest atHalf(InspectionRequest request) {
 bool looksAtPixels(const InspectionRequest& request) {
   const std::string& evidence = request.settings.text("fit.evidence");
   return request.settings.text("detect.background") == "lobe" || evidence == "auto" || evidence == "pixels";
+}
+
+std::optional<InspectionRequest> withoutPixels(const Scene& scene, const InspectionRequest& request, const Inspection* previous) {
+  if (!looksAtPixels(request) || request.settings.text("detect.background") == "lobe") return std::nullopt;
+  InspectionRequest quick = request;
+  std::erase_if(quick.models, [](const std::string& m) { return modelByName(m).takesPixels(); });
+  if (quick.models.empty()) return std::nullopt;
+  const Inspection* const known = previous && !previous->pixelsLeft ? previous : nullptr;
+  const auto shown = [&](const std::string& m) { return modelByName(m).takesPixels() && known->models.count(m); };
+  const auto lobesAreKnown = [&] {
+    StageInputs asked;
+    asked.set(Stage::Lobes, lobeInputs(request, parseTrainSpec(request.train, scene), lightsAreOpenIn(scene, request)));
+    return asked.same(Stage::Lobes, known->inputs);
+  };
+  if (known && (lobesAreKnown() || std::any_of(request.models.begin(), request.models.end(), shown))) return std::nullopt;
+  return quick;
 }
 
 std::string lobeInputs(const InspectionRequest& request, const TrainSpec& train, bool together) {
@@ -118,12 +135,14 @@ void fitLobes(Inspection& r, const SurfaceOfFrame& surfaceOf, bool together, con
       groups[r.keyFor(s.views[i].frame, s.views[i].highlight.light)].push_back(s.views[i]);
     }
   int done = 0;
+  const auto goesOn = [&](const StageEvent&) { return report(progress, {"lobe", done, static_cast<int>(groups.size())}); };
   for (const auto& [key, views] : groups) {
-    if (!report(progress, {"lobe", done++, static_cast<int>(groups.size())})) throw Stopped{};
+    if (!goesOn({})) throw Stopped{};
     // The start is the same whatever the settings of the light are: they do not matter to where the fit ends.
     const Outcome<LightEstimate> light = estimateLight(views, Settings{});
     Outcome<PixelFit> fit =
-        fitViewsPixels(views, light ? std::optional<LightEstimate>(*light) : std::nullopt, anyLobe(r.request.settings));
+        fitViewsPixels(views, light ? std::optional<LightEstimate>(*light) : std::nullopt, anyLobe(r.request.settings), goesOn);
+    ++done;
     ++r.work.pixelFits;
     if (fit)
       r.pixelFits.insert_or_assign(key, std::make_shared<const PixelFit>(*std::move(fit)));

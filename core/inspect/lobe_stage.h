@@ -18,6 +18,10 @@ namespace glint {
 /// The request asks for pixels: as evidence, or for the background.
 bool looksAtPixels(const InspectionRequest& request);
 
+/// The request with those models alone that take no pixels, where these are worth a step of their own, see firstLook().
+/// @param previous  earlier results on the same scene, or null
+std::optional<InspectionRequest> withoutPixels(const Scene& scene, const InspectionRequest& request, const Inspection* previous);
+
 /// What the stage depends on; the models' settings do not count. It always looks at highlights as detected at half their peak, so that another level, which a user drags,
 /// fits no lobe again.
 /// @param together  lights are told apart from all frames: then the highlights of the request's own level are taken

@@ -9,8 +9,27 @@
 #include "core/base/solver_trace.h"
 
 namespace glint {
+namespace {
 
-DenseSolution solveDense(ceres::Problem& problem, int maxIterations, double tolerance, std::optional<double> costTolerance) {
+/// Ends the solver where the caller says so.
+class AskToGoOn final : public ceres::IterationCallback {
+ public:
+  explicit AskToGoOn(const ProgressFn& progress) : progress_(progress) {}
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary&) override {
+    stopped_ = stopped_ || !report(progress_, {"fit", 0, 0});
+    return stopped_ ? ceres::SOLVER_ABORT : ceres::SOLVER_CONTINUE;
+  }
+  bool stopped() const { return stopped_; }
+
+ private:
+  const ProgressFn& progress_;
+  bool stopped_ = false;
+};
+
+}  // namespace
+
+DenseSolution solveDense(ceres::Problem& problem, int maxIterations, double tolerance, std::optional<double> costTolerance,
+                         const ProgressFn& progress) {
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_QR;
   options.logging_type = ceres::SILENT;
@@ -19,8 +38,12 @@ DenseSolution solveDense(ceres::Problem& problem, int maxIterations, double tole
   options.function_tolerance = costTolerance.value_or(tolerance);
   options.parameter_tolerance = tolerance;
   options.gradient_tolerance = 0.01 * tolerance;
+  AskToGoOn ask(progress);
+  if (progress) options.callbacks.push_back(&ask);
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
+  // No exception through the solver, which is not written for it.
+  if (ask.stopped()) throw Stopped{};
   // Half the sum of squares, with the costs of steps that were not taken among them.
   std::vector<double> costs;
   for (const ceres::IterationSummary& step : summary.iterations)

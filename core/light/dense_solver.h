@@ -3,6 +3,8 @@
 
 #include <optional>
 
+#include "core/base/progress.h"
+
 namespace ceres {
 class Problem;
 }
@@ -21,6 +23,9 @@ struct DenseSolution {
 /// @param tolerance      relative change of cost and unknowns that ends the iteration; the gradient's is a hundredth of it, so that a
 ///                       flat valley does not end it early
 /// @param costTolerance  the cost's own, where it may be looser
-DenseSolution solveDense(ceres::Problem& problem, int maxIterations, double tolerance, std::optional<double> costTolerance = {});
+/// @param progress       asked after every iteration
+/// Stopped.
+DenseSolution solveDense(ceres::Problem& problem, int maxIterations, double tolerance, std::optional<double> costTolerance = {},
+                         const ProgressFn& progress = {});
 
 }  // namespace glint

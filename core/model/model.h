@@ -12,6 +12,7 @@
 #include <variant>
 #include <vector>
 
+#include "core/base/progress.h"
 #include "core/base/settings.h"
 #include "core/base/uncertainty.h"
 #include "core/geometry/ellipsoid.h"
@@ -92,6 +93,7 @@ struct FitInput {
   /// By the same model, of nearly these views: cameras moved a little. `reflectance` starts from its lamp and keeps the lamp's
   /// shape.
   std::shared_ptr<const ModelFit> near;
+  ProgressFn progress{};  ///< asked in long fits, which then throw Stopped
 };
 
 /// An ellipsoid about the light, fitted to outlines: primal, dual, canonical.
@@ -231,6 +233,7 @@ class HighlightModel {
   virtual std::string reference() const = 0;          ///< paper or "method.md section 7"
   virtual bool needsLight() const = 0;                ///< the fit uses FitInput::light
   virtual bool needsCanonicalContours() const = 0;    ///< the fit uses TrainingView::canonical
+  virtual bool takesPixels() const { return false; }  ///< the fit may use TrainingView::pixels, FitInput::pixelFit
   virtual bool walks() const { return false; }        ///< predictions follow predict.query: they can walk on local quadrics
   virtual bool hasOutlines() const { return false; }  ///< it reconstructs an ellipsoid from one outline in each view
   /// The outline that it takes from a view; empty where the view has none, or where the model takes none.

@@ -36,7 +36,7 @@ std::optional<Light> meanRay(const std::vector<TrainingView>& views) {
 /// A sphere or a segment that explains the pixels clearly better than a point. What the contours say starts the search: they tell a
 /// lamp's shape quickly, the pixels then measure it without the background's share.
 std::optional<PixelFit> withExtent(const std::vector<TrainingView>& views, const std::vector<const PixelPatch*>& patches,
-                                   const PixelFit& point, const Settings& settings) {
+                                   const PixelFit& point, const Settings& settings, const ProgressFn& progress) {
   const LampChoices choices = lampChoicesOf(settings);
   if ((!choices.sphere && !choices.segment) || point.model.lamp.centre.atInfinity()) return std::nullopt;
   std::vector<RadianceView> contours;
@@ -45,8 +45,8 @@ std::optional<PixelFit> withExtent(const std::vector<TrainingView>& views, const
       contours.push_back({v.frame, v.camera, v.surface.get(), v.highlight.contour.points, v.highlight.peak, v.highlight.level});
   const std::vector<Lobe> lobes = lobesOf(settings);
   std::optional<PixelFit> best;
-  const auto consider = [&](const std::vector<Lobe>& order, const Lamp& lamp, double roughness,
-                            const PixelFitOptions& options = {}) {
+  const auto consider = [&](const std::vector<Lobe>& order, const Lamp& lamp, double roughness, PixelFitOptions options = {}) {
+    options.progress = progress;
     const Outcome<PixelFit> fit = fitPixels(order, patches, lamp, roughness, options);
     const PixelFit& before = best ? *best : point;
     if (fit && (before.poor && !fit->poor ? true : fit->poor == before.poor && explainsClearlyBetter(*fit, before))) best = *fit;
@@ -54,10 +54,11 @@ std::optional<PixelFit> withExtent(const std::vector<TrainingView>& views, const
   bool tried = false;
   if (contours.size() >= kFewestContours) {
     const double alpha = medianContourAngle(views, point.model.lamp.centre, kWidthPoints);
-    const Outcome<RadianceFit> said = alpha > 0
-                                          ? searchRadiance(lobes, contours, point.model.lamp.centre,
-                                                           std::min(alpha, kWidestStart), choices, radianceFitOptionsOf(settings))
-                                          : Outcome<RadianceFit>(Failure{Reason::NoLight, ""});
+    RadianceFitOptions asking = radianceFitOptionsOf(settings);
+    asking.progress = progress;
+    const Outcome<RadianceFit> said =
+        alpha > 0 ? searchRadiance(lobes, contours, point.model.lamp.centre, std::min(alpha, kWidestStart), choices, asking)
+                  : Outcome<RadianceFit>(Failure{Reason::NoLight, ""});
     if (said && !said->poor && !said->lamp().isPoint()) {
       std::vector<Lobe> order = lobes;
       std::stable_partition(order.begin(), order.end(), [&](Lobe l) { return l == said->lobe; });
@@ -134,7 +135,7 @@ bool havePixels(const std::vector<TrainingView>& views) {
 }
 
 Outcome<PixelFit> fitViewsPixels(const std::vector<TrainingView>& views, const std::optional<LightEstimate>& light,
-                                 const Settings& settings) {
+                                 const Settings& settings, const ProgressFn& progress) {
   std::vector<const PixelPatch*> patches;
   double level = 0.5;
   for (const TrainingView& v : views) {
@@ -148,17 +149,19 @@ Outcome<PixelFit> fitViewsPixels(const std::vector<TrainingView>& views, const s
   if (light) starts.push_back(light->light);
   if (const std::optional<Light> mean = meanRay(views)) starts.push_back(*mean);
   Outcome<PixelFit> best = Failure{Reason::NoLight, "no reflected ray to start from"};
+  PixelFitOptions options;
+  options.progress = progress;
   for (const Light& start : starts) {
     const double alpha = medianContourAngle(views, start, kWidthPoints);
     if (!(alpha > 0)) continue;
     const double roughness =
         std::clamp(std::tan(alpha) / std::sqrt(-std::log(level)), 1e-3, 1.0);  // a start within the lobes' range
-    Outcome<PixelFit> fit = fitPixels(lobes, patches, start, roughness);
+    Outcome<PixelFit> fit = fitPixels(lobes, patches, start, roughness, options);
     if (!best || (fit && (fit->poor != best->poor ? best->poor : fit->cost < best->cost))) best = std::move(fit);
     if (best && !best->poor) break;
   }
   if (best && (best->poor || asksForExtent(*best)))
-    if (std::optional<PixelFit> extended = withExtent(views, patches, *best, settings)) best = *std::move(extended);
+    if (std::optional<PixelFit> extended = withExtent(views, patches, *best, settings, progress)) best = *std::move(extended);
   if (best && best->poor) {
     const std::string detail = formatted("no lobe and light explain the pixels: %.3g px remain at the contours", best->rmsPx);
     return Failure{Reason::NotConverged, detail};
@@ -169,7 +172,7 @@ Outcome<PixelFit> fitViewsPixels(const std::vector<TrainingView>& views, const s
 Outcome<ModelFit> reflectanceFromPixels(const FitInput& input, const Settings& settings) {
   if (!havePixels(input.views)) return Failure{Reason::NotSupported, "not every training view has pixels"};
   const Outcome<PixelFit> known =
-      input.pixelFit ? Outcome<PixelFit>(*input.pixelFit) : fitViewsPixels(input.views, input.light, settings);
+      input.pixelFit ? Outcome<PixelFit>(*input.pixelFit) : fitViewsPixels(input.views, input.light, settings, input.progress);
   if (!known) return known.failure();
   const PixelFit& pixels = *known;
   ModelFit fit;

@@ -14,9 +14,9 @@ bool havePixels(const std::vector<TrainingView>& views);
 
 /// The lobe and light of the views' pixels (core/reflectance/pixel_fit.h), started by what their contours say.
 /// @param light  first guess; where there is none, or the fit from it is poor, the mean of the reflected peak rays
-/// TooFewViews; the failures of fitPixels(); NotConverged where the lobe leaves more than a tenth of the contours' radius.
+/// TooFewViews; the failures of fitPixels(); NotConverged where the lobe leaves more than a tenth of the contours' radius. Stopped.
 Outcome<PixelFit> fitViewsPixels(const std::vector<TrainingView>& views, const std::optional<LightEstimate>& light,
-                                 const Settings& settings);
+                                 const Settings& settings, const ProgressFn& progress = {});
 
 /// The reflectance model from the pixels of a fit's views, taken from FitInput::pixelFit where that is known.
 /// NotSupported where a view has no pixels; the failures of fitViewsPixels().

@@ -97,6 +97,7 @@ class Reflectance final : public HighlightModel {
   std::string reference() const override { return "method.md section 7"; }
   bool needsLight() const override { return true; }
   bool needsCanonicalContours() const override { return false; }
+  bool takesPixels() const override { return true; }
   ModelTraits traits() const override { return {{204, 121, 167}}; }
 
   Outcome<ModelFit> fit(const FitInput& input, const Settings& settings) const override {
@@ -154,7 +155,8 @@ class Reflectance final : public HighlightModel {
   /// From the fit that is known nearby, where it leads to an explanation; else by a search.
   static Outcome<RadianceFit> lampOfContours(const FitInput& input, const std::vector<RadianceView>& views,
                                              const Settings& settings) {
-    const RadianceFitOptions options = radianceFitOptionsOf(settings);
+    RadianceFitOptions options = radianceFitOptionsOf(settings);
+    options.progress = input.progress;
     if (const std::optional<RadianceFit> near = input.near ? radianceFitOf(*input.near) : std::nullopt)
       if (Outcome<RadianceFit> found = fitNear(lobesOf(settings), views, *near, options); found && !found->poor) return found;
     const std::optional<Light> light = firstLight(input);

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/base/progress.h"
 #include "core/base/uncertainty.h"
 #include "core/geometry/light.h"
 #include "core/reflectance/lamp.h"
@@ -28,6 +29,7 @@ struct RadianceFitOptions {
   int maxIterations = 100;
   bool lightSize = true;    ///< estimate the light's radius where the contours show it
   bool otherStarts = true;  ///< try other distances and widths when the first guess converges badly
+  ProgressFn progress{};    ///< asked after every iteration: fits and searches with these options throw Stopped
 };
 
 /// A place from which a fit is worth trying.

@@ -136,6 +136,7 @@ class Search {
   void tryOut(Lobe lobe, BackgroundKind kind, const State& from) {
     PixelProblem problem(evidence_, lobe, kind);
     patch::SolveOptions solving{false, options_.maxIterations, kSearchTolerance, kSearchTolerance};
+    solving.progress = options_.progress;
     if (from.shape != lobe::LampShape::Point) {
       solving.mostEvaluations = kMostEvaluations;
       solving.work = kExtentWork;
@@ -240,6 +241,7 @@ Outcome<PixelFit> fitPixels(const std::vector<Lobe>& lobes, const std::vector<co
   const patch::Normalised& fine = full.all();
   PixelProblem problem(fine, chosen->lobe, chosen->kind);
   patch::SolveOptions solving{false, options.maxIterations};
+  solving.progress = options.progress;
   if (!lamp.isPoint()) {
     solving.mostEvaluations = 4 * kMostEvaluations;  // it may grow a little more
     solving.work = kExtentWork;

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/base/progress.h"
 #include "core/base/uncertainty.h"
 #include "core/reflectance/lamp.h"
 #include "core/reflectance/lobe.h"
@@ -48,6 +49,7 @@ struct PixelFitOptions {
   int maxIterations = 60;
   bool blur = true;                          ///< estimate the blur where the pixels show it
   std::optional<BackgroundKind> background;  ///< no other is tried
+  ProgressFn progress{};                     ///< asked at every look at all cells
 };
 
 struct PixelFit {
@@ -77,7 +79,7 @@ struct PixelFit {
 /// a sphere or a segment.
 /// @param lobes  tried in turn; the one with the least cost wins, a microfacet lobe where the costs do not tell
 /// @param lamp,roughness  start: what the contours say, which need not be close (clipped highlights)
-/// TooFewPoints; NotConverged; NoBrightestPoint where no lobe reaches the patches.
+/// TooFewPoints; NotConverged; NoBrightestPoint where no lobe reaches the patches. Stopped.
 /// @see Golub, Pereyra, Separable nonlinear least squares, Inverse Problems 2003.
 Outcome<PixelFit> fitPixels(const std::vector<Lobe>& lobes, const std::vector<const PixelPatch*>& patches, const Lamp& lamp,
                             double roughness, const PixelFitOptions& options = {});

@@ -48,7 +48,8 @@ State alongLight(const State& at, const Eigen::Vector4d& direction) {
 /// Robust residuals of all cells over L (4), log m, a sphere's squared radius, a segment's half axis (3) and the blur's variance.
 class PixelCost final : public ceres::CostFunction {
  public:
-  PixelCost(PixelProblem& problem, lobe::LampShape shape) : problem_(problem), shape_(shape) {
+  PixelCost(PixelProblem& problem, lobe::LampShape shape, const ProgressFn& progress)
+      : problem_(problem), shape_(shape), progress_(progress) {
     set_num_residuals(problem.residuals());
     for (const int size : {4, 1, 1, 3, 1}) mutable_parameter_block_sizes()->push_back(size);
   }
@@ -56,17 +57,17 @@ class PixelCost final : public ceres::CostFunction {
     const State at = stateOf(parameters, shape_);
     if (!(at.logRoughness < std::log(kNoHighlightRoughness)) || !(at.logRoughness > std::log(kMirrorRoughness))) return false;
     if (shape_ == lobe::LampShape::Segment && !(at.halfAxis.norm() > 0)) return false;
-    if (!problem_.residualsAt(at, residuals)) return false;
+    if (!goesOn() || !problem_.residualsAt(at, residuals)) return false;
     if (!jacobians) return true;
     if (jacobians[0]) {
       const Eigen::Matrix<double, 4, 3> basis = across(at.light);
       Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor> tangent(problem_.residuals(), 3);
-      for (int k = 0; k < 3; ++k) problem_.differences(alongLight(at, basis.col(k)), kStep, tangent.data() + k, 3);
+      for (int k = 0; k < 3 && goesOn(); ++k) problem_.differences(alongLight(at, basis.col(k)), kStep, tangent.data() + k, 3);
       Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor>>(jacobians[0], problem_.residuals(), 4) =
           tangent * basis.transpose();
     }
     const auto scalar = [&](int block, double State::*member, double step) {
-      if (!jacobians[block]) return;
+      if (!jacobians[block] || !goesOn()) return;
       State moved = at;
       moved.*member += step;
       problem_.differences(moved, step, jacobians[block], 1);
@@ -75,22 +76,30 @@ class PixelCost final : public ceres::CostFunction {
     scalar(2, &State::radiusSquared, sizeStep(at));
     scalar(4, &State::blurVariance, kBlurStep);
     if (jacobians[3])
-      for (int k = 0; k < 3; ++k) {
+      for (int k = 0; k < 3 && goesOn(); ++k) {
         State moved = at;
         moved.halfAxis(k) += axisStep(at);
         problem_.differences(moved, axisStep(at), jacobians[3] + k, 3);
       }
-    return true;
+    return !stopped_;
   }
+  bool stopped() const { return stopped_; }
 
  private:
+  bool goesOn() const {
+    stopped_ = stopped_ || !report(progress_, {"fit", 0, 0});
+    return !stopped_;
+  }
+
   PixelProblem& problem_;
   lobe::LampShape shape_;
+  const ProgressFn& progress_;
+  mutable bool stopped_ = false;  // the solver knows functions without a state only
 };
 
 /// One run of the solver with the quadrature of the moment.
 bool run(PixelProblem& problem, Attempt& a, const SolveOptions& options, bool atInfinity) {
-  PixelCost cost(problem, a.at.shape);
+  PixelCost cost(problem, a.at.shape, options.progress);
   ceres::Problem::Options ownership;
   ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   ceres::Problem ceres(ownership);
@@ -113,6 +122,8 @@ bool run(PixelProblem& problem, Attempt& a, const SolveOptions& options, bool at
     ceres.SetParameterBlockConstant(&s.blurVariance);
   }
   const DenseSolution solution = solveDense(ceres, options.maxIterations, options.tolerance, options.costTolerance);
+  // No exception through the solver, which is not written for it.
+  if (cost.stopped()) throw Stopped{};
   a.iterations += solution.iterations;
   if (!solution.usable || !s.light.allFinite() || !std::isfinite(s.logRoughness) || !s.halfAxis.allFinite()) return false;
   a.cost = 2 * solution.cost;

@@ -4,6 +4,7 @@
 #include <limits>
 #include <vector>
 
+#include "core/base/progress.h"
 #include "core/reflectance/patch_model.h"
 
 /// The least squares problem behind fitPixels; internal to core/reflectance.
@@ -83,10 +84,11 @@ struct SolveOptions {
   double mostEvaluations =
       std::numeric_limits<double>::infinity();  ///< in one look: a lamp that outgrows it is given up, with infinite cost
   double work = std::numeric_limits<double>::infinity();  ///< evaluations in all; some iterations are always made
+  ProgressFn progress{};                                  ///< asked at every look at all cells
 };
 
 /// The minimum that is reached from a state with all unknowns of its shape free. A light at infinity stays there; a point that the
-/// search drives beyond infinity is put there.
+/// search drives beyond infinity is put there. Stopped.
 Attempt solve(PixelProblem& problem, const State& start, const SolveOptions& options);
 
 /// Fills residualPx, relativeRms, rmsPx and poor of a fit from the problem's last residuals.

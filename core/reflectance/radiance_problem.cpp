@@ -318,7 +318,8 @@ Attempt RadianceProblem::solveFrom(const State& start) {
       if (shape == LampShape::Sphere) problem.SetParameterLowerBound(at.data() + kRadiusSquared, 0, kLeastRadiusSquared);
       // The frame's maximum is searched again at every step: no unknown settles below the 1e-11 or so to which it is found. The cost: of a sum
       // of squares over hundreds of points, thousandths of a standard deviation.
-      solution = solveDense(problem, round == 0 ? std::min(most, kFirstRoundIterations) : most - a.iterations, 1e-11, 1e-10);
+      solution = solveDense(problem, round == 0 ? std::min(most, kFirstRoundIterations) : most - a.iterations, 1e-11, 1e-10,
+                            options_.progress);
     }
     a.iterations += solution.iterations;
     if (!solution.usable || !at.allFinite()) return a;

@@ -21,6 +21,9 @@ Engine coreEngine() {
                               const ProgressFn& progress, const Inspection* previous) {
     return inspectOneFrame(std::move(scene), request, frame, progress, previous);
   };
+  engine.firstLook = [](std::shared_ptr<const Scene> scene, const InspectionRequest& request, int frame,
+                        const ProgressFn& progress,
+                        const Inspection* previous) { return firstLook(std::move(scene), request, frame, progress, previous); };
   engine.observeFrame = [](std::shared_ptr<const Scene> scene, const InspectionRequest& request, int frame,
                            const ProgressFn& progress,
                            const Inspection* known) { return observeFrame(std::move(scene), request, frame, progress, known); };

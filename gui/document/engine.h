@@ -57,6 +57,10 @@ struct Engine {
   std::function<Inspection(std::shared_ptr<const Scene>, const InspectionRequest&, int frame, const ProgressFn&,
                            const Inspection* previous)>
       inspectOneFrame;
+  /// As glint::firstLook; may be empty: then the frame is shown with all its models at once.
+  std::function<std::optional<Inspection>(std::shared_ptr<const Scene>, const InspectionRequest&, int frame, const ProgressFn&,
+                                          const Inspection* previous)>
+      firstLook;
   /// As glint::observeFrame; may be empty: then what is observed comes with the models.
   std::function<std::optional<Observation>(std::shared_ptr<const Scene>, const InspectionRequest&, int frame, const ProgressFn&,
                                            const Inspection* known)>

@@ -66,11 +66,17 @@ void Runner::inspect(std::shared_ptr<const Scene> scene, const InspectionRequest
     ProgressFn progress = progressOf(token, cutOff_ ? kLongGraceMs : kGraceMs, times);
     if (engine_.inspectOneFrame && frame >= 0) {
       cutOff_ = true;
+      const auto show = [&](const InspectionPtr& ahead) {
+        if (!token.stopped()) token.deliver([this, ahead, frame] { emit frameFinished(ahead, frame); });
+        previous = ahead;
+      };
+      if (engine_.firstLook)
+        if (std::optional<Inspection> look = engine_.firstLook(asked->scene, asked->request, frame, progress, previous.get()))
+          show(std::make_shared<const Inspection>(*std::move(look)));
       const auto ahead = std::make_shared<const Inspection>(
           engine_.inspectOneFrame(asked->scene, asked->request, frame, progress, previous.get()));
-      if (!token.stopped()) token.deliver([this, ahead, frame] { emit frameFinished(ahead, frame); });
+      show(ahead);
       cutOff_ = false;
-      previous = ahead;
       QElapsedTimer pause;
       pause.start();
       while (sinceRest_.isValid() && sinceRest_.elapsed() < kRestEveryMs && pause.elapsed() < kPauseMs) {

@@ -89,6 +89,36 @@ class RunnerTest : public QObject {
     QTRY_COMPARE(order, QStringList({"all"}));
   }
 
+  /// Models that are quick are seen before those that are not, and what they took is not computed again.
+  void quickModelsComeBeforeTheOthers() {
+    Engine engine = fixture_.engine();
+    std::atomic<bool> tookOver{false}, worthIt{true};
+    engine.firstLook = [&](std::shared_ptr<const Scene> scene, const InspectionRequest& request, int, const ProgressFn&,
+                           const Inspection*) -> std::optional<Inspection> {
+      if (!worthIt) return std::nullopt;
+      Inspection quick = drawnCircles(scene, request);
+      quick.work.fits = 55;
+      return quick;
+    };
+    engine.inspectOneFrame = [&](std::shared_ptr<const Scene> scene, const InspectionRequest& request, int, const ProgressFn&,
+                                 const Inspection* previous) {
+      tookOver = previous && previous->work.fits == 55;
+      return drawnCircles(scene, request);
+    };
+    Runner runner(engine);
+    QStringList order;
+    connect(&runner, &Runner::frameFinished, this,
+            [&](const InspectionPtr& inspection, int) { order << (inspection->work.fits == 55 ? "quick" : "frame"); });
+    connect(&runner, &Runner::finished, this, [&] { order << "all"; });
+    runner.inspect(fixture_.scene(), {}, nullptr, 3);
+    QTRY_COMPARE(order, QStringList({"quick", "frame", "all"}));
+    QVERIFY(tookOver.load());
+    order.clear();
+    worthIt = false;
+    runner.inspect(fixture_.scene(), {}, nullptr, 3);
+    QTRY_COMPARE(order, QStringList({"frame", "all"}));
+  }
+
   void everyPositionOfADragGetsItsFrameAndTheLastOneEverything() {
     Engine engine = fixture_.engine();
     engine.inspectOneFrame = [](std::shared_ptr<const Scene> scene, const InspectionRequest& request, int, const ProgressFn&,

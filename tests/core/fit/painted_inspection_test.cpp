@@ -4,6 +4,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "core/inspect/inspection.h"
+#include "core/session/session.h"
 #include "tests/core/fit/painted_scene.h"
 #include "tests/core/scene/scene_fixture.h"
 
@@ -111,6 +112,64 @@ TEST(PaintedInspection, OneFrameFirstAndTheRestLaterIsTheSame) {
     InspectionRequest off = request(train, "off");
     expectSame(inspect(scene, off, {}, &all), inspect(scene, off));
   }
+}
+
+/// Models that take no pixels come before the lobe is fitted to them, and change nothing of what comes later.
+TEST(FirstLook, ShowsModelsWithoutPixelsAndLeavesTheRest) {
+  const TemporaryFolder folder;
+  const auto scene = photographed(painted(), folder, {"lamp"});
+  InspectionRequest q = request("spread:6");
+  q.models = {"limit-angle", "reflectance"};
+  q.settings.set("fit.evidence", std::string("auto"));
+  const std::optional<Inspection> look = firstLook(scene, q, 5);
+  ASSERT_TRUE(look);
+  EXPECT_EQ(look->work.pixelFits, 0);
+  ASSERT_EQ(look->models.size(), 1u);
+  const Inspection all = inspect(scene, q), one = inspectOneFrame(scene, q, 5, {}, &*look), rest = inspect(scene, q, {}, &one);
+  ASSERT_EQ(all.work.pixelFits, 1);
+  EXPECT_EQ(digestOf(rest), digestOf(all));
+  EXPECT_EQ(one.work.framesDetected + one.work.trainingViews + one.work.lights, 0);
+  EXPECT_EQ(one.work.pixelFits, 1);
+  EXPECT_EQ(one.work.fits, 1);  // of the model that was left
+  EXPECT_EQ(look->models.at("limit-angle").frames.at(0).iou, all.models.at("limit-angle").frames.at(5).iou);
+  // Not worth a step of its own.
+  EXPECT_FALSE(firstLook(scene, q, 5, {}, &one));
+  const auto with = [&](std::vector<std::string> models, const char* key = "fit.evidence", const char* value = "auto") {
+    InspectionRequest other = q;
+    other.models = std::move(models);
+    other.settings.setFromText(key, value);
+    return firstLook(scene, other, 5).has_value();
+  };
+  EXPECT_TRUE(with({"limit-angle"}));
+  InspectionRequest quick = q;
+  quick.models = {"limit-angle"};
+  EXPECT_FALSE(firstLook(scene, quick, 5, {}, &all));  // the lobe is there
+  quick.settings.setFromText("detect.min_contrast", "0.2");
+  EXPECT_TRUE(firstLook(scene, quick, 5, {}, &all));  // it is one of other contours
+  EXPECT_FALSE(with({"reflectance"}));
+  EXPECT_FALSE(with(q.models, "detect.background", "lobe"));
+  EXPECT_FALSE(with(q.models, "fit.evidence", "contours"));
+  EXPECT_TRUE(with(q.models));
+}
+
+/// A person who stops does not wait for the lobe's fit.
+TEST(FirstLook, StopEndsTheFitOfTheLobe) {
+  const TemporaryFolder folder;
+  const auto scene = photographed(painted(), folder, {"lamp"});
+  InspectionRequest q = request("spread:6");
+  q.models = {"reflectance"};
+  q.settings.set("fit.evidence", std::string("auto"));
+  int asked = 0, askedAfter = 0;
+  bool stopped = false;
+  const ProgressFn progress = [&](const StageEvent& e) {
+    askedAfter += stopped;
+    asked += e.stage == "lobe";
+    stopped = stopped || asked > 3;
+    return !stopped;
+  };
+  EXPECT_THROW(inspect(scene, q, progress), Stopped);
+  EXPECT_EQ(asked, 4);
+  EXPECT_EQ(askedAfter, 0);
 }
 
 TEST(PaintedInspection, LightsThatNobodyNamesAreToldApartWithoutTexture) {

@@ -62,6 +62,15 @@ TEST(FitRadiance, Nominal) {
   }
 }
 
+TEST(FitRadiance, StopsAfterAnIteration) {
+  const RadianceScene s = radianceScene(ellipsoidScene(6), Lobe::Ggx, kRoughness);
+  RadianceFitOptions options;
+  int asked = 0;
+  options.progress = [&](const StageEvent&) { return ++asked < 3; };
+  EXPECT_THROW((void)fitRadiance(Lobe::Ggx, radianceViews(s), nearby(s), 1.3 * kRoughness, options), Stopped);
+  EXPECT_EQ(asked, 3);
+}
+
 TEST(FitRadiance, NominalOnWideLobesAndOtherLevels) {
   for (const double level : {0.2, 0.8})
     for (const double roughness : {0.03, 0.25}) {

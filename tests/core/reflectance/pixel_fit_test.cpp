@@ -157,13 +157,13 @@ std::vector<PixelPatch> patchesOf(const Scene& s) {
 
 const std::vector<Lobe> kAll{Lobe::TorranceSparrow, Lobe::Ggx, Lobe::BlinnPhong, Lobe::Phong};
 
-Outcome<PixelFit> fitted(const Scene& s, const std::vector<Lobe>& lobes = kAll) {
+Outcome<PixelFit> fitted(const Scene& s, const std::vector<Lobe>& lobes = kAll, const PixelFitOptions& options = {}) {
   const std::vector<PixelPatch> patches = patchesOf(s);
   std::vector<const PixelPatch*> pointers;
   for (const PixelPatch& p : patches) pointers.push_back(&p);
   // A start as contours give it: ten degrees and a third of the distance off, roughness off by half.
   const Light start = Light::at(s.scale * (0.7 * s.lamp + Eigen::Vector3d(0.2, 0.2, 0)));
-  return fitPixels(lobes, pointers, start, 1.5 * s.roughness);
+  return fitPixels(lobes, pointers, start, 1.5 * s.roughness, options);
 }
 
 double offBy(const PixelFit& fit, const Scene& s) {
@@ -188,6 +188,15 @@ TEST(PixelFit, FindsLightRoughnessAndLobe) {
       EXPECT_TRUE(fit->model.lamp.isPoint());
       EXPECT_LT(fit->model.blurPx(), 0.2);  // nine samples a pixel are not quite the pixel's mean
     }
+}
+
+TEST(PixelFit, StopsBetweenTwoLooksAtThePixels) {
+  const Scene s;
+  PixelFitOptions options;
+  int asked = 0;
+  options.progress = [&](const StageEvent&) { return ++asked < 5; };
+  EXPECT_THROW((void)fitted(s, {Lobe::Ggx}, options), Stopped);
+  EXPECT_EQ(asked, 5);
 }
 
 TEST(PixelFit, AMattBaseIsNamed) {
