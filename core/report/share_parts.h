@@ -59,12 +59,16 @@ std::string framesJson(const Inspection& inspection, const std::vector<int>& fra
 /// Estimated lights with whose they are, and true ones.
 std::string lightsJson(const Inspection& inspection);
 std::string trueLightsJson(const Inspection& inspection);
-/// Title, what there is to see, steps with their texts and layers, questions: "null" where there is no such lesson.
+/// Title, what there is to see, steps with their texts and layers, questions with answers, the typeset equations of all these (SVG), and the
+/// names of their symbols: "null" where there is no such lesson.
 std::string lessonJson(const std::string& id);
 /// `evaluationJson` without what was measured by a clock.
 std::string untimed(const std::string& evaluation);
 
 /// Files of resources/share and resources/explain, and three.js, as they were when the program was built.
-extern const std::string_view kSceneScript, kPageScript, kPageStyle, kPageBody, kThreeScript, kThreeLicence, kLessons, kSteps;
+extern const std::string_view kSceneScript, kPageScript, kPageStyle, kPageBody, kThreeScript, kThreeLicence, kLessons, kSteps,
+    kEquations;
+/// SVG documents, one after the other.
+extern const std::string_view kEquationPictures;
 
 }  // namespace glint::share

@@ -69,27 +69,4 @@ std::string untimed(const std::string& evaluation) {
   return dumped(json);
 }
 
-std::string lessonJson(const std::string& id) {
-  const Json lessons = Json::parse(kLessons), texts = Json::parse(kSteps);
-  for (const Json& lesson : lessons.at("lessons")) {
-    if (id.empty() || lesson.at("id") != id) continue;
-    Json out = {{"title", lesson.at("title")}, {"see", lesson.at("see")}, {"steps", Json::array()}};
-    for (const Json& step : lesson.at("steps")) {
-      for (const Json& text : texts.at("steps")) {
-        if (text.at("id") != step) continue;
-        const std::string key = step.get<std::string>();
-        const bool remarked = lesson.contains("remarks") && lesson.at("remarks").contains(key);
-        out["steps"].push_back({{"title", text.at("title")},
-                                {"text", text.at("text")},
-                                {"equation", text.value("equation", "")},
-                                {"layers", text.value("layers", Json::array())},
-                                {"remark", remarked ? lesson.at("remarks").at(key) : Json("")}});
-      }
-    }
-    out["questions"] = lesson.value("questions", Json::array());
-    return dumped(out);
-  }
-  return "null";
-}
-
 }  // namespace glint::share

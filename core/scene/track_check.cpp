@@ -88,15 +88,18 @@ std::vector<Sighting> sightingsOf(const Scene& scene, const std::vector<CaptureT
   return sightings;
 }
 
-void compareSurface(const Scene& scene, const std::vector<Sighting>& sightings, TrackCheck& check) {
+/// @return whether there is a surface to compare with: one that is made of these very points agrees with them, and where none can be made of
+/// points, the report says why
+bool compareSurface(const Scene& scene, const std::vector<Sighting>& sightings, TrackCheck& check) {
   constexpr double kAgree = 0.01;  // of the distance: sparse points scatter by some tenths of a percent
   const SurfaceCache surfaces(scene);
   std::vector<double> ratios;
   for (const Sighting& s : sightings) {
     const Frame& frame = scene.frames[static_cast<std::size_t>(s.frames.front())];
-    if (frame.surface.empty()) return;  // depth maps are compared elsewhere
+    if (frame.surface.empty()) return false;  // depth maps are compared elsewhere
+    if (scene.surfaces.at(frame.surface).points) return false;
     const Outcome<std::shared_ptr<const Surface>> surface = surfaces.surfaceOf(s.frames.front(), {});
-    if (!surface) return;
+    if (!surface) return false;
     const Eigen::Vector3d eye = frame.camera.centreInWorld(), sight = s.point - eye;
     if (!(sight.norm() > 0)) continue;
     const Outcome<SurfacePoint> hit = (*surface)->firstHit({eye, sight.normalized()});
@@ -107,6 +110,7 @@ void compareSurface(const Scene& scene, const std::vector<Sighting>& sightings, 
   }
   check.met = static_cast<int>(ratios.size());
   check.depthRatio = quantile(ratios, 0.5);
+  return !sightings.empty();
 }
 
 std::vector<SeenPoint> sampleOf(const Scene& scene, const std::vector<Sighting>& sightings) {
@@ -159,10 +163,11 @@ void concludeSurface(TrackCheck& check) {
   const bool few = check.met < kEnough;
   check.surfaceElsewhere = few || check.onSurface < kFew * check.met;
   if (few) {
-    check.findings.push_back(
-        formatted("only %d of the capture's sparse points are seen before or on the surface (is the mesh in "
-                  "the frame of the cameras?)",
-                  check.met));
+    const std::string number = check.met == 0 ? "none" : formatted("only %d", check.met);
+    check.findings.push_back(number +
+                             formatted(" of %d sparse points of the capture %s seen before or on the surface (is the mesh in "
+                                       "the frame of the cameras?)",
+                                       check.inView, check.met <= 1 ? "is" : "are"));
   } else if (check.surfaceElsewhere) {
     const bool unit = check.depthRatio > kWrongUnit || check.depthRatio < 1 / kWrongUnit;
     check.findings.push_back(
@@ -200,8 +205,7 @@ std::optional<TrackCheck> checkTracks(const Scene& scene, const ProgressFn& prog
   else
     concludeView(check);
   if (check.findings.empty()) {  // what the cameras get wrong moves the surface as well
-    compareSurface(scene, sightings, check);
-    concludeSurface(check);
+    if (compareSurface(scene, sightings, check)) concludeSurface(check);
     if (check.surfaceElsewhere) check.sample = sampleOf(scene, sightings);
   }
   return check;

@@ -247,10 +247,51 @@
     for (const [id] of layerNames) boxes[id].checked = state.layers[id] = isShown(id);
   }
 
+  // Equations: of a drawing its outlines and the names of its symbols are taken. The plain form stands beside it, unseen, for who copies or listens.
+  const kEm = 20;  // units of a drawing: EM of docs/make_equations.py
+  const kLarger = 1.3;  // a serif of the same size as the text beside it looks smaller
+  const drawings = new Map(data.lesson ? data.lesson.equations.map((e) => [e.plain, e.svg]) : []);
+  function copyOutlines(from, to) {
+    for (const node of from.children) {
+      if (node.nodeName === 'path') svg(to, 'path', { d: node.getAttribute('d') });
+      if (node.nodeName !== 'g') continue;
+      const group = svg(to, 'g', {}), symbol = node.id.split('.')[0];  // "normal.2" is the second place of "normal"
+      if (symbol) {
+        group.dataset.symbol = symbol;
+        svg(group, 'title', {}).textContent = data.lesson.symbols[symbol] || '';
+      }
+      copyOutlines(node, group);
+    }
+  }
+  function equation(parent, plain) {
+    if (!drawings.has(plain)) {
+      parent.append(plain);
+      return;
+    }
+    const source = new DOMParser().parseFromString(drawings.get(plain), 'image/svg+xml').documentElement;
+    const box = source.getAttribute('viewBox'), size = box.split(' ').map((v) => kLarger * v / kEm);
+    const frame = element(parent, 'span', '', 'typeset');
+    frame.setAttribute('role', 'img');
+    frame.setAttribute('aria-label', plain);
+    copyOutlines(source, svg(frame, 'svg', { viewBox: box, width: size[2] + 'em', height: size[3] + 'em', 'aria-hidden': 'true' }));
+    element(frame, 'span', plain, 'plain-form');
+  }
+  function copyText(text, to) {
+    const plain = [...drawings.keys()].find((form) => text.includes(form));
+    if (plain === undefined) {
+      to.append(text);
+      return;
+    }
+    const start = text.indexOf(plain);
+    copyText(text.slice(0, start), to);
+    equation(to, plain);
+    copyText(text.slice(start + plain.length), to);
+  }
+
   // A lesson's texts may hold <b>, <i>, <sub>, <sup>; of anything else the words alone are taken.
   function copyWords(from, to) {
     for (const node of from.childNodes) {
-      if (node.nodeType === Node.TEXT_NODE) to.append(node.textContent);
+      if (node.nodeType === Node.TEXT_NODE) copyText(node.textContent, to);
       else if (['B', 'I', 'SUB', 'SUP'].includes(node.nodeName)) copyWords(node, element(to, node.nodeName.toLowerCase()));
       else copyWords(node, to);
     }
@@ -265,7 +306,8 @@
     at('step-count').textContent = 'Step ' + (place + 1) + ' of ' + steps.length;
     words(at('step-title'), step.title);
     words(at('step-text'), step.text);
-    at('step-equation').textContent = step.equation;
+    at('step-equation').textContent = '';
+    equation(at('step-equation'), step.equation);
     words(at('step-remark'), step.remark);
     at('step-back').disabled = place === 0;
     at('step-next').disabled = place === steps.length - 1;
@@ -278,7 +320,13 @@
     at('lesson').hidden = false;
     words(at('lesson-title'), 'Lesson: ' + data.lesson.title);
     words(at('lesson-see'), data.lesson.see);
-    for (const question of data.lesson.questions) words(element(at('questions'), 'li'), question);
+    for (const question of data.lesson.questions) {
+      const item = element(at('questions'), 'li');
+      words(element(item, 'span'), question.ask);
+      const answer = element(item, 'details');
+      element(answer, 'summary', 'Answer');
+      words(element(answer, 'p'), question.answer);
+    }
     at('step-back').addEventListener('click', () => showStep(state.step - 1));
     at('step-next').addEventListener('click', () => showStep(state.step + 1));
   }

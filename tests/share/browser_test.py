@@ -120,6 +120,34 @@ def check_through(page, data, model):
     page.evaluate("document.getElementById('through').click()")
 
 
+def check_equation(page, data):
+    """The step's equation is drawn in the colour of its text, in both themes; who copies or listens gets the plain form; it never widens the page."""
+    step = data["lesson"]["steps"][page.evaluate("glintPage.state.step")]
+    typeset = "document.querySelector('#step-equation .typeset')"
+    assert page.evaluate(f"{typeset}.getAttribute('role') + ': ' + {typeset}.getAttribute('aria-label')") == "img: " + step["equation"]
+    copied = page.evaluate("(getSelection().selectAllChildren(document.getElementById('step-equation')), getSelection().toString())")
+    page.evaluate("getSelection().removeAllRanges()")
+    assert copied == step["equation"], copied
+    seen = set()
+    for _ in range(2):
+        page.evaluate("document.getElementById('theme').click()")
+        ink = page.evaluate("getComputedStyle(document.getElementById('step-text')).color.match(/\\d+/g).map(Number)")
+        x, y, width, height = (round(v) for v in box(page, "step-equation"))
+        picture = page.picture()
+        pixels = [picture.at(c, r) for r in range(y, y + height) for c in range(x, x + width)]
+        assert sum(near(pixel, ink, 30) for pixel in pixels) > 40, "no ink"
+        seen.add(tuple(ink))
+    assert len(seen) == 2, seen
+    size = lambda: page.evaluate(f"{typeset}.querySelector('svg').getBoundingClientRect().height")
+    before = size()
+    page.evaluate("document.getElementById('step-equation').style.fontSize = '200%'")
+    assert abs(size() - 2 * before) < 1, "it does not scale with the text"
+    page.evaluate("document.getElementById('lesson').style.width = '320px'")
+    right = lambda e: page.evaluate(f"{e}.getBoundingClientRect().right")
+    assert right(typeset) <= right("document.getElementById('lesson')"), "wider than its column"
+    page.evaluate("document.getElementById('lesson').style.width = document.getElementById('step-equation').style.fontSize = ''")
+
+
 def check_scene(page):
     """The scene is drawn, turns with the mouse, and comes back."""
     show(page, "surface", "cameras")
@@ -155,6 +183,7 @@ def main():
             check_frames(page, data)
             page.evaluate("document.getElementById('step-next').click()")
             assert page.evaluate("document.getElementById('step-count').textContent") == f"Step 2 of {len(data['lesson']['steps'])}"
+            check_equation(page, data)
             check_scene(page)
             check_photograph(page, data, "limit-angle")
             check_through(page, data, "limit-angle")

@@ -15,6 +15,7 @@ import struct
 import subprocess
 import sys
 import tempfile
+import xml.etree.ElementTree
 
 MOST = 20e6  # bytes, for every shipped session
 HOSTILE = "</script><script>document.title='owned'</script><!-- \" ' & \u2028 \u2029 <img src=x onerror=alert(1)>"
@@ -133,6 +134,21 @@ def check_surfaces(data):
         assert len(base64.b64decode(surface["normals"])) in (0, 3 * vertices)
 
 
+def check_equations(lesson, explain):
+    """The typeset equations are the pictures on record, those of this lesson alone, of outlines and nothing else."""
+    known = {e["plain"]: e["id"] for e in json.loads((explain / "equations.json").read_text(encoding="utf-8"))["equations"]}
+    there = {e["plain"]: e["svg"] for e in lesson["equations"]}
+    steps = {step["equation"] for step in lesson["steps"]} - {""}
+    words = json.dumps([lesson["see"], lesson["questions"], lesson["steps"]], ensure_ascii=False)
+    assert steps <= set(there), steps - set(there)
+    for plain, svg in there.items():
+        assert plain in words, f"the lesson does not show {plain}"
+        assert svg + "\n" == (explain / "equations" / (known[plain] + ".svg")).read_text(encoding="utf-8"), plain
+        tags = {e.tag.rsplit("}", 1)[-1] for e in xml.etree.ElementTree.fromstring(svg).iter()}
+        assert tags <= {"svg", "title", "desc", "g", "path"}, tags
+    return len(there)
+
+
 def check_session(glint, session, folder):
     first, second = folder / "first.html", folder / "second.html"
     run(glint, "share", session, "-o", first)
@@ -222,10 +238,14 @@ def main():
                 lesson = Page((folder / "page.html").read_text(encoding="utf-8")).data()["lesson"]
                 assert (lesson is not None) == ("lessons" in session.parts)
                 assert lesson is None or all(step["title"] and step["text"] for step in lesson["steps"])
+                assert lesson is None or all(q["ask"] and q["answer"] for q in lesson["questions"])
+                if lesson:
+                    check_equations(lesson, sessions.parent / "resources/explain")
             return
         check_session(glint, sessions / "two-lamps/two-lamps.glint", folder)
         lesson = sessions / "lessons/sphere/sphere.glint"
-        assert len(check_session(glint, lesson, folder)["lesson"]["steps"]) == 5
+        shared = check_session(glint, lesson, folder)["lesson"]
+        assert len(shared["steps"]) == 5 and check_equations(shared, sessions.parent / "resources/explain") == 5
         check_frames(glint, lesson, folder)
         check_hostile(glint, lesson, folder)
         check_refusals(glint, lesson, folder)

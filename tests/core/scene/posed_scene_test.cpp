@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "core/capture/capture.h"
+#include "core/scene/convention_report.h"
 #include "core/scene/mesh_file.h"
 #include "core/session/session.h"
 #include "tests/core/capture/png_fixture.h"
@@ -14,8 +15,11 @@
 
 namespace glint::posed_scene_tests {
 namespace {
+using testing::AllOf;
+using testing::AnyOf;
 using testing::Contains;
 using testing::HasSubstr;
+using testing::Not;
 using namespace testing_support;
 
 /// A flat square of 30 x 30 points in the plane z = 0, 1 cm apart.
@@ -140,6 +144,63 @@ TEST(PosedScene, SparsePointsAreASurfaceOnlyWhenAskedForAndEnough) {
   ASSERT_FALSE(surface);
   EXPECT_EQ(surface.failure().reason, Reason::TooFewPoints);
   EXPECT_THAT(inputErrorOf([&] { writeScene(scene, folder / "out.json"); }), HasSubstr("sparse points of a capture"));
+}
+
+/// Two cameras that look along z, and side x side points of the plane z = 0, 1 cm apart, as COLMAP writes what they saw.
+void writeColmapOfSquare(const TemporaryFolder& folder, int side) {
+  std::ostringstream points, seen[2];
+  for (int i = 0; i < side * side; ++i) {
+    const double x = 0.01 * (i % side), y = 0.01 * (i / side);
+    points << i + 1 << ' ' << x << ' ' << y << " 0 0 0 0 0.5 1 " << i << " 2 " << i << '\n';
+    for (int camera : {0, 1})
+      seen[camera] << 32 + 80 * x / (camera + 2) << ' ' << 24 + 80 * y / (camera + 2) << ' ' << i + 1 << ' ';
+  }
+  folder.write("sparse/0/cameras.txt", "1 PINHOLE 64 48 80 80 32 24\n");
+  folder.write("sparse/0/images.txt",
+               "1 1 0 0 0 0 0 2 1 a.png\n" + seen[0].str() + "\n2 1 0 0 0 0 0 3 1 b.png\n" + seen[1].str() + "\n");
+  folder.write("sparse/0/points3D.txt", points.str());
+}
+
+std::vector<std::string> findingsOf(const TemporaryFolder& folder, const ReadOptions& options) {
+  return conventionReport(readScene(folder.path(), options)).findings;
+}
+
+TEST(PosedScene, TooFewSparsePointsAreNamedOnceAndNoMeshIsBlamed) {
+  const TemporaryFolder folder;
+  writeColmapOfSquare(folder, 6);
+  ReadOptions options;
+  options.choices.surface = InputChoices::Surface::Points;
+  const std::vector<std::string> findings = findingsOf(folder, options);
+  EXPECT_THAT(findings, Contains(AllOf(HasSubstr("no surface can be made of the points"), HasSubstr("there are 36"))));
+  EXPECT_THAT(findings, Not(Contains(HasSubstr("sparse points"))));
+}
+
+TEST(PosedScene, NoSparsePointIsAnotherAnswerThanTooFew) {
+  const TemporaryFolder folder;
+  writeColmapOfSquare(folder, 6);
+  folder.write("sparse/0/images.txt", "1 1 0 0 0 0 0 2 1 a.png\n\n2 1 0 0 0 0 0 3 1 b.png\n\n");
+  folder.write("sparse/0/points3D.txt", "");
+  ReadOptions options;
+  options.choices.surface = InputChoices::Surface::Points;
+  EXPECT_THAT(inputErrorOf([&] { findingsOf(folder, options); }), HasSubstr("it has no sparse points"));
+}
+
+TEST(PosedScene, EnoughSparsePointsAreASurfaceThatTheyDoNotContradict) {
+  const TemporaryFolder folder;
+  writeColmapOfSquare(folder, 12);
+  ReadOptions options;
+  options.choices.surface = InputChoices::Surface::Points;
+  EXPECT_THAT(findingsOf(folder, options), Not(Contains(AnyOf(HasSubstr("sparse points"), HasSubstr("no surface")))));
+}
+
+TEST(PosedScene, AMeshThatNoSparsePointMeetsIsAskedAbout) {
+  const TemporaryFolder folder;
+  writeColmapOfSquare(folder, 6);
+  ReadOptions options;
+  options.choices.surface = InputChoices::Surface::File;
+  options.choices.surfaceFile = folder.write("mesh.obj", "v 100 0 0\nv 101 0 0\nv 100 1 0\nf 1 2 3\n");
+  EXPECT_THAT(findingsOf(folder, options),
+              Contains(HasSubstr("none of 36 sparse points of the capture is seen before or on the surface (is the mesh")));
 }
 
 }  // namespace
