@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Chromium without a window, driven through its own pipe by the standard library alone, and PNG files as rows of pixels."""
 import base64
+import fcntl
 import json
 import os
 import select
@@ -14,6 +15,7 @@ import time
 import zlib
 
 SKIPPED = 77
+FREE_DESCRIPTOR = 64  # above those of a test
 
 
 def chromium():
@@ -34,10 +36,10 @@ class Browser:
         self.back, from_write = os.pipe()
 
         def hand_over():  # Chromium reads commands from 3 and writes answers to 4
-            os.dup2(to_read, 13)
-            os.dup2(from_write, 14)
-            os.dup2(13, 3)
-            os.dup2(14, 4)
+            # Either end may be 3 or 4 itself: copies out of the way come first.
+            read, write = (fcntl.fcntl(end, fcntl.F_DUPFD, FREE_DESCRIPTOR) for end in (to_read, from_write))
+            os.dup2(read, 3)
+            os.dup2(write, 4)
             os.setsid()
 
         self.process = subprocess.Popen(
@@ -64,6 +66,8 @@ class Browser:
         except ProcessLookupError:
             pass
         self.process.wait()
+        os.close(self.to)
+        os.close(self.back)
         shutil.rmtree(self.profile, ignore_errors=True)
 
     def read(self, seconds=120):
