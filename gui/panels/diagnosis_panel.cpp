@@ -184,6 +184,8 @@ DiagnosisPanel::DiagnosisPanel(Document& document, QWidget* parent) : QWidget(pa
     if (stale) queue_.stop();  // of a state that is no more; the new one's results wait for the processor
     showState();
   });
+  connect(&document_, &Document::requestChanged, this,
+          [this] { queue_.stop(); });  // results of the new state may be there already
   connect(&document_, &Document::sceneOpened, this, [this] {
     queue_.drop();
     queue_.stop();
