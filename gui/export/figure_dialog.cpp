@@ -122,8 +122,9 @@ void FigureDialog::addCaption(QFormLayout* form) {
   propose_->hide();
   row->addWidget(caption_, 1);
   row->addWidget(propose_);
-  form->addRow(tr("C&aption"), row);
-  static_cast<QLabel*>(form->labelForField(row))->setBuddy(caption_);
+  auto* label = new QLabel(tr("C&aption"));
+  label->setBuddy(caption_);
+  form->addRow(label, row);
   connect(propose_, &QPushButton::clicked, this, [this] { caption_->setText(caption_->placeholderText()); });
 }
 

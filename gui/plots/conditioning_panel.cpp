@@ -9,7 +9,6 @@
 #include <QVBoxLayout>
 #include <QVariant>
 #include <algorithm>
-#include <cmath>
 
 #include "core/inspect/summary.h"
 #include "core/report/warnings.h"
@@ -363,8 +362,10 @@ void ConditioningPanel::build() {
 }
 
 void ConditioningPanel::addPrediction(QGridLayout& grid, int row, int columns) {
-  auto* title = new ElidedLabel(tr("Prediction"));
-  title->setToolTip(tr("Contour error in held-out frames of the model that is selected, in % of a highlight's diameter"));
+  auto* title = new ElidedLabel(tr("Prediction (%)"));
+  title->setToolTip(
+      tr("Contour error in held-out frames of the model that is selected, in % of a highlight's diameter; "
+         "highlights that it missed; frames predicted of those that have a highlight"));
   title->setProperty("role", "faded");
   grid.addWidget(title, row, 0);
   prediction_ = new ElidedLabel;
@@ -380,18 +381,23 @@ void ConditioningPanel::showPrediction() {
   if (result == inspection->models.end()) return prediction_->clear();
   const ModelSummary s = summarise(*inspection, result->second);
   const QString model = toQString(result->first);
-  const auto percent = [](double v) { return std::isfinite(v) ? QString::number(v, 'f', 3) : QStringLiteral("–"); };
-  const QString words = s.answered ? tr("median %1 %, max %2 %, missed %3, predicted %4/%5")
-                                         .arg(percent(s.contourErrorPct.median), percent(s.contourErrorPct.max))
-                                         .arg(s.missed)
-                                         .arg(s.predicted)
-                                         .arg(s.frames)
-                                   : toQString(s.reason);
-  prediction_->setText(words);
-  prediction_->setToolTip(plainTip(s.answered
-                                       ? tr("%1 in held-out frames, %2; against %3. \"predicted\" counts frames, of each light")
-                                             .arg(model, words, toQString(scoredAgainst(*inspection)))
-                                       : tr("%1 in held-out frames: %2").arg(model, words)));
+  if (!s.answered) {
+    prediction_->setText(toQString(s.reason));
+    return prediction_->setToolTip(plainTip(tr("%1 in held-out frames: %2").arg(model, toQString(s.reason))));
+  }
+  const Statistic& error = s.contourErrorPct;
+  prediction_->setText(tr("median %1, max %2, missed %3, %4/%5")
+                           .arg(numberText(error.median, 2), numberText(error.max, 2))
+                           .arg(s.missed)
+                           .arg(s.predicted)
+                           .arg(s.frames));
+  prediction_->setToolTip(
+      plainTip(tr("%1 in held-out frames, against %2: median error %3 %, max %4 %; missed highlights: %5; "
+                  "predicted in %6 of %7 frames (those of each light)")
+                   .arg(model, toQString(scoredAgainst(*inspection)), numberText(error.median), numberText(error.max))
+                   .arg(s.missed)
+                   .arg(s.predicted)
+                   .arg(s.frames)));
 }
 
 void ConditioningPanel::showLights() {
