@@ -9,13 +9,20 @@
 
 namespace glint::viz {
 
+/// What stands under an exported plot, inside its size.
+struct PlotCaption {
+  std::string text;    ///< "" = none
+  double sizePx = 12;  ///< of its letters, device px
+};
+
 /// A picture of a plot of `width` x `height` device px, 3 channels; needs no display. std::invalid_argument unless
 /// 16 <= width, height <= 16384.
-Image plotImage(const PlotData& plot, const PlotStyle& style, const Selection& selection, int width, int height);
+Image plotImage(const PlotData& plot, const PlotStyle& style, const Selection& selection, int width, int height,
+                const PlotCaption& caption = {});
 
-/// The same as SVG, as SvgPainter writes it. Written as a whole or not at all. InputError when it cannot be written.
+/// The same as SVG, as SvgPainter writes it, the caption as text and as description. Written as a whole or not at all. InputError when it cannot be written.
 void writePlotSvg(const PlotData& plot, const PlotStyle& style, const Selection& selection, int width, int height,
-                  const std::string& file);
+                  const std::string& file, const PlotCaption& caption = {});
 
 /// InputError when it cannot be written.
 void writePlotCsv(const PlotData& plot, const std::string& file);

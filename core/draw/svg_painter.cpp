@@ -133,10 +133,11 @@ std::string SvgPainter::element(const std::string& label) const {
   return open("role=\"img\" aria-label=\"" + html::escaped(label) + "\"") + body_ + hints_ + "</svg>\n";
 }
 
-std::string SvgPainter::document(const std::string& title) const {
+std::string SvgPainter::document(const std::string& title, const std::string& description) const {
+  const std::string desc = description.empty() ? "" : "<desc>" + html::escaped(description) + "</desc>\n";
   return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n" +
          open("xmlns=\"http://www.w3.org/2000/svg\" width=\"" + num(width_) + "\" height=\"" + num(height_) + "\"") + "<title>" +
-         html::escaped(title) + "</title>\n" + body_ + hints_ + "</svg>\n";
+         html::escaped(title) + "</title>\n" + desc + body_ + hints_ + "</svg>\n";
 }
 
 }  // namespace glint::draw

@@ -30,8 +30,8 @@ class SvgPainter : public Painter {
 
   /// To stand in an HTML page. @param label  what a screen reader says
   std::string element(const std::string& label) const;
-  /// To stand in a file of its own.
-  std::string document(const std::string& title) const;
+  /// To stand in a file of its own. @param description  longer than the title; "" = none
+  std::string document(const std::string& title, const std::string& description = "") const;
 
  private:
   std::string open(const std::string& attributes) const;

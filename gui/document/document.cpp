@@ -47,6 +47,8 @@ std::string Document::plottedModel() const {
 
 void Document::setInspection(std::shared_ptr<const Inspection> inspection, const InspectionRequest& computedFor) {
   if (!inspection || inspection->given != scene_) return;  // a late result of a scene that was closed
+  recent_.keep(inspection, computedFor, [this](const InspectionRequest& r) { return historyLeadsTo(r); });
+  if (inspection_ && !stale_ && computedFor != state_.request) return;
   inspection_ = std::move(inspection);
   ahead_.reset();
   holdAgainstObservation();
@@ -56,6 +58,7 @@ void Document::setInspection(std::shared_ptr<const Inspection> inspection, const
 
 void Document::setFrameInspection(std::shared_ptr<const Inspection> inspection, int frame) {
   if (!inspection || inspection->given != scene_ || frame != state_.selection.frame) return;
+  if (inspection_ && !stale_ && inspection->request != state_.request) return;  // of a run that was overtaken
   ahead_ = std::move(inspection);
   holdAgainstObservation();
   emit frameInspectionChanged();
@@ -162,6 +165,7 @@ void Document::open(const Opened& opened) {
   inputFile_ = exactQString(opened.path);
   session_ = opened.session;
   sessionFile_ = opened.isSession ? inputFile_ : QString();
+  recent_.clear();
   inspection_.reset();
   ahead_.reset();
   observed_.reset();
@@ -398,13 +402,40 @@ void Document::apply(const ViewState& state) {
   state_ = state;
   if (request) {
     updateTraining();
-    setStale(true);
-    emit requestChanged();
+    followRequest();
   }
   if (selection) emit selectionChanged();
   if (layers) emit layersChanged();
   if (options) emit optionsChanged();
   if (request || layers || options) emit savedStateChanged();
+}
+
+void Document::followRequest() {
+  const std::shared_ptr<const Inspection> known = recent_.find(state_.request);
+  if (known) {
+    inspection_ = known;
+    ahead_.reset();
+    observed_.reset();
+    observation_.reset();
+  }
+  setStale(!known);
+  emit requestChanged();
+  if (known) emit inspectionChanged();
+}
+
+bool Document::historyLeadsTo(const InspectionRequest& request) const {
+  if (request == state_.request) return true;
+  const auto leads = [&request](const QUndoCommand* step) {
+    const auto* state = dynamic_cast<const StateCommand*>(step);
+    return state && state->leadsTo(request);
+  };
+  for (int i = 0; i < undo_.count(); ++i) {
+    const QUndoCommand* const step = undo_.command(i);
+    if (leads(step)) return true;
+    for (int k = 0; k < step->childCount(); ++k)  // of a step that is made of several
+      if (leads(step->child(k))) return true;
+  }
+  return false;
 }
 
 void Document::updateTraining() {

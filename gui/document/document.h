@@ -13,6 +13,7 @@
 
 #include "core/diagnostics/highlight_rows.h"
 #include "gui/document/engine.h"
+#include "gui/document/recent_results.h"
 
 namespace glint::gui {
 
@@ -88,6 +89,8 @@ class Document : public QObject {
   /// What the selected frame shows under the request, before there are results for it; null = what results() say. Ignored when it
   /// is no longer asked for.
   void setObservation(std::shared_ptr<const Observation> observation);
+  /// New results. Kept, but not shown, where those on screen are what the request asks for and these are of another one: a run
+  /// that was overtaken has come to its end.
   void setInspection(std::shared_ptr<const Inspection> inspection, const InspectionRequest& computedFor);
 
   /// Measured speed against accuracy of this scene; null = none. Stored in the session.
@@ -147,8 +150,9 @@ class Document : public QObject {
   void setView(const std::map<std::string, bool>& layers, const std::map<std::string, std::string>& options, const QString& text);
 
  signals:
-  void sceneOpened();     ///< another scene
-  void requestChanged();  ///< results are stale until the next setInspection
+  void sceneOpened();  ///< another scene
+  /// Results are stale until the next setInspection; not stale where those of this request were still kept: inspectionChanged() follows.
+  void requestChanged();
   void selectionChanged();
   void layersChanged();
   void optionsChanged();  ///< ViewState::options
@@ -166,6 +170,8 @@ class Document : public QObject {
   friend class StateCommand;
   void push(ViewState after, const QString& text, const QString& mergeKey = {});
   void apply(const ViewState& state);
+  void followRequest();
+  bool historyLeadsTo(const InspectionRequest& request) const;
   void updateTraining();
   void holdAgainstObservation();
   void setStale(bool stale);
@@ -179,6 +185,7 @@ class Document : public QObject {
   QString sessionFile_, inputFile_;
   std::shared_ptr<const Session> session_;
   std::shared_ptr<const Inspection> inspection_, ahead_, observed_, pinned_;
+  RecentResults recent_;
   bool pinnedShown_ = false;
   std::set<RowKey> brushed_;
   mutable std::map<std::shared_ptr<const Inspection>, RowsPtr> rows_;  ///< of inspection_ and pinned_ alone

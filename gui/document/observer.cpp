@@ -13,6 +13,7 @@ Observer::Observer(const Engine& engine, Document& document, QObject* parent)
 void Observer::observe() {
   job_.drop();
   const auto known = document_.results();
+  if (!document_.stale()) return;               // results of this request were still there
   if (!engine_.observeFrame || !known) return;  // before the first results there is nothing that could be behind
   const auto observe = engine_.observeFrame;
   job_.run([this, observe, scene = document_.sharedScene(), request = document_.request(), known,

@@ -80,6 +80,8 @@ class Runner : public QObject {
   /// What every training frame does; answers with influenceMeasured().
   void influence(InspectionPtr inspection);
   void cancel() { jobs_.stop(); }
+  /// Nothing that was asked for is of use any more, except saving: results are there already.
+  void drop() { jobs_.drop(); }
   bool busy() const { return jobs_.busy(); }
 
  signals:

@@ -14,6 +14,8 @@ class StateCommand : public QUndoCommand {
   StateCommand(Document& document, ViewState before, ViewState after, const QString& text, QString mergeKey);
   void undo() override;
   void redo() override;
+  /// The step leads to this request, or back to it.
+  bool leadsTo(const InspectionRequest& request) const { return before_.request == request || after_.request == request; }
   int id() const override { return mergeKey_.isEmpty() ? -1 : 1; }
   bool mergeWith(const QUndoCommand* later) override;
 

@@ -26,6 +26,7 @@
 #include "gui/base/write_png.h"
 #include "gui/document/figure.h"
 #include "gui/document/own_files.h"
+#include "gui/export/figure_caption.h"
 #include "gui/export/long_job.h"
 #include "gui/frame/frame_canvas.h"
 #include "gui/frame/frame_panel.h"
@@ -44,11 +45,6 @@ constexpr int kBetweenPx = 2;     // two frames side by side
 /// Device px of a widget; of a hidden one, which has no size, something usual.
 QSize shownSize(const QWidget& widget) {
   return widget.isVisible() ? widget.size() * widget.devicePixelRatioF() : QSize(1280, 800);
-}
-
-QColor backgroundOf(const FigureLook& look) {
-  if (look.transparent) return {};
-  return look.dark ? QColor(0x1b, 0x1d, 0x20) : QColor(Qt::white);
 }
 
 void writeBytes(const QString& file, const QByteArray& bytes) {
@@ -122,6 +118,7 @@ void FigureActions::addActions(Actions& actions, QMenu* menu) {
                 if (!document_.inspection()) return;
                 FigureDialog dialog(tr("3D view as picture"), QStringLiteral("scene"), shownSize(*scene_.views().widget()),
                                     currentTheme() == Theme::Dark, window_);
+                dialog.proposeCaption(proposedCaption(document_, tr("3D view")));
                 if (dialog.exec() != QDialog::Accepted) return;
                 const QString file = askForFile(window_, document_, dialog.windowTitle(), suggestedFile(document_, "3d", ".png"),
                                                 tr("Pictures with embedded session (*.png)"));
@@ -131,10 +128,13 @@ void FigureActions::addActions(Actions& actions, QMenu* menu) {
   actions.add(
       "export.frame-view", menu, tr("Frame &view…"),
       [this] {
-        if (!document_.scene()) return;
+        if (document_.frameCount() == 0) return;
         QSize shown = shownSize(*frame_.canvas());
         if (frame_.secondCanvas()->isVisible()) shown.rwidth() *= 2;
         FigureDialog dialog(tr("Frame view as picture"), QStringLiteral("frame"), shown, currentTheme() == Theme::Dark, window_);
+        const int frame = document_.selection().frame;
+        dialog.proposeCaption(proposedCaption(
+            document_, tr("Highlights in frame %1").arg(nameText(document_.scene()->frames[std::size_t(frame)].id))));
         if (dialog.exec() != QDialog::Accepted) return;
         const QString file =
             askForFile(window_, document_, dialog.windowTitle(), suggestedFile(document_, "frame", ".png"),
@@ -156,7 +156,8 @@ void FigureActions::writeScene(const FigureLook& look, const QString& file) {
     return void(emit problem(tr("%1: the 3D view can only be saved as .png").arg(file)));
   QImage picture;
   try {
-    picture = sceneFigure(look);
+    const FigureCaption caption(look);
+    picture = caption.under(sceneFigure(caption.above()));
     setDpi(picture, look.dpi);
   } catch (const InputError& e) {
     return void(emit problem(toQString(e.what())));
@@ -207,6 +208,12 @@ void FigureActions::paintFrames(QPainter& painter, const FigureLook& look) const
   frame_.secondCanvas()->drawFigure(painter, {QPointF(half.width() + kBetweenPx, key), half}, background);
 }
 
+void FigureActions::paintFigure(QPainter& painter, const FigureLook& look) const {
+  const FigureCaption caption(look);
+  paintFrames(painter, caption.above());
+  caption.paint(painter);
+}
+
 double FigureActions::paintKey(QPainter& painter, const FigureLook& look) const {
   const QList<PairBar::KeyEntry>& key = frame_.pair().key();
   if (key.isEmpty()) return 0;
@@ -247,7 +254,7 @@ void FigureActions::writeFrame(const FigureLook& look, const QString& file) {
     picture.fill(Qt::transparent);
     {
       QPainter painter(&picture);
-      paintFrames(painter, look);
+      paintFigure(painter, look);
     }
     if (!look.transparent) picture = picture.convertToFormat(QImage::Format_RGB32);
     setDpi(picture, look.dpi);
@@ -262,9 +269,8 @@ void FigureActions::writeFrame(const FigureLook& look, const QString& file) {
     svg.setSize(look.size);
     svg.setViewBox(QRect({0, 0}, look.size));
     svg.setResolution(kDotsPerInch);
-    svg.setTitle(title);
     QPainter painter(&svg);
-    paintFrames(painter, look);
+    paintFigure(painter, look);
   } else if (ending == QLatin1String("pdf")) {
     QPdfWriter pdf(&bytes);
     pdf.setPageSize(QPageSize(QSizeF(look.size) * 72.0 / kDotsPerInch, QPageSize::Point, QString(), QPageSize::ExactMatch));
@@ -272,11 +278,13 @@ void FigureActions::writeFrame(const FigureLook& look, const QString& file) {
     pdf.setResolution(kDotsPerInch);
     pdf.setTitle(title);
     QPainter painter(&pdf);
-    paintFrames(painter, look);
+    paintFigure(painter, look);
   } else {
     return void(emit problem(tr("%1: the frame view can only be saved as .png, .svg or .pdf").arg(file)));
   }
-  write(file, [content = bytes.data(), file] { writeBytes(file, content); });
+  const bool svg = ending == QLatin1String("svg");
+  const QByteArray content = svg ? withTitle(bytes.data(), title, look.caption.trimmed()) : bytes.data();
+  write(file, [content, file] { writeBytes(file, content); });
 }
 
 }  // namespace glint::gui

@@ -38,6 +38,8 @@ class FigureActions : public QObject {
  private:
   /// All 3D views as they lie beside each other, or the one.
   QImage sceneFigure(const FigureLook& look) const;
+  /// The frames with the caption below.
+  void paintFigure(QPainter& painter, const FigureLook& look) const;
   void paintFrames(QPainter& painter, const FigureLook& look) const;
   /// What the epipolar lines of two frames are and miss by, above the pictures. Its height, px; 0 without lines.
   double paintKey(QPainter& painter, const FigureLook& look) const;

@@ -5,6 +5,9 @@
 #include <QComboBox>
 #include <QDialogButtonBox>
 #include <QFormLayout>
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QLineEdit>
 #include <QPushButton>
 #include <QSettings>
 #include <QSignalBlocker>
@@ -12,6 +15,7 @@
 #include <cmath>
 
 #include "gui/base/number_box.h"
+#include "gui/base/tips.h"
 
 namespace glint::gui {
 
@@ -66,6 +70,7 @@ FigureDialog::FigureDialog(const QString& title, const QString& kind, const QSiz
   transparent_ = new QCheckBox(tr("&Transparent background"));
   transparent_->setObjectName(QStringLiteral("figureTransparent"));
   form->addRow(QString(), transparent_);
+  addCaption(form);
   auto* buttons = new QDialogButtonBox(QDialogButtonBox::Ok | QDialogButtonBox::Cancel);
   buttons->button(QDialogButtonBox::Ok)->setText(tr("Choose file…"));
   form->addRow(buttons);
@@ -101,6 +106,32 @@ void FigureDialog::addPrinted(QFormLayout* form) {
   connect(printed_, QOverload<double>::of(&NumberBox::valueChanged), this,
           [this](double mm) { width_->setValue(std::lround(mm / kMmPerInch * dpi_->whole())); });
   connect(dpi_, QOverload<double>::of(&NumberBox::valueChanged), this, &FigureDialog::showPrinted);
+}
+
+void FigureDialog::addCaption(QFormLayout* form) {
+  auto* row = new QHBoxLayout;
+  caption_ = new QLineEdit;
+  caption_->setObjectName(QStringLiteral("figureCaption"));
+  caption_->setAccessibleName(tr("Caption"));
+  caption_->setToolTip(
+      tr("Stands below the figure, within its size, in lines as wide as it is. SVG keeps it as text and as description"));
+  propose_ = new QPushButton(tr("Propose"));
+  propose_->setObjectName(QStringLiteral("figureProposeCaption"));
+  propose_->setAccessibleName(tr("Propose a caption"));
+  propose_->setAutoDefault(false);  // Return goes on to the file
+  propose_->hide();
+  row->addWidget(caption_, 1);
+  row->addWidget(propose_);
+  auto* label = new QLabel(tr("C&aption"));
+  label->setBuddy(caption_);
+  form->addRow(label, row);
+  connect(propose_, &QPushButton::clicked, this, [this] { caption_->setText(caption_->placeholderText()); });
+}
+
+void FigureDialog::proposeCaption(const QString& caption) {
+  caption_->setPlaceholderText(caption);
+  propose_->setToolTip(plainTip(caption));
+  propose_->show();
 }
 
 void FigureDialog::setOpaque() {
@@ -171,7 +202,11 @@ void FigureDialog::followBackground() {
 }
 
 FigureLook FigureDialog::look() const {
-  return {{width_->whole(), height_->whole()}, transparent_->isChecked(), colours_->currentIndex() == 0, dpi_->whole()};
+  return {{width_->whole(), height_->whole()},
+          transparent_->isChecked(),
+          colours_->currentIndex() == 0,
+          dpi_->whole(),
+          caption_->text()};
 }
 
 void FigureDialog::accept() {

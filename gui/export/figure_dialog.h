@@ -3,10 +3,13 @@
 
 #include <QDialog>
 #include <QSize>
+#include <QString>
 
 class QCheckBox;
 class QComboBox;
 class QFormLayout;
+class QLineEdit;
+class QPushButton;
 
 namespace glint::gui {
 
@@ -16,8 +19,9 @@ class NumberBox;
 struct FigureLook {
   QSize size{1600, 1000};  ///< px
   bool transparent = false;
-  bool dark = true;  ///< bright lines and texts, for a dark background or page
-  int dpi = 96;      ///< px per inch of paper
+  bool dark = true;      ///< bright lines and texts, for a dark background or page
+  int dpi = 96;          ///< px per inch of paper
+  QString caption = {};  ///< stands below the figure, within `size`; "" = none
 };
 
 /// Asks for the size, in px or in mm at a resolution, and the background of a picture or plot. Remembers the last answer of each kind, a typed size in the shape of what
@@ -32,6 +36,8 @@ class FigureDialog : public QDialog {
   FigureLook look() const;
   /// For what cannot have a transparent background.
   void setOpaque();
+  /// A caption for who wants one; the field stays empty.
+  void proposeCaption(const QString& caption);
   void accept() override;
 
  private:
@@ -42,6 +48,7 @@ class FigureDialog : public QDialog {
   void followHeight();
   void followBackground();
   void addPrinted(QFormLayout* form);
+  void addCaption(QFormLayout* form);
   void showPrinted();
 
   QString kind_;
@@ -51,6 +58,8 @@ class FigureDialog : public QDialog {
   QComboBox *preset_, *colours_;
   NumberBox *width_, *height_, *printed_, *dpi_;
   QCheckBox *keepShape_, *transparent_;
+  QLineEdit* caption_;
+  QPushButton* propose_;
 };
 
 }  // namespace glint::gui

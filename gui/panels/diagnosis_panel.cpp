@@ -24,7 +24,7 @@ namespace glint::gui {
 namespace {
 
 constexpr int kFrame = Qt::UserRole, kLight = Qt::UserRole + 1, kModel = Qt::UserRole + 2, kHighlight = Qt::UserRole + 3,
-              kShared = Qt::UserRole + 4, kPredicted = Qt::UserRole + 5, kPlace = Qt::UserRole + 6;
+              kShared = Qt::UserRole + 4, kPredicted = Qt::UserRole + 5, kPlace = Qt::UserRole + 6, kGood = Qt::UserRole + 7;
 constexpr std::size_t kMostFrames = 12;      // of a model: more are in the table of errors
 constexpr std::size_t kMostHighlights = 12;  // that stand against a model
 
@@ -145,6 +145,20 @@ void addWrongFrames(QTreeWidgetItem* top, const Inspection& inspection, const st
   list->setExpanded(open);
 }
 
+bool hasProblem(const Inspection& inspection, const ModelResult& result) {
+  return !summarise(inspection, result).answered || !wrongFrames(inspection, result).empty();
+}
+
+/// "limit-angle: no problem found in 24 held-out frames, median error 0.8 %"
+QString goodWords(const Inspection& inspection, const ModelResult& result) {
+  const HeldOutFrames frames = heldOutFrames(inspection);
+  const int n = frames.all - frames.unreadable;
+  const QString which = inspection.train.perSurface ? QObject::tr(n == 1 ? "%1 frame" : "%1 frames")
+                                                    : QObject::tr(n == 1 ? "%1 held-out frame" : "%1 held-out frames");
+  return QObject::tr("%1: no problem found in %2, median error %3 %")
+      .arg(toQString(result.model), which.arg(n), numberText(summarise(inspection, result).contourErrorPct.median, 2));
+}
+
 }  // namespace
 
 DiagnosisPanel::DiagnosisPanel(Document& document, QWidget* parent) : QWidget(parent), document_(document) {
@@ -180,10 +194,16 @@ DiagnosisPanel::DiagnosisPanel(Document& document, QWidget* parent) : QWidget(pa
   connect(list_, &QTreeWidget::itemClicked, this, [this](QTreeWidgetItem* item) { choose(item); });
   connect(list_, &QTreeWidget::itemActivated, this, [this](QTreeWidgetItem* item) { choose(item); });
   connect(&document_, &Document::inspectionChanged, this, &DiagnosisPanel::refresh);
+  connect(&document_, &Document::selectionChanged, this, [this] {
+    // A click on a line of the list does not move the lines under the mouse.
+    if (!choosing_ && !document_.stale() && goodModel() != good_) refresh();
+  });
   connect(&document_, &Document::staleChanged, this, [this](bool stale) {
     if (stale) queue_.stop();  // of a state that is no more; the new one's results wait for the processor
     showState();
   });
+  connect(&document_, &Document::requestChanged, this,
+          [this] { queue_.stop(); });  // results of the new state may be there already
   connect(&document_, &Document::sceneOpened, this, [this] {
     queue_.drop();
     queue_.stop();
@@ -255,11 +275,39 @@ void DiagnosisPanel::tellRuns() {
   emit runsChanged(runs);
 }
 
+std::string DiagnosisPanel::goodModel() const {
+  const std::shared_ptr<const Inspection> inspection = document_.inspection();
+  if (!inspection) return {};
+  const auto result = inspection->models.find(document_.selection().model);
+  const std::vector<std::string>& asked = inspection->request.models;
+  if (result == inspection->models.end() || !std::count(asked.begin(), asked.end(), result->first)) return {};
+  return hasProblem(*inspection, result->second) ? std::string() : result->first;
+}
+
+void DiagnosisPanel::fillGood() {
+  good_ = goodModel();
+  if (good_.empty()) return;
+  const std::shared_ptr<const Inspection> inspection = document_.inspection();
+  bool others = diagnosis_ || !found_.empty();
+  for (const std::string& name : inspection->request.models)
+    if (const auto it = inspection->models.find(name); it != inspection->models.end())
+      others = others || hasProblem(*inspection, it->second);
+  if (!others) return;  // the line above the list says it of all
+  auto* const line = new QTreeWidgetItem(list_, {goodWords(*inspection, inspection->models.at(good_))});
+  line->setToolTip(0, tr("The model that is selected. What is wrong with others is folded below"));
+  line->setData(0, kModel, toQString(good_));
+  line->setData(0, kGood, true);
+  line->setExpanded(true);
+}
+
 void DiagnosisPanel::fillProblems() {
   problems_ = 0;
+  good_.clear();
   shared_.clear();
   const std::shared_ptr<const Inspection> inspection = document_.inspection();
   if (!inspection) return;
+  fillGood();
+  const bool folded = !good_.empty() && !(of_ && isOf(*inspection));  // who asks why wants to read it
   for (const std::string& name : inspection->request.models) {
     const auto result = inspection->models.find(name);
     if (result == inspection->models.end()) continue;
@@ -275,7 +323,7 @@ void DiagnosisPanel::fillProblems() {
              ? tr(frames.size() == 1 ? "%1: %2 frame wrong" : "%1: %2 frames wrong").arg(toQString(name)).arg(frames.size())
              : tr("%1: no answer").arg(toQString(name))});
     top->setData(0, kModel, toQString(name));
-    top->setExpanded(true);
+    top->setExpanded(!folded);
     const bool explained = diagnosis_ && isOf(*inspection);  // its causes say it
     for (const ModelResult::Fit& fit : result->second.fits)
       if (fit.failure() && !explained)
@@ -331,11 +379,15 @@ void DiagnosisPanel::fillDiagnosis(const ModelDiagnosis& d) {
 }
 
 QTreeWidgetItem* DiagnosisPanel::itemOf(const std::string& model, const QString& otherwise) {
-  for (int i = 0; i < list_->topLevelItemCount(); ++i)
-    if (list_->topLevelItem(i)->data(0, kModel).toString() == toQString(model)) return list_->topLevelItem(i);
-  auto* top = new QTreeWidgetItem(list_, {otherwise});
+  const bool earlier = !document_.inspection() || !isOf(*document_.inspection());
+  for (int i = 0; i < list_->topLevelItemCount(); ++i) {
+    QTreeWidgetItem* const top = list_->topLevelItem(i);
+    const bool of = top->data(0, kModel).toString() == toQString(model);
+    if (of && !(earlier && top->data(0, kGood).toBool())) return top;  // what was wrong does not stand under "no problem"
+  }
+  auto* top = new QTreeWidgetItem(list_, {earlier && !good_.empty() ? tr("%1 (earlier state)").arg(otherwise) : otherwise});
   top->setData(0, kModel, toQString(model));
-  top->setExpanded(true);
+  top->setExpanded(!earlier || good_.empty());
   return top;
 }
 
@@ -400,7 +452,9 @@ void DiagnosisPanel::choose(QTreeWidgetItem* item) {
     selection.predicted = predicted.isValid() ? predicted.toInt() : -1;
     selection.direction = std::nullopt;
   }
+  choosing_ = true;
   document_.selectExactly(selection);
+  choosing_ = false;
   if (const QVariant shared = item->data(0, kShared); shared.isValid()) document_.brush(shared_[std::size_t(shared.toInt())]);
 }
 
@@ -414,8 +468,10 @@ void DiagnosisPanel::showState(const QString& stage) {
   if (diagnosis_ && !isOf(*document_.inspection()))
     return state_->setText(tr("These remedies are of an earlier state; ask again for those of the new one"));
   if (problems_ == 0) return state_->setText(tr("Every model answers, and no frame is wrong"));
-  state_->setText(diagnosis_ ? tr("Best first. Remedies are measured in views that the fit did not see")
-                             : tr(problems_ == 1 ? "%1 model with problems" : "%1 models with problems").arg(problems_));
+  if (diagnosis_) return state_->setText(tr("Best first. Remedies are measured in views that the fit did not see"));
+  if (!good_.empty())
+    return state_->setText(tr(problems_ == 1 ? "%1 other model with problems" : "%1 other models with problems").arg(problems_));
+  state_->setText(tr(problems_ == 1 ? "%1 model with problems" : "%1 models with problems").arg(problems_));
 }
 
 }  // namespace glint::gui

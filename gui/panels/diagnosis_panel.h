@@ -46,6 +46,10 @@ class DiagnosisPanel : public QWidget {
  private:
   void refresh();
   void fillProblems();
+  /// The model that is selected, if nothing is wrong with it; else "".
+  std::string goodModel() const;
+  /// Says so first, where the list has something about others.
+  void fillGood();
   /// What the highlights that this model gets wrong have in common.
   void addShared(QTreeWidgetItem* top, const Inspection& inspection, const std::string& model);
   bool isOf(const Inspection& inspection) const;
@@ -66,6 +70,8 @@ class DiagnosisPanel : public QWidget {
   DiagnosisPtr diagnosis_;
   std::vector<std::pair<std::string, Remedy>> found_;  ///< so far, by the model's name
   int problems_ = 0;
+  std::string good_;                      ///< goodModel() when the list was filled
+  bool choosing_ = false;                 ///< a line of the list is selecting
   std::vector<std::set<RowKey>> shared_;  ///< highlights of the lines "in common"
   JobQueue queue_{JobQueue::Rank::Background};
 };

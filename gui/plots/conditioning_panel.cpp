@@ -10,6 +10,8 @@
 #include <QVariant>
 #include <algorithm>
 
+#include "core/inspect/summary.h"
+#include "core/report/warnings.h"
 #include "gui/base/elided_label.h"
 #include "gui/base/stale_badge.h"
 #include "gui/base/text.h"
@@ -216,6 +218,7 @@ ConditioningPanel::ConditioningPanel(Document& document, QWidget* parent) : QWid
   connect(&document_, &Document::inspectionChanged, this, again);
   connect(&document_, &Document::sceneOpened, this, again);
   connect(&document_, &Document::selectionChanged, this, [this] {
+    showPrediction();
     const std::shared_ptr<const Inspection> inspection = document_.inspection();
     const std::string key = inspection && inspection->train.perSurface && inspection->surfaces
                                 ? inspection->surfaces->keyOf(document_.selection().frame)
@@ -283,6 +286,7 @@ void ConditioningPanel::refresh() {
     s.chip->setAccessibleName(toQString(c.model + " " + finding.title + " " + finding.text + ": " + nameOf(finding.verdict)));
   }
   for (const auto& [row, title] : titles_) placeUnit(row);
+  showPrediction();
   empty_->setVisible(conditioning_.empty());
   if (conditioning_.empty()) return reason_->clear();
   explainWorst();
@@ -293,6 +297,7 @@ void ConditioningPanel::build() {
   titles_.clear();
   delete table_;
   table_ = nullptr;
+  prediction_ = nullptr;
   if (conditioning_.empty()) return;
   std::vector<int> columns;  // those of the light that is shown
   for (int k = 0; k < int(conditioning_.size()); ++k)
@@ -332,6 +337,7 @@ void ConditioningPanel::build() {
     grid->addWidget(title, row++, 0);
     titles_[r] = title;
   }
+  addPrediction(*grid, row, int(columns.size()));
   for (int at = 0; at < int(columns.size()); ++at) {
     const Conditioning& c = conditioning_[std::size_t(columns[std::size_t(at)])];
     QString name = toQString(c.model);
@@ -353,6 +359,45 @@ void ConditioningPanel::build() {
   }
   auto* column = static_cast<QVBoxLayout*>(layout());
   column->insertWidget(column->indexOf(lights_) + 1, table_);
+}
+
+void ConditioningPanel::addPrediction(QGridLayout& grid, int row, int columns) {
+  auto* title = new ElidedLabel(tr("Prediction (%)"));
+  title->setToolTip(
+      tr("Contour error in held-out frames of the model that is selected, in % of a highlight's diameter; "
+         "highlights that it missed; frames predicted of those that have a highlight"));
+  title->setProperty("role", "faded");
+  grid.addWidget(title, row, 0);
+  prediction_ = new ElidedLabel;
+  prediction_->setObjectName(QStringLiteral("conditioningPrediction"));
+  grid.addWidget(prediction_, row, 1, 1, columns);
+}
+
+/// The words and numbers of the summary above the table of errors.
+void ConditioningPanel::showPrediction() {
+  const std::shared_ptr<const Inspection> inspection = document_.inspection();
+  if (!prediction_ || !inspection) return;
+  const auto result = inspection->models.find(document_.plottedModel());
+  if (result == inspection->models.end()) return prediction_->clear();
+  const ModelSummary s = summarise(*inspection, result->second);
+  const QString model = toQString(result->first);
+  if (!s.answered) {
+    prediction_->setText(toQString(s.reason));
+    return prediction_->setToolTip(plainTip(tr("%1 in held-out frames: %2").arg(model, toQString(s.reason))));
+  }
+  const Statistic& error = s.contourErrorPct;
+  prediction_->setText(tr("median %1, max %2, missed %3, %4/%5")
+                           .arg(numberText(error.median, 2), numberText(error.max, 2))
+                           .arg(s.missed)
+                           .arg(s.predicted)
+                           .arg(s.frames));
+  prediction_->setToolTip(
+      plainTip(tr("%1 in held-out frames, against %2: median error %3 %, max %4 %; missed highlights: %5; "
+                  "predicted in %6 of %7 frames (those of each light)")
+                   .arg(model, toQString(scoredAgainst(*inspection)), numberText(error.median), numberText(error.max))
+                   .arg(s.missed)
+                   .arg(s.predicted)
+                   .arg(s.frames)));
 }
 
 void ConditioningPanel::showLights() {

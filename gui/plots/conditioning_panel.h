@@ -45,7 +45,7 @@ class Chip : public QAbstractButton {
 };
 
 /// The conditioning strip of one light (tabs choose where there are several, and say how each one is): one column per model, one
-/// row per quantity, the reason in words below (of the chip under the mouse, else the worst of the model that is selected).
+/// row per quantity, the held-out errors of the selected model, the reason in words below (of the chip under the mouse, else the worst of the model that is selected).
 /// Follows every inspection. A click selects the chip's model.
 class ConditioningPanel : public QWidget {
   Q_OBJECT
@@ -61,6 +61,9 @@ class ConditioningPanel : public QWidget {
  private:
   void refresh();
   void build();
+  /// A row across all columns: how good the selected model predicts.
+  void addPrediction(QGridLayout& grid, int row, int columns);
+  void showPrediction();
   void showLights();
   /// Shows the columns of this light, if there are any.
   void follow(const std::string& light);
@@ -83,6 +86,7 @@ class ConditioningPanel : public QWidget {
   QWidget* table_ = nullptr;
   std::string tableKey_;  ///< models and quantities that the table was built for
   std::map<int, QLabel*> titles_;
+  QLabel* prediction_ = nullptr;  ///< in table_
   QLabel* reason_;
   QLabel* empty_;
   std::vector<Conditioning> conditioning_;

@@ -25,6 +25,7 @@
 #include "gui/base/to_qimage.h"
 #include "gui/base/write_png.h"
 #include "gui/export/figure_actions.h"
+#include "gui/export/figure_caption.h"
 #include "gui/plots/plot_canvas.h"
 #include "gui/plots/scatter_bar.h"
 #include "viz/canvas.h"
@@ -318,15 +319,19 @@ bool PlotsPanel::saveTo(const QString& file, QString* problem, const std::option
   // Texts and strokes grow with the picture, so that it looks as on screen at any size.
   const double scale = look ? double(look->size.width()) / w : kPictureScale;
   const QSize size = look ? look->size : QSize(int(w * scale), int(h * scale));
+  viz::PlotCaption caption;
+  if (look) caption = {look->caption.trimmed().toStdString(), captionPx(*look)};
   try {
     if (ending == QStringLiteral("csv")) {
       viz::writePlotCsv(canvas->plot(), file.toStdString());
     } else if (ending == QStringLiteral("svg")) {
+      caption.sizePx /= scale;  // its units are px of the screen
       viz::writePlotSvg(canvas->plot(), style, document_.selection(), int(std::lround(size.width() / scale)),
-                        int(std::lround(size.height() / scale)), file.toStdString());
+                        int(std::lround(size.height() / scale)), file.toStdString(), caption);
     } else if (ending == QStringLiteral("png")) {
       style.scale = scale;
-      QImage picture = toQImage(viz::plotImage(canvas->plot(), style, document_.selection(), size.width(), size.height()));
+      QImage picture =
+          toQImage(viz::plotImage(canvas->plot(), style, document_.selection(), size.width(), size.height(), caption));
       if (look) setDpi(picture, look->dpi);
       writePng(picture, file);
     } else {
@@ -347,6 +352,7 @@ void PlotsPanel::saveAs(const char* ending) {
     const QSize shown = QSize(std::max(320, canvas->width()), std::max(200, canvas->height())) * devicePixelRatioF();
     FigureDialog dialog(tr("Plot as picture"), QStringLiteral("plot"), shown, false, this);
     dialog.setOpaque();
+    dialog.proposeCaption(proposedCaption(document_, toQString(canvas->plot().title)));
     if (dialog.exec() != QDialog::Accepted) return;
     look = dialog.look();
   }

@@ -7,7 +7,9 @@
 #include <QProgressBar>
 #include <QToolButton>
 #include <initializer_list>
+#include <utility>
 
+#include "gui/base/stale_badge.h"
 #include "gui/base/theme.h"
 
 namespace glint::gui {
@@ -66,6 +68,10 @@ JobStatus::JobStatus(Document& document, Runner& runner, QWidget* parent)
   connect(&runner_, &Runner::busyChanged, this, changed);
   connect(&document_, &Document::staleChanged, this, changed);
   connect(&document_, &Document::inspectionChanged, this, changed);
+  connect(&runner_, &Runner::busyChanged, this, &JobStatus::markBadges);
+  connect(&document_, &Document::staleChanged, this, [this](bool stale) {
+    if (!stale) markBadges();  // else a run begins, and tells
+  });
   connect(&document_, &Document::sceneOpened, this, &JobStatus::refresh);
   connect(&runner_, &Runner::progressed, this, [this](const QString& stage, int done, int total) {
     if (!bar_->isVisible()) return;
@@ -80,6 +86,13 @@ JobStatus::JobStatus(Document& document, Runner& runner, QWidget* parent)
 void JobStatus::changeEvent(QEvent* e) {
   QWidget::changeEvent(e);
   if (e->type() == QEvent::PaletteChange && text_ && !runner_.busy()) refresh();  // its colour is the theme's
+}
+
+void JobStatus::markBadges() {
+  // A run that ends and leaves what is on screen out of date was stopped, or has failed.
+  const bool now = runner_.busy() || !document_.stale();
+  if (now == std::exchange(updating_, now)) return;  // every step of a slider comes here
+  for (StaleBadge* badge : window()->findChildren<StaleBadge*>()) badge->setUpdating(now);
 }
 
 void JobStatus::refresh() {

@@ -24,9 +24,12 @@ class JobStatus : public QWidget {
 
  private:
   void refresh();
+  /// What the badges of out-of-date panels say.
+  void markBadges();
 
   Document& document_;
   Runner& runner_;
+  bool updating_ = true;  ///< what the badges say
   QLabel* text_ = nullptr;
   QProgressBar* bar_;
   QToolButton* stop_;

@@ -26,7 +26,6 @@
 #include "gui/base/eliding_delegate.h"
 #include "gui/base/job_queue.h"
 #include "gui/base/panel_scroll.h"
-#include "gui/base/stale_badge.h"
 #include "gui/base/text.h"
 #include "gui/base/undo_keys.h"
 #include "gui/document/own_files.h"
@@ -137,12 +136,6 @@ MainWindow::MainWindow(Engine engine, QWidget* parent)
   });
   connect(&runner_, &Runner::timed, this, &MainWindow::log);
   connect(&runner_, &Runner::stopped, this, [this] { log(tr("Computation stopped")); });
-  // A run that ends and leaves what is on screen out of date was stopped, or has failed.
-  connect(&runner_, &Runner::busyChanged, this, [this, updating = true](bool busy) mutable {
-    const bool now = busy || !document_.stale();
-    if (now == std::exchange(updating, now)) return;  // every step of a slider comes here
-    for (StaleBadge* badge : findChildren<StaleBadge*>()) badge->setUpdating(now);
-  });
   connect(&runner_, &Runner::finished, this, [this](const InspectionPtr& inspection, const OpenedPtr& computedFor) {
     if (runFailed_) messageBar_->hide();  // its reason is gone
     runFailed_ = false;
@@ -524,6 +517,11 @@ QPixmap MainWindow::picture() {
 }
 
 void MainWindow::recompute() {
+  if (document_.inspection() && !document_.stale()) {  // undo, redo, a setting that is flipped back
+    runner_.drop();
+    if (std::exchange(runFailed_, false)) messageBar_->hide();
+    return log(tr("Taken from before: the results of these settings were still there"));
+  }
   if (document_.scene() && engine_.inspect)
     runner_.inspect(document_.sharedScene(), document_.request(), document_.computed(), document_.selection().frame);
 }

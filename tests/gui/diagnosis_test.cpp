@@ -126,6 +126,9 @@ class DiagnosisTest : public QObject {
     QCOMPARE(document.undoStack()->index(), steps + 1);
     compute(document);
     QCOMPARE(panel.problems(), 0);
+    QVERIFY2(
+        lines(panel).value(0).startsWith(QStringLiteral("limit-angle: no problem found in 3 held-out frames, median error ")),
+        qPrintable(lines(panel).join("\n")));
     document.undoStack()->undo();
     QVERIFY(document.request() == before);
   }
@@ -185,6 +188,20 @@ class DiagnosisTest : public QObject {
     remedy->click();
     QCOMPARE(document.request().models, (std::vector<std::string>{"primal", "limit-angle"}));
     QCOMPARE(document.selection().model, std::string("limit-angle"));
+    // The dock opens with the good news; what is wrong with the other model is folded below.
+    compute(document);
+    QVERIFY2(
+        lines(panel).value(0).startsWith(QStringLiteral("limit-angle: no problem found in 3 held-out frames, median error ")),
+        qPrintable(lines(panel).join("\n")));
+    QVERIFY(panel.list()->topLevelItemCount() > 1);
+    for (int i = 1; i < panel.list()->topLevelItemCount(); ++i) {
+      QVERIFY(panel.list()->topLevelItem(i)->text(0).startsWith(QStringLiteral("primal")));
+      QVERIFY(!panel.list()->topLevelItem(i)->isExpanded());
+    }
+    // Where the other one is selected, its faults come first, and can be read.
+    document.select({0, "primal"});
+    QVERIFY(panel.list()->topLevelItem(0)->text(0).startsWith(QStringLiteral("primal")));
+    QVERIFY(panel.list()->topLevelItem(0)->isExpanded());
   }
 
   void withoutProblemsItSaysSoAndAsksNothing() {

@@ -82,6 +82,80 @@ class DocumentTest : public QObject {
     QVERIFY(document_->stale());
   }
 
+  /// Undo, redo and a setting that is put back lead to results that were there: at once, and never out of date on the way.
+  void resultsThatWereThereComeBackWithoutARun() {
+    const auto first = showResults();
+    document_->setSetting("detect.level", 0.3);
+    const auto second = showResults();
+    QSignalSpy stale(document_.get(), &Document::staleChanged), shown(document_.get(), &Document::inspectionChanged);
+    document_->undoStack()->undo();
+    QVERIFY(document_->inspection() == first && document_->computed() == first && !document_->frameStale());
+    document_->undoStack()->redo();
+    QVERIFY(document_->inspection() == second);
+    document_->setSetting("detect.level", 0.5);
+    QVERIFY(document_->inspection() == first);
+    QCOMPARE(stale.count(), 0);
+    QCOMPARE(shown.count(), 3);
+    document_->setSetting("detect.level", 0.6);  // that was never there
+    QVERIFY(document_->stale());
+  }
+
+  void theEndOfAnOvertakenRunTakesNothingAway() {
+    const auto first = showResults();
+    document_->setSetting("detect.level", 0.3);
+    const InspectionRequest overtaken = document_->request();
+    document_->undoStack()->undo();
+    const auto late = std::make_shared<const Inspection>(drawnCircles(fixture_.scene(), overtaken));
+    document_->setFrameInspection(late, 0);
+    document_->setInspection(late, overtaken);
+    QVERIFY(document_->inspection() == first && document_->results() == first && !document_->stale());
+    document_->undoStack()->redo();  // but what it found is there
+    QVERIFY(document_->inspection() == late && !document_->stale());
+  }
+
+  /// A long drag passes more positions than are kept: the state before it stays.
+  void positionsThatASliderPassedGoFirst() {
+    const auto first = showResults();
+    const int drag = document_->newGesture();
+    for (int i = 0; i < 3 * int(RecentResults::kMost); ++i) {
+      document_->setSetting("detect.level", 0.3 + 0.01 * i, drag);
+      showResults();
+    }
+    const InspectionRequest end = document_->request();
+    document_->setSetting("detect.level", 0.3, document_->newGesture());
+    QVERIFY(document_->stale());  // passed long ago
+    document_->undoStack()->undo();
+    QVERIFY(!document_->stale() && document_->request() == end);
+    document_->undoStack()->undo();
+    QVERIFY(!document_->stale() && document_->inspection() == first);
+  }
+
+  void onlyAFewResultsAreKeptAndNoneOfAnotherScene() {
+    showResults();
+    for (int i = 0; i < int(RecentResults::kMost); ++i) {
+      document_->setSetting("detect.level", 0.3 + 0.01 * i);
+      showResults();
+    }
+    for (int i = 1; i < int(RecentResults::kMost); ++i) document_->undoStack()->undo();
+    QVERIFY(!document_->stale());
+    document_->undoStack()->undo();
+    QVERIFY(document_->stale());
+    document_->open(fixture_.opened());
+    QVERIFY(document_->stale() && !document_->inspection());
+  }
+
+  /// As a run does it: the views go back to what is computed, and what is pinned stays.
+  void pinnedResultsStayBesideThoseThatComeBack() {
+    const auto first = showResults();
+    QVERIFY(document_->pin());
+    document_->setSetting("detect.level", 0.3);
+    showResults();
+    document_->showPinned(true);
+    document_->undoStack()->undo();
+    QVERIFY(!document_->pinnedShown() && document_->pinned() == first && document_->inspection() == first);
+    QCOMPARE(document_->rows(), document_->pinnedRows());
+  }
+
   void resultsOfAnotherSceneAreDropped() {
     const Fixture other;
     document_->setInspection(std::make_shared<const Inspection>(drawnCircles(other.scene(), {})), {});
@@ -226,6 +300,12 @@ class DocumentTest : public QObject {
   }
 
  private:
+  /// Finished results of what is asked for now.
+  std::shared_ptr<const Inspection> showResults() {
+    auto results = std::make_shared<const Inspection>(drawnCircles(fixture_.scene(), document_->request()));
+    document_->setInspection(results, document_->request());
+    return results;
+  }
   Fixture fixture_;
   std::unique_ptr<Document> document_;
 };

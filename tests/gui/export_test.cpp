@@ -16,6 +16,7 @@
 #include <QLineEdit>
 #include <QProcess>
 #include <QPushButton>
+#include <QSvgRenderer>
 #include <QTimer>
 
 #include "core/report/report.h"
@@ -24,7 +25,10 @@
 #include "gui/document/session_file.h"
 #include "gui/export/export_actions.h"
 #include "gui/export/figure_actions.h"
+#include "gui/export/figure_caption.h"
+#include "gui/export/figure_dialog.h"
 #include "gui/export/folder_dialog.h"
+#include "gui/frame/frame_panel.h"
 #include "gui/window/main_window.h"
 #include "tests/gui/fixture.h"
 
@@ -298,7 +302,65 @@ class ExportTest : public QObject {
     QVERIFY2(!report.contains("private") && !report.contains("deeper"), qPrintable(report));
   }
 
+  /// Real text in lines as wide as the page, within the size that was asked for, and in one piece as description.
+  void aCaptionStandsBelowTheFigure() {
+    QTRY_VERIFY_WITH_TIMEOUT(window_->idle(), 20000);
+    window_->framePanel()->goToHighlight();
+    const QString words =
+        QStringLiteral("Figure 1: errors < 1 % & a caption that is too long for one line of a figure that is this narrow.");
+    FigureLook look{{500, 400}, false, false};
+    look.caption = words;
+    for (const char* name : {"caption.svg", "caption.pdf", "caption.png"}) {
+      window_->exports()->figures()->writeFrame(look, folder_.filePath(name));
+      settle();
+    }
+    QFile file(folder_.filePath("caption.svg"));
+    QVERIFY(file.open(QIODevice::ReadOnly));
+    const QString svg = QString::fromUtf8(file.readAll());
+    QVERIFY(svg.contains(QStringLiteral("<desc>%1</desc>").arg(words.toHtmlEscaped())));
+    QVERIFY(svg.contains(QStringLiteral("<title>plane.glint</title>")));
+    QVERIFY(svg.contains(QStringLiteral(">Figure 1: errors &lt; 1 % &amp; a caption")));
+    QVERIFY(!svg.contains(words.toHtmlEscaped() + QStringLiteral("</text>")));  // it takes several lines
+    QVERIFY(svg.contains(QStringLiteral("narrow.</text>")));
+    QVERIFY(QSvgRenderer(file.fileName()).isValid());
+    // What stands above is the figure, as high as the caption leaves it.
+    const QImage with(folder_.filePath("caption.png"));
+    QCOMPARE(with.size(), look.size);
+    const int top = FigureCaption(look).above().size.height();
+    QVERIFY(top < 370 && top > 300);  // two or three lines of 12 px
+    window_->exports()->figures()->writeFrame(FigureCaption(look).above(), folder_.filePath("without.png"));
+    settle();
+    QCOMPARE(with.copy(0, 0, 500, top), QImage(folder_.filePath("without.png")).convertToFormat(with.format()));
+    int ink = 0;
+    for (int y = top; y < 400; ++y)
+      for (int x = 0; x < 500; ++x) ink += with.pixelColor(x, y).lightness() < 128;
+    QVERIFY2(ink > 500, qPrintable(QString::number(ink)));
+    QCOMPARE(with.pixelColor(2, 398), QColor(Qt::white));
+    window_->exports()->figures()->writeScene(look, folder_.filePath("caption-3d.png"));
+    settle();
+    QCOMPARE(QImage(folder_.filePath("caption-3d.png")).size(), look.size);
+  }
+
+  void theDialogProposesACaptionAndStartsWithoutOne() {
+    FigureDialog dialog("figure", "caption", QSize(400, 300), false, nullptr);
+    window_->document().select({0, "canonical"});
+    const QString proposed = proposedCaption(window_->document(), QStringLiteral("3D view"));
+    QVERIFY2(proposed.startsWith(QStringLiteral("3D view of the scene ")) && proposed.contains(QStringLiteral("canonical")),
+             qPrintable(proposed));
+    dialog.proposeCaption(proposed);
+    auto* field = dialog.findChild<QLineEdit*>("figureCaption");
+    QVERIFY(field && field->text().isEmpty() && dialog.look().caption.isEmpty());
+    QCOMPARE(field->placeholderText(), proposed);
+    dialog.findChild<QPushButton*>("figureProposeCaption")->click();
+    QCOMPARE(dialog.look().caption, proposed);
+    dialog.accept();
+    QVERIFY(
+        FigureDialog("figure", "caption", QSize(400, 300), false, nullptr).look().caption.isEmpty());  // it was of that figure
+  }
+
  private:
+  void settle() { QTRY_VERIFY_WITH_TIMEOUT(window_->idle(), 60000); }
+
   QTemporaryDir folder_;
   Engine engine_ = coreEngine();
   std::unique_ptr<MainWindow> window_;

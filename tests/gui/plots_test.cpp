@@ -396,6 +396,45 @@ class PlotsTest : public QObject {
     QVERIFY(chip && chip == strip.chip("dual", "light") && chip->text() != text);
   }
 
+  /// The stand-in's errors are put to 1, 2, 3, ... % in the held-out frames 6 to 11, of which the last one is missed.
+  void conditioningSaysHowGoodThePredictionIs() {
+    Inspection inspection = drawnCircles(fixture_.scene(), document_->request());
+    for (FrameComparison& c : inspection.models.at("dual").frames) {
+      FrameComparison::Row& row = c.rows.front();
+      if (!row.metrics) row.metrics.emplace(), c.prediction = inspection.models.at("dual").frames.front().prediction;
+      row.failure.reset();
+      row.metrics->contourErrorPct = c.frame - 5;
+      if (c.frame != 11) continue;
+      row.metrics.reset();
+      row.predicted = -1;
+    }
+    document_->setInspection(std::make_shared<const Inspection>(inspection), document_->request());
+    ConditioningPanel strip(*document_);
+    strip.resize(380, 320);
+    strip.show();
+    QVERIFY(QTest::qWaitForWindowExposed(&strip));
+    document_->select({0, "dual"});
+    const auto* row = strip.findChild<QLabel*>(QStringLiteral("conditioningPrediction"));
+    QVERIFY(row);
+    QVERIFY2(row->text().startsWith(QStringLiteral("median 3, max 5, missed 1, ")), qPrintable(row->text()));
+    document_->select({0, "primal"});
+    QVERIFY(!row->text().startsWith(QStringLiteral("median 3,")));
+    InspectionRequest request = document_->request();
+    request.train = "0-11";
+    document_->setRequest(request, QStringLiteral("Train on all"));
+    inspection = drawnCircles(fixture_.scene(), request);
+    for (auto& [name, model] : inspection.models) {  // a fit that failed would be the reason
+      ModelFit fit;
+      fit.model = name;
+      fit.light = "lamp";
+      model.fits.front().fit = fit;
+    }
+    document_->setInspection(std::make_shared<const Inspection>(inspection), request);
+    row = strip.findChild<QLabel*>(QStringLiteral("conditioningPrediction"));
+    QVERIFY(row);
+    QCOMPARE(row->text(), QStringLiteral("no frame is held out"));
+  }
+
   void conditioningSaysWhyInWords() {
     ConditioningPanel strip(*document_);
     strip.resize(380, 320);

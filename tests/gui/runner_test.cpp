@@ -4,6 +4,9 @@
 #include <QSignalSpy>
 #include <atomic>
 
+#include "gui/base/text.h"
+#include "gui/panels/log_panel.h"
+#include "gui/window/main_window.h"
 #include "tests/gui/fixture.h"
 
 namespace glint::gui {
@@ -162,6 +165,32 @@ class RunnerTest : public QObject {
     QVERIFY(!frames.isEmpty());
     runner.cancel();
     QTRY_VERIFY(!runner.busy());
+  }
+
+  void undoToFinishedResultsRunsNothing() {
+    Engine engine = fixture_.engine();
+    std::atomic<int> runs{0};
+    engine.inspect = [&runs](std::shared_ptr<const Scene> scene, const InspectionRequest& request, const ProgressFn&,
+                             const Inspection*) {
+      ++runs;
+      return drawnCircles(scene, request);
+    };
+    MainWindow window(engine);
+    window.open(toQString(fixture_.opened().path));
+    Document& document = window.document();
+    QTRY_VERIFY(window.idle() && document.inspection());
+    document.setSetting("detect.level", 0.3);
+    QTRY_VERIFY(window.idle() && !document.stale());
+    QCOMPARE(runs.load(), 2);
+    document.undoStack()->undo();
+    QVERIFY(!document.stale());
+    QCOMPARE(document.inspection()->request.settings.number("detect.level"), 0.5);
+    QTRY_VERIFY(window.idle());
+    QCOMPARE(runs.load(), 2);
+    QVERIFY(window.findChild<LogPanel*>()->text().contains(QStringLiteral("Taken from before")));
+    document.setSetting("detect.level", 0.4);  // another one is computed as ever
+    QTRY_VERIFY(window.idle() && !document.stale());
+    QCOMPARE(runs.load(), 3);
   }
 
   void wrongInputIsOneLine() {

@@ -511,6 +511,16 @@ TEST_F(PlotDrawing, ExportsAreWholeFiles) {
     writePlotCsv(plot, csv);
     EXPECT_EQ(readFile(csv), plotCsv(plot));
   }
+  // The caption takes its place from the plot, not from the page.
+  const std::string svg = (folder.path() / "captioned.svg").string();
+  const PlotCaption caption{"Errors < 1 %", 12};
+  writePlotSvg(errorPlot(*inspection), {false, 1}, {}, 640, 400, svg, caption);
+  EXPECT_THAT(readFile(svg), HasSubstr("<desc>Errors &lt; 1 %</desc>"));
+  EXPECT_THAT(readFile(svg), HasSubstr(">Errors &lt; 1 %</text>"));
+  EXPECT_THAT(readFile(svg), HasSubstr("viewBox=\"0 0 640 400\""));
+  const Image with = plotImage(errorPlot(*inspection), {false, 1}, {}, 640, 400, caption);
+  EXPECT_EQ(with.height, 400);
+  EXPECT_NE(with.data, plotImage(errorPlot(*inspection), {false, 1}, {}, 640, 400).data);
   EXPECT_THROW(writePlotSvg(errorPlot(*inspection), {}, {}, 640, 400, (folder.path() / "no/such/folder.svg").string()),
                InputError);
   EXPECT_THROW(plotImage(errorPlot(*inspection), {}, {}, 10, 10), std::invalid_argument);

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/base/base64.h"
+#include "core/draw/caption.h"
 #include "core/draw/contrast.h"
 #include "core/draw/overlay_painter.h"
 #include "core/draw/plot_notes.h"
@@ -66,6 +67,27 @@ TEST(SvgPainter, LinesAreCutWithoutClipPaths) {
   EXPECT_THAT(svg, HasSubstr("stroke-dasharray"));
   EXPECT_THAT(svg, Not(HasSubstr("clip")));
   EXPECT_THAT(svg, Not(HasSubstr("xmlns"))) << "in a page it needs none";
+}
+
+/// Digits of DejaVu Sans have 636 thousandths of the size, a blank 318, an ellipsis as usual 650.
+TEST(Caption, IsBrokenByTheWidthOfThePage) {
+  SvgPainter painter(200, 100);
+  const double margins = 14, room = 6 * 6.36 + 3.18 + 0.1;  // two words of three digits
+  const Caption two = captionOf(painter, "000 000  000", 10, room + margins, 100);
+  EXPECT_EQ(two.lines, (std::vector<std::string>{"000 000", "000"}));
+  EXPECT_NEAR(two.height, 2 * 13 + margins, 1e-9);
+  EXPECT_EQ(captionOf(painter, "000 000 000", 10, room + margins, 30).lines, (std::vector<std::string>{"000 \u2026"}))
+      << "there is room for one line";
+  EXPECT_EQ(captionOf(painter, "0000000000", 10, 6.36 * 3 + 6.5 + 0.2 + margins, 100).lines,
+            (std::vector<std::string>{"000\u2026"}));
+  EXPECT_EQ(captionOf(painter, " ", 10, 200, 100).height, 0);
+  EXPECT_EQ(captionOf(painter, "000", 10, 200, 10).height, 0) << "no room at all";
+  paintCaption(painter, two, 60, {0, 0, 0});
+  const std::string svg = painter.document("t", "a < b");
+  EXPECT_THAT(svg, HasSubstr("x=\"7\" y=\"76.5\">000 000</text>"));
+  EXPECT_THAT(svg, HasSubstr("x=\"7\" y=\"89.5\">000</text>"));
+  EXPECT_THAT(svg, HasSubstr("<title>t</title>\n<desc>a &lt; b</desc>\n"));
+  EXPECT_THAT(painter.document("t"), Not(HasSubstr("<desc>")));
 }
 
 TEST(Painter, TextsAreShortenedAndBrokenByTheirWidth) {
