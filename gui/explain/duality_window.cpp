@@ -149,8 +149,8 @@ void DualityWindow::showWords() {
   const int view = lit_.view >= 0 ? lit_.view : strongView();
   const std::string& frame = document_.scene()->frames[std::size_t(duality_->views[std::size_t(view)].frame)].id;
   subject_->setText(
-      tr("Model %1, light %2: %3 views, seen from their %4. Dual points y = ρ² n / h about the ellipsoid’s centre, ρ = %5 mm.")
-          .arg(toQString(duality_->model), toQString(duality_->light))
+      tr("Model %1, %2: %3 views, seen from their %4. Dual points y = ρ² n / h about the ellipsoid’s centre, ρ = %5 mm.")
+          .arg(toQString(duality_->model), lightText(duality_->light))
           .arg(duality_->views.size())
           .arg(duality_->views.front().mirrored ? tr("virtual cameras") : tr("cameras"))
           .arg(1000 * duality_->chart.radius, 0, 'g', 3));

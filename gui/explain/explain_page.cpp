@@ -144,7 +144,7 @@ QString ExplainPage::subject() const {
                                 ? said(", highlight %1 of %2").arg(explanation->highlight + 1).arg(highlights)
                                 : QString();
   QString words = said("Frame %1%2").arg(escaped(scene.frames[frame].id), ofSeveral);
-  if (!plain() && !explanation->light.empty()) words += said(", light %1").arg(escaped(explanation->light));
+  if (!plain() && !explanation->light.empty()) words += QStringLiteral(", ") + lightText(explanation->light).toHtmlEscaped();
   if (!plain() && !explanation->model.empty()) words += said(", model %1").arg(escaped(explanation->model));
   return QStringLiteral("<div class='subject' style='color:%1; margin-top:8px; margin-bottom:8px'>%2</div>")
       .arg(palette.color(QPalette::PlaceholderText).name(), words);

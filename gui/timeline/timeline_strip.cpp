@@ -402,11 +402,10 @@ void TimelineStrip::contextMenuEvent(QContextMenuEvent* e) {
   }
   if (const int light = lightAt(e->pos().y()); light >= 0) {
     const viz::LightRow row = data_.lights[std::size_t(light)];
-    const QString name = menuText(nameText(row.light));
-    menu.addAction(tr("Switch light %1 off in every frame").arg(name), this,
+    const QString name = menuText(lightText(row.light));
+    menu.addAction(tr("Switch %1 off in every frame").arg(name), this,
                    [this, row] { switchLightEverywhere(document_, row, false); });
-    menu.addAction(tr("Restore light %1 in every frame").arg(name), this,
-                   [this, row] { switchLightEverywhere(document_, row, true); });
+    menu.addAction(tr("Restore %1 in every frame").arg(name), this, [this, row] { switchLightEverywhere(document_, row, true); });
   }
   menu.addSeparator();
   menu.addAction(tr("Show beside selected frame"), this, [this, frame, id] {
@@ -440,15 +439,15 @@ QString TimelineStrip::idText(int frame) const {
 
 QString TimelineStrip::lightTip(int row, int frame) const {
   const viz::LightRow& light = data_.lights[std::size_t(row)];
-  const QString name = nameText(light.light);
+  const QString name = lightTitle(light.light);
   if (frame < 0)
-    return tr("Light %1 (row %2 of %3): on in frames where its row is yellow. Click to switch it in a frame; a line through "
+    return tr("%1 (row %2 of %3): on in frames where its row is yellow. Click to switch it in a frame; a line through "
               "it marks a change from what was captured")
         .arg(name)
         .arg(row + 1)
         .arg(data_.lights.size());
   const viz::LightState state = viz::lightState(light, *document_.scene(), document_.request().whatIf, frame);
-  return tr("Light %1: %2\n%3").arg(name, lightStateText(state), lightClickText(document_, state));
+  return tr("%1: %2\n%3").arg(name, lightStateText(state), lightClickText(document_, state));
 }
 
 QString TimelineStrip::toolTip(int frame) const {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <numbers>
 
+#include "core/base/light_name.h"
 #include "core/base/number_text.h"
 #include "core/diagnostics/conditioning.h"
 #include "viz/glyphs.h"
@@ -91,7 +92,7 @@ LayerContent lightLayer(const LayerInput& in) {
           line("standard deviation, noise alone", Eigen::Vector3d(estimate.covariance->diagonal().cwiseMax(0).cwiseSqrt()), "m");
     }
     info.text += lampBeside(in, id, estimate.light);
-    addEstimate(content, in, estimate.light, 1, kLightColour, "light " + id + " (estimate)", info);
+    addEstimate(content, in, estimate.light, 1, kLightColour, lightName(id) + " (estimate)", info);
   }
   // A model may refine the light by itself: drawn smaller, in the model's colour, where it differs from the common one.
   for (const std::string& model : in.models) {
@@ -121,7 +122,7 @@ LayerContent trueLightLayer(const LayerInput& in) {
     info.layer = "true-light";
     info.light = light.id;
     info.text = line("true light (not used by the method)", light.id) + line("radius", light.radius, "m");
-    const std::string label = "truth: light " + light.id;
+    const std::string label = "truth: " + lightName(light.id);
     if (light.direction && light.direction->norm() > 0) {
       info.text += line("direction", *light.direction);
       addDirection(content, in, light.direction->normalized(), kTruth, label + ", at infinity", info);
