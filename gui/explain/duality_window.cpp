@@ -102,7 +102,8 @@ QWidget* DualityWindow::canvas() const { return picture_; }
 
 void DualityWindow::showEvent(QShowEvent* e) {
   QDialog::showEvent(e);
-  frame_ = document_.selection().frame;  // nothing is lit for it: one reads first what the planes are
+  if (!e->spontaneous()) lit_ = {};  // opened: one reads first what the planes are
+  frame_ = document_.selection().frame;
   refresh();
 }
 
