@@ -269,22 +269,31 @@ struct Annotations::Impl {
       for (const Eigen::Vector3d& p : corners) box.extend(onScreen(p));
       onGlyphs.push_back({box.min().x(), box.min().y(), box.sizes().x(), box.sizes().y()});
     }
-    for (std::size_t i = 0; i < labels.size(); ++i) {
-      vtkTextActor* actor = labelActors[i];
-      const Eigen::Vector2d at = onScreen(labels[i].anchor);
-      const bool inside = inFront(labels[i].anchor) && at.x() > -0.05 * width && at.x() < 1.05 * width &&
-                          at.y() > -0.05 * height && at.y() < 1.05 * height;
-      actor->SetVisibility(inside);
-      if (!inside) continue;
-      actor->GetTextProperty()->SetFontSize(points);
-      setColour(actor, asText(labels[i].colour, dark));
-      background(actor, 0.75);  // over lines, too
-      const Eigen::Vector2d size = sizeOf(actor);
-      const std::optional<Rectangle> place = placeForLabel(at, size, Eigen::Vector2d(width, height), font, taken, onGlyphs);
-      actor->SetVisibility(place.has_value());
-      if (!place) continue;
-      taken.push_back(*place);
-      move(actor, place->x, place->y);
+    const Eigen::Vector2d picture(width, height);
+    const auto placeOf = [&](const DrawnLabel& label, const Eigen::Vector2d& at, const Eigen::Vector2d& size) {
+      if (label.tail && inFront(*label.tail))
+        if (const auto place = placeAtTip(at, at - onScreen(*label.tail), size, picture, font, taken)) return place;
+      const double clear = label.clear > 0 ? label.clear * screenOf(label.anchor, rightOf(camera), label.clear).norm() : 0;
+      return placeForLabel(at, size, picture, font, taken, onGlyphs, clear);
+    };
+    for (const bool atTip : {true, false}) {  // a letter has its one place at its arrow, other texts have several
+      for (std::size_t i = 0; i < labels.size(); ++i) {
+        if (labels[i].tail.has_value() != atTip) continue;
+        vtkTextActor* actor = labelActors[i];
+        const Eigen::Vector2d at = onScreen(labels[i].anchor);
+        const bool inside = inFront(labels[i].anchor) && at.x() > -0.05 * width && at.x() < 1.05 * width &&
+                            at.y() > -0.05 * height && at.y() < 1.05 * height;
+        actor->SetVisibility(inside);
+        if (!inside) continue;
+        actor->GetTextProperty()->SetFontSize(points);
+        setColour(actor, asText(labels[i].colour, dark));
+        background(actor, 0.75);  // over lines, too
+        const std::optional<Rectangle> place = placeOf(labels[i], at, sizeOf(actor));
+        actor->SetVisibility(place.has_value());
+        if (!place) continue;
+        taken.push_back(*place);
+        move(actor, place->x, place->y);
+      }
     }
   }
   static Eigen::Vector3d rightOf(vtkCamera* camera) {
