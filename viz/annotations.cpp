@@ -21,7 +21,6 @@
 #include <optional>
 #include <utility>
 
-#include "core/base/number_text.h"
 #include "core/draw/contrast.h"
 #include "viz/label_places.h"
 #include "viz/legend_panel.h"
@@ -104,30 +103,6 @@ std::string fontFile() {
   return file;
 }
 
-int fontSizeFor(int windowHeight) { return std::clamp(windowHeight / 55, 11, 40); }
-
-double roundLength(double limit) {
-  const double decade = std::pow(10.0, std::floor(std::log10(limit)));
-  for (const double factor : {5.0, 2.0}) {
-    if (factor * decade <= limit * (1 + 1e-12)) return factor * decade;
-  }
-  return decade;
-}
-
-std::string lengthText(double metres) {
-  struct Unit {
-    double size;
-    const char* name;
-  };
-  static constexpr std::array<Unit, 5> units{{{1e3, "km"}, {1, "m"}, {1e-2, "cm"}, {1e-3, "mm"}, {1e-6, "um"}}};
-  for (const Unit& unit : units) {
-    if (metres >= unit.size * (1 - 1e-9) || unit.size == 1e-6) {
-      return formatted("%.4g %s", metres / unit.size, unit.name);
-    }
-  }
-  return {};
-}
-
 struct Annotations::Impl {
   vtkRenderer* renderer = nullptr;
   bool dark = true;
@@ -157,6 +132,7 @@ struct Annotations::Impl {
   bool legendVisible = true, titleVisible = true;
   LegendPanel panel;
   bool onPicture = false;
+  double textScale = 1;
 
   std::vector<Rectangle> taken;  // by what stands still: labels keep off it
   std::vector<Points> glyphs;    // corners of each drawn camera: labels keep off those where they can
@@ -179,6 +155,9 @@ struct Annotations::Impl {
   double pixelsPerPoint() const {
     vtkRenderWindow* window = renderer->GetRenderWindow();
     return window && window->GetDPI() > 0 ? window->GetDPI() / 72.0 : 1;
+  }
+  int pointsFor(int height) const {
+    return static_cast<int>(std::lround(textScale * fontSizeFor(static_cast<int>(height / pixelsPerPoint()))));
   }
   /// What of a legend's text there is room for, ending in "…". Measured again only when room or size have changed.
   void fitLegendText(std::size_t i, double room, int points) {
@@ -560,7 +539,7 @@ Eigen::Vector2d Annotations::legendSize() {
   const int* size = impl_->renderer->GetSize();
   if (!impl_->legendVisible || impl_->legend.empty() || size[0] <= 0 || size[1] <= 0) return {0, 0};
   const double scale = impl_->pixelsPerPoint();
-  const int points = fontSizeFor(static_cast<int>(size[1] / scale));
+  const int points = impl_->pointsFor(size[1]);
   impl_->taken.clear();
   impl_->placeLegend(size[0], size[1], points, scale * points, size[0] < scale * kNarrowPicture);
   Eigen::Vector2d reach(0, 0);
@@ -571,19 +550,19 @@ Eigen::Vector2d Annotations::legendSize() {
 double Annotations::colourBarHeight() {
   const int height = impl_->renderer->GetSize()[1];
   if (!impl_->colourBarShown() || height <= 0) return 0;
-  const double pixels = impl_->pixelsPerPoint(), font = pixels * fontSizeFor(static_cast<int>(height / pixels));
-  return kColourBarRows * font;
+  return kColourBarRows * impl_->pixelsPerPoint() * impl_->pointsFor(height);
 }
 
 void Annotations::setOnPicture(bool on) { impl_->onPicture = on; }
 
 void Annotations::setDark(bool dark) { impl_->dark = dark; }
+void Annotations::setTextScale(double scale) { impl_->textScale = scale; }
 
 void Annotations::place(const Eigen::Vector3d& reference) {
   const int* size = impl_->renderer->GetSize();
   if (size[0] <= 0 || size[1] <= 0) return;
   const double scale = impl_->pixelsPerPoint();
-  const int points = fontSizeFor(static_cast<int>(size[1] / scale));
+  const int points = impl_->pointsFor(size[1]);
   const double font = scale * points;
   impl_->origin = Eigen::Vector2d(impl_->renderer->GetOrigin()[0], impl_->renderer->GetOrigin()[1]);
   impl_->taken.clear();

@@ -296,6 +296,28 @@ TEST_F(LegendPicture, LabelsNeverLieOverOneAnother) {
   }
 }
 
+/// In a presentation all of them are larger, and the legend reaches as much farther.
+TEST_F(LegendPicture, AllTextsGrowTogether) {
+  const auto fill = [](double scale) {
+    return [scale](Annotations& a) {
+      a.setTextScale(scale);
+      a.setLegend({{kOrange, "primal"}}, {"a note"}, {}, "a title");
+      a.setLabels({{{0.1, 0, 0}, "label", kMagenta}});
+    };
+  };
+  picture(900, true, fill(1));
+  const std::map<std::string, Box> usual = texts_;
+  const Eigen::Vector2d legend = legend_;
+  picture(900, true, fill(2));
+  ASSERT_EQ(texts_.size(), usual.size());
+  for (const auto& [text, box] : usual) {
+    if (text.empty()) continue;
+    ASSERT_TRUE(texts_.count(text)) << text;
+    EXPECT_NEAR(texts_[text].height / box.height, 2, 0.35) << text;  // whole points and pixels
+  }
+  EXPECT_NEAR(legend_.y() / legend.y(), 2, 0.2);
+}
+
 /// The label of a point that lies under the legend stands beside it.
 TEST_F(LegendPicture, LabelsLeaveItFree) {
   const Image image = picture(800, true, [](Annotations& a) {
