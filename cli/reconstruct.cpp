@@ -3,6 +3,7 @@
 
 #include "cli/commands.h"
 #include "cli/inspection_arguments.h"
+#include "core/base/light_name.h"
 #include "core/base/number_text.h"
 #include "core/report/warnings.h"
 #include "core/scene/outputs.h"
@@ -14,7 +15,7 @@ namespace {
 std::string vectorText(const Eigen::Vector3d& v) { return formatted("%.6g %.6g %.6g", v.x(), v.y(), v.z()); }
 
 std::string fitText(const ModelResult::Fit& entry, const std::string& model) {
-  std::string out = model + ", light " + entry.light + (entry.surface ? ", surface " + *entry.surface : "") + ": ";
+  std::string out = model + ", " + lightName(entry.light) + (entry.surface ? ", surface " + *entry.surface : "") + ": ";
   if (entry.failure()) return out + entry.failure()->message() + "\n";
   const ModelFit& f = *entry.fit;
   out += std::to_string(f.frames.size()) + " views, " + f.solver + "\n";
@@ -88,7 +89,8 @@ Command reconstructCommand() {
       for (const ModelResult::Fit& f : result.models.at(name).fits) {
         text += fitText(f, name);
         any = any || f.fit;
-        if (f.failure() && !first) first = Failure{f.failure()->reason, name + ", light " + f.light + ": " + f.failure()->detail};
+        if (f.failure() && !first)
+          first = Failure{f.failure()->reason, name + ", " + lightName(f.light) + ": " + f.failure()->detail};
       }
     if (!any) {
       requireUsableViews(result);

@@ -149,7 +149,9 @@ def table(glint, times, name, scene):
             flags += ["--model", model]
         effect = best["effect"]
         after = held_out(glint, scene, flags)
-        row += [d["cause"].replace("|", "/"), f"`{best['flags']}`", f"{effect['before_pct']:.3g} % to {effect['after_pct']:.3g} %",
+        gain = f"{effect['after_pct']:.3g} %"
+        gain = f"{effect['before_pct']:.3g} % to {gain}" if effect["answered_before"] else f"no prediction before, {gain} after"
+        row += [d["cause"].replace("|", "/"), f"`{best['flags']}`", gain,
                 shown(next(iter(after.values())))]
         lines.append("| " + " | ".join(row) + " |")
     return "\n".join(lines)

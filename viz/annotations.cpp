@@ -21,7 +21,6 @@
 #include <optional>
 #include <utility>
 
-#include "core/base/number_text.h"
 #include "core/draw/contrast.h"
 #include "viz/label_places.h"
 #include "viz/legend_panel.h"
@@ -104,30 +103,6 @@ std::string fontFile() {
   return file;
 }
 
-int fontSizeFor(int windowHeight) { return std::clamp(windowHeight / 55, 11, 40); }
-
-double roundLength(double limit) {
-  const double decade = std::pow(10.0, std::floor(std::log10(limit)));
-  for (const double factor : {5.0, 2.0}) {
-    if (factor * decade <= limit * (1 + 1e-12)) return factor * decade;
-  }
-  return decade;
-}
-
-std::string lengthText(double metres) {
-  struct Unit {
-    double size;
-    const char* name;
-  };
-  static constexpr std::array<Unit, 5> units{{{1e3, "km"}, {1, "m"}, {1e-2, "cm"}, {1e-3, "mm"}, {1e-6, "um"}}};
-  for (const Unit& unit : units) {
-    if (metres >= unit.size * (1 - 1e-9) || unit.size == 1e-6) {
-      return formatted("%.4g %s", metres / unit.size, unit.name);
-    }
-  }
-  return {};
-}
-
 struct Annotations::Impl {
   vtkRenderer* renderer = nullptr;
   bool dark = true;
@@ -157,6 +132,7 @@ struct Annotations::Impl {
   bool legendVisible = true, titleVisible = true;
   LegendPanel panel;
   bool onPicture = false;
+  double textScale = 1;
 
   std::vector<Rectangle> taken;  // by what stands still: labels keep off it
   std::vector<Points> glyphs;    // corners of each drawn camera: labels keep off those where they can
@@ -179,6 +155,9 @@ struct Annotations::Impl {
   double pixelsPerPoint() const {
     vtkRenderWindow* window = renderer->GetRenderWindow();
     return window && window->GetDPI() > 0 ? window->GetDPI() / 72.0 : 1;
+  }
+  int pointsFor(int height) const {
+    return static_cast<int>(std::lround(textScale * fontSizeFor(static_cast<int>(height / pixelsPerPoint()))));
   }
   /// What of a legend's text there is room for, ending in "…". Measured again only when room or size have changed.
   void fitLegendText(std::size_t i, double room, int points) {
@@ -269,22 +248,31 @@ struct Annotations::Impl {
       for (const Eigen::Vector3d& p : corners) box.extend(onScreen(p));
       onGlyphs.push_back({box.min().x(), box.min().y(), box.sizes().x(), box.sizes().y()});
     }
-    for (std::size_t i = 0; i < labels.size(); ++i) {
-      vtkTextActor* actor = labelActors[i];
-      const Eigen::Vector2d at = onScreen(labels[i].anchor);
-      const bool inside = inFront(labels[i].anchor) && at.x() > -0.05 * width && at.x() < 1.05 * width &&
-                          at.y() > -0.05 * height && at.y() < 1.05 * height;
-      actor->SetVisibility(inside);
-      if (!inside) continue;
-      actor->GetTextProperty()->SetFontSize(points);
-      setColour(actor, asText(labels[i].colour, dark));
-      background(actor, 0.75);  // over lines, too
-      const Eigen::Vector2d size = sizeOf(actor);
-      const std::optional<Rectangle> place = placeForLabel(at, size, Eigen::Vector2d(width, height), font, taken, onGlyphs);
-      actor->SetVisibility(place.has_value());
-      if (!place) continue;
-      taken.push_back(*place);
-      move(actor, place->x, place->y);
+    const Eigen::Vector2d picture(width, height);
+    const auto placeOf = [&](const DrawnLabel& label, const Eigen::Vector2d& at, const Eigen::Vector2d& size) {
+      if (label.tail && inFront(*label.tail))
+        if (const auto place = placeAtTip(at, at - onScreen(*label.tail), size, picture, font, taken)) return place;
+      const double clear = label.clear > 0 ? label.clear * screenOf(label.anchor, rightOf(camera), label.clear).norm() : 0;
+      return placeForLabel(at, size, picture, font, taken, onGlyphs, clear);
+    };
+    for (const bool atTip : {true, false}) {  // a letter has its one place at its arrow, other texts have several
+      for (std::size_t i = 0; i < labels.size(); ++i) {
+        if (labels[i].tail.has_value() != atTip) continue;
+        vtkTextActor* actor = labelActors[i];
+        const Eigen::Vector2d at = onScreen(labels[i].anchor);
+        const bool inside = inFront(labels[i].anchor) && at.x() > -0.05 * width && at.x() < 1.05 * width &&
+                            at.y() > -0.05 * height && at.y() < 1.05 * height;
+        actor->SetVisibility(inside);
+        if (!inside) continue;
+        actor->GetTextProperty()->SetFontSize(points);
+        setColour(actor, asText(labels[i].colour, dark));
+        background(actor, 0.75);  // over lines, too
+        const std::optional<Rectangle> place = placeOf(labels[i], at, sizeOf(actor));
+        actor->SetVisibility(place.has_value());
+        if (!place) continue;
+        taken.push_back(*place);
+        move(actor, place->x, place->y);
+      }
     }
   }
   static Eigen::Vector3d rightOf(vtkCamera* camera) {
@@ -551,7 +539,7 @@ Eigen::Vector2d Annotations::legendSize() {
   const int* size = impl_->renderer->GetSize();
   if (!impl_->legendVisible || impl_->legend.empty() || size[0] <= 0 || size[1] <= 0) return {0, 0};
   const double scale = impl_->pixelsPerPoint();
-  const int points = fontSizeFor(static_cast<int>(size[1] / scale));
+  const int points = impl_->pointsFor(size[1]);
   impl_->taken.clear();
   impl_->placeLegend(size[0], size[1], points, scale * points, size[0] < scale * kNarrowPicture);
   Eigen::Vector2d reach(0, 0);
@@ -562,19 +550,19 @@ Eigen::Vector2d Annotations::legendSize() {
 double Annotations::colourBarHeight() {
   const int height = impl_->renderer->GetSize()[1];
   if (!impl_->colourBarShown() || height <= 0) return 0;
-  const double pixels = impl_->pixelsPerPoint(), font = pixels * fontSizeFor(static_cast<int>(height / pixels));
-  return kColourBarRows * font;
+  return kColourBarRows * impl_->pixelsPerPoint() * impl_->pointsFor(height);
 }
 
 void Annotations::setOnPicture(bool on) { impl_->onPicture = on; }
 
 void Annotations::setDark(bool dark) { impl_->dark = dark; }
+void Annotations::setTextScale(double scale) { impl_->textScale = scale; }
 
 void Annotations::place(const Eigen::Vector3d& reference) {
   const int* size = impl_->renderer->GetSize();
   if (size[0] <= 0 || size[1] <= 0) return;
   const double scale = impl_->pixelsPerPoint();
-  const int points = fontSizeFor(static_cast<int>(size[1] / scale));
+  const int points = impl_->pointsFor(size[1]);
   const double font = scale * points;
   impl_->origin = Eigen::Vector2d(impl_->renderer->GetOrigin()[0], impl_->renderer->GetOrigin()[1]);
   impl_->taken.clear();

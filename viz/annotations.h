@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "viz/layers.h"
+#include "viz/text_sizes.h"
 
 class vtkRenderer;
 
@@ -57,6 +58,8 @@ class Annotations {
   /// The legend lies over a photograph: it stands on a panel, which keeps it readable.
   void setOnPicture(bool on);
   void setDark(bool dark);
+  /// All texts are so many times as large as usual.
+  void setTextScale(double scale);
   /// @param reference  world point at whose depth the scale bar is measured.
   void place(const Eigen::Vector3d& reference);
 
@@ -64,12 +67,5 @@ class Annotations {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
-
-/// Text size in screen pixels for a window of this height.
-int fontSizeFor(int windowHeight);
-/// Largest of 1, 2, 5 times a power of ten that is not above `limit` (> 0).
-double roundLength(double limit);
-/// "0.5 m", "20 cm", "3 km".
-std::string lengthText(double metres);
 
 }  // namespace glint::viz

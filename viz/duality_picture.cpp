@@ -245,6 +245,22 @@ std::optional<DualityPlane> planeAt(const DualityPicture& picture, const Eigen::
   return found;
 }
 
+std::optional<DualityPlane> planeNearest(const Duality& duality, int frame, const Eigen::Vector3d& place) {
+  std::optional<DualityPlane> found;
+  double most = -1;  // cosine of the angle between the ray to the place and the line of touch
+  for (std::size_t v = 0; v < duality.views.size(); ++v) {
+    const Duality::View& view = duality.views[v];
+    const Eigen::Vector3d ray = place - view.apex;
+    if (view.frame != frame || !(ray.norm() > 0)) continue;
+    for (std::size_t i = 0; i < view.planes.size(); ++i)
+      if (const double c = ray.normalized().dot(view.planes[i].cone.along); c > most) {
+        most = c;
+        found = DualityPlane{static_cast<int>(v), static_cast<int>(i)};
+      }
+  }
+  return found;
+}
+
 std::string dualityWords(const Duality& duality, const DualityPlane& lit, const std::string& frameId) {
   if (lit.view < 0)
     return "A photograph does not tell where a plane touches the ellipsoid, only that it does: πᵀ Q* π = 0, which is linear "

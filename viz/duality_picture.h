@@ -43,6 +43,11 @@ DualityPicture dualityPicture(const Duality& duality, const DualityLook& look);
 /// The plane under the pointer: the nearest plane or point within `reach` px.
 std::optional<DualityPlane> planeAt(const DualityPicture& picture, const Eigen::Vector2d& at, double reach = 14);
 
+/// The plane of a frame's cones that touches its cone nearest to a place, as seen from the cone's apex. Nothing where no cone is of that
+/// frame, or where the place is the apex.
+/// @param place  world, m
+std::optional<DualityPlane> planeNearest(const Duality& duality, int frame, const Eigen::Vector3d& place);
+
 /// Two sentences about the lit plane, or how planes and points hang together. Plain text.
 /// @param frameId  of the lit plane's view, or of the one that is drawn stronger.
 std::string dualityWords(const Duality& duality, const DualityPlane& lit, const std::string& frameId);

@@ -20,8 +20,16 @@ struct Rectangle {
 /// click on the point still tells what it is, texts over one another tell nothing.
 /// @param at, size, picture  px: the point, the label's size and the picture's. @param font  height of the text, px.
 /// @param taken   must stay free: other labels and what stands still.
-/// @param glyphs  should stay free: cameras that are drawn.
+/// @param glyphs  should stay free: cameras and lights that are drawn.
+/// @param clear   px: what is drawn at the point reaches that far.
 std::optional<Rectangle> placeForLabel(const Eigen::Vector2d& at, const Eigen::Vector2d& size, const Eigen::Vector2d& picture,
-                                       double font, const std::vector<Rectangle>& taken, const std::vector<Rectangle>& glyphs);
+                                       double font, const std::vector<Rectangle>& taken, const std::vector<Rectangle>& glyphs,
+                                       double clear = 0);
+
+/// In front of the tip of an arrow, as far from it at every zoom. Nothing where the arrow is seen from its end, or where that place is
+/// taken or out of the picture.
+/// @param arrow  px, from its tail to its tip.
+std::optional<Rectangle> placeAtTip(const Eigen::Vector2d& tip, const Eigen::Vector2d& arrow, const Eigen::Vector2d& size,
+                                    const Eigen::Vector2d& picture, double font, const std::vector<Rectangle>& taken);
 
 }  // namespace glint::viz

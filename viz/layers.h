@@ -154,6 +154,8 @@ struct DrawnLabel {
   Eigen::Vector3d anchor;
   std::string text;
   Colour colour;
+  std::optional<Eigen::Vector3d> tail{};  ///< of the arrow whose tip the anchor is: the text stands in front of it
+  double clear = 0;                       ///< m: radius about the anchor, of what the text stands beside
 };
 
 constexpr std::size_t kMostGlyphs = 64;  ///< of more cameras there is nowhere a picture that is free of them
@@ -165,7 +167,7 @@ struct LayerContent {
   std::vector<std::string> notes;       ///< what could not be drawn, and why: shown in the corner
   std::vector<std::string> remarks;     ///< what was left out on purpose: the same, without alarm
   std::vector<Eigen::Vector3d> extent;  ///< points beyond the scene box that "frame all" should hold
-  std::vector<Points> glyphs;           ///< corners of drawn cameras, at most kMostGlyphs: labels keep off them
+  std::vector<Points> glyphs;           ///< corners of drawn cameras, at most kMostGlyphs, and of lights: labels keep off them
   bool behindSurface = false;           ///< something of it is hidden by the surface from where the photographs were taken
 
   void add(vtkSmartPointer<vtkProp3D> prop, const Picked& info, double lineWidthPx = 0, bool pickable = true) {

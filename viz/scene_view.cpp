@@ -541,6 +541,8 @@ void SceneView::setFrame(bool border, bool active, const std::string& name) {
 }
 
 void SceneView::setLegendVisible(bool visible, bool title) { impl_->annotations->setLegendVisible(visible, title); }
+
+void SceneView::setTextScale(double scale) { impl_->annotations->setTextScale(scale); }
 void SceneView::setMoving(bool moving) {
   impl_->moving = moving;
   impl_->renderer->SetUseDepthPeeling(!moving);  // many passes; without them what shines through is only not sorted

@@ -150,6 +150,7 @@ class SceneView {
   void setFrame(bool border, bool active, const std::string& name);
   /// Legend, notes and title (`title`: also that); labels, axes and scale stay.
   void setLegendVisible(bool visible, bool title = true);
+  void setTextScale(double scale);  ///< of all texts; 1 = as usual
   /// While something moves, a surface of more than 200,000 triangles is drawn coarsely, once its coarse version is ready.
   void setMoving(bool moving);
   /// There is a coarse version, so that setMoving() changes the picture.

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/base/angle.h"
+#include "core/base/light_name.h"
 #include "core/base/number_text.h"
 #include "core/diagnose/candidates.h"
 #include "core/diagnose/spurious_note.h"
@@ -22,7 +23,7 @@ constexpr double kSolved = 0.25;                // of the error before: a smalle
 constexpr int kMostFrames = 10;  // of the sequence, predicted each time: a mean of so many is known to a third of their spread
 
 std::string placeOf(const Inspection& r, const HighlightEvidence& e) {
-  return "frame " + r.scene->frames[std::size_t(e.frame)].id + ", light " + e.light;
+  return "frame " + r.scene->frames[std::size_t(e.frame)].id + ", " + lightName(e.light);
 }
 
 /// Errors of every model by its name, each measured once.
@@ -103,14 +104,14 @@ class ModelCase {
   void explain() {
     std::vector<std::string>& causes = d_.causes;
     for (const ModelResult::Fit& fit : r_.models.at(d_.model).fits)
-      if (fit.failure()) causes.push_back("light " + textOf(fit.key()) + ": " + fit.failure()->message());
+      if (fit.failure()) causes.push_back(lightName(textOf(fit.key())) + ": " + fit.failure()->message());
     if (ofTraining(d_.unseen, true).views.empty()) causes.push_back("no training view can be used");
     if (!d_.unseen.firstFailure.empty()) causes.push_back(d_.unseen.firstFailure);
     oneLimitAngle();
     for (const Conditioning& c : conditioningOf(r_)) {
       if (c.model != d_.model) continue;
       for (const Finding& f : c.findings)
-        if (f.verdict == Verdict::Red && f.id != "fit") causes.push_back("light " + c.light + ", " + f.title + ": " + f.reason);
+        if (f.verdict == Verdict::Red && f.id != "fit") causes.push_back(lightName(c.light) + ", " + f.title + ": " + f.reason);
     }
     goneAstray();
     std::vector<std::string> once;

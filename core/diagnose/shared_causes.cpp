@@ -8,6 +8,7 @@
 #include <optional>
 #include <set>
 
+#include "core/base/light_name.h"
 #include "core/base/number_text.h"
 
 namespace glint {
@@ -163,7 +164,8 @@ std::vector<SharedCause> sharedCauses(const Inspection& inspection, const std::v
   const auto frame = [&](double position) { return inspection.scene->frames[std::size_t(std::floor(position))].id; };
   causes.tryNumber(RowValue::Frame, "lie in frames after %s", "lie in frames up to %s", frame);
   for (const std::string& light : lights)
-    causes.tryThing("is of light " + light, "are of light " + light, [&](const HighlightRow& r) { return r.light == light; });
+    causes.tryThing("is of " + lightName(light), "are of " + lightName(light),
+                    [&](const HighlightRow& r) { return r.light == light; });
   for (const std::string& surface : surfaces)
     causes.tryThing("lies on surface " + surface, "lie on surface " + surface,
                     [&](const HighlightRow& r) { return surfaceOf(r) == surface; });

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/base/angle.h"
+#include "core/base/light_name.h"
 #include "core/base/number_text.h"
 #include "core/draw/plot_text.h"
 #include "core/inspect/frame_score.h"
@@ -257,7 +258,8 @@ PlotData semiAxesPlot(const Inspection& inspection) {
       p.y = axes(k);
       if (axes(k) > 0) values.push_back(axes(k));
       p.target.model = fits[i].model;
-      p.label = fits[i].model + (severalLights ? ", light " + fits[i].light : std::string()) + formatted("\n%.6g m", axes(k));
+      p.label =
+          fits[i].model + (severalLights ? ", " + lightName(fits[i].light) : std::string()) + formatted("\n%.6g m", axes(k));
       if (sigma && std::isfinite((*sigma)(k))) {
         p.band = {{axes(k) - (*sigma)(k), axes(k) + (*sigma)(k)}};
         p.label += formatted(" \u00b1 %.2g m", (*sigma)(k));
@@ -406,7 +408,7 @@ PlotData singularValuePlot(const std::vector<Conditioning>& conditioning) {
       p.x = double(i + 1);
       p.y = c.singularValues[i] / c.singularValues.front();
       p.target.model = c.model;
-      p.label = c.model + ", light " + c.light + (c.surface ? " on " + *c.surface : std::string()) +
+      p.label = c.model + ", " + lightName(c.light) + (c.surface ? " on " + *c.surface : std::string()) +
                 formatted("\nsingular value %d of %d: %.3g", int(i + 1), int(c.singularValues.size()), c.singularValues[i]) +
                 (i + 1 == c.singularValues.size() ? "\nQ* is a " + c.quadricKind : std::string());
       series.points.push_back(std::move(p));

@@ -6,6 +6,7 @@
 #include <limits>
 #include <map>
 
+#include "core/base/light_name.h"
 #include "core/base/number_text.h"
 #include "core/draw/plot_text.h"
 
@@ -36,7 +37,7 @@ std::pair<int, std::string> classOf(const HighlightRow& row, ScatterColour by) {
   switch (by) {
     case ScatterColour::Model: break;
     case ScatterColour::Role: return {int(row.role), nameOf(row.role)};
-    case ScatterColour::Light: return {0, row.light.empty() ? "light unknown" : "light " + row.light};
+    case ScatterColour::Light: return {0, row.light.empty() ? "light unknown" : lightName(row.light)};
     case ScatterColour::Status: return {int(row.status), nameOf(row.status)};
   }
   return {0, row.model};

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "core/base/angle.h"
+#include "core/base/light_name.h"
 #include "core/base/number_text.h"
 
 namespace glint {
@@ -52,7 +53,7 @@ Outcome<FittedLobe> fittedLobe(const Inspection& in, int frame) {
   const ModelResult::Fit* reflectance = reflectanceFit(in, frame);
   if (reflectance && reflectance->fit)
     if (const ReflectanceFit* const fit = reflectance->fit->as<ReflectanceFit>())
-      return FittedLobe{fit->lobe, fit->roughness, "reflectance, light " + reflectance->light};
+      return FittedLobe{fit->lobe, fit->roughness, "reflectance, " + lightName(reflectance->light)};
   if (const std::optional<FittedLobe> lobe = lobeOfLimitAngle(in, frame)) return *lobe;
   if (reflectance && reflectance->failure()) return *reflectance->failure();
   return Failure{Reason::NotSupported, "no computed model gives the lobe (reflectance does, or a model that needs the light)"};

@@ -101,10 +101,13 @@ class Run {
 
  private:
   bool unchanged(Stage stage) const {
-    // Pixels that are attached later lie on the surface as given: a corrected one is made again with them.
-    if (pixelsCome() && !previous_->corrections.empty() && stage != Stage::Evidence && stage != Stage::Lobes) return false;
+    if (pixelsCome() && stage != Stage::Evidence && stage != Stage::Lobes) {
+      // Pixels that are attached later lie on the surface as given: a corrected one is made again with them.
+      if (contoursTakeTheLobe() || !previous_->corrections.empty()) return false;
+    }
     return previous_ && r_.inputs.same(stage, previous_->inputs);
   }
+  bool contoursTakeTheLobe() const { return r_.request.settings.text("detect.background") == "lobe"; }
   /// The earlier run left the pixels to this one.
   bool pixelsCome() const { return previous_ && previous_->pixelsLeft && !only_.withoutPixels; }
   std::shared_ptr<const Surface> surfaceOf(int frame) const {

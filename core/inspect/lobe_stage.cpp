@@ -65,7 +65,7 @@ bool looksAtPixels(const InspectionRequest& request) {
 }
 
 std::optional<InspectionRequest> withoutPixels(const Scene& scene, const InspectionRequest& request, const Inspection* previous) {
-  if (!looksAtPixels(request) || request.settings.text("detect.background") == "lobe") return std::nullopt;
+  if (!looksAtPixels(request)) return std::nullopt;
   InspectionRequest quick = request;
   std::erase_if(quick.models, [](const std::string& m) { return modelByName(m).takesPixels(); });
   if (quick.models.empty()) return std::nullopt;
@@ -76,6 +76,8 @@ std::optional<InspectionRequest> withoutPixels(const Scene& scene, const Inspect
     asked.set(Stage::Lobes, lobeInputs(request, parseTrainSpec(request.train, scene), lightsAreOpenIn(scene, request)));
     return asked.same(Stage::Lobes, known->inputs);
   };
+  // Contours that are found again would move twice at every step of a drag: their first ones serve where there are no others yet.
+  if (known && request.settings.text("detect.background") == "lobe") return std::nullopt;
   if (known && (lobesAreKnown() || std::any_of(request.models.begin(), request.models.end(), shown))) return std::nullopt;
   return quick;
 }

@@ -8,6 +8,7 @@
 #include "core/base/angle.h"
 #include "core/base/json_dom.h"
 #include "core/base/json_text.h"
+#include "core/base/light_name.h"
 #include "core/base/number_text.h"
 #include "core/base/version.h"
 #include "core/report/command_text.h"
@@ -129,7 +130,7 @@ void addEvidence(const Inspection& inspection, const ModelDiagnosis& d, std::str
   text += "  highlights that stand against it:\n";
   for (std::size_t i = 0; i < against.size() && i < kMostLines; ++i) {
     const HighlightEvidence& e = *against[i];
-    text += "    frame " + inspection.scene->frames[std::size_t(e.frame)].id + ", light " + e.light + ": ";
+    text += "    frame " + inspection.scene->frames[std::size_t(e.frame)].id + ", " + lightName(e.light) + ": ";
     for (const std::string& a : e.against) text += (&a == &e.against.front() ? "" : "; ") + a;
     text += "\n";
   }
@@ -162,8 +163,10 @@ void addCommand(const Inspection& inspection, const ModelDiagnosis& d, std::stri
 }  // namespace
 
 std::string effectText(const Remedy& remedy) {
-  return errorText(remedy.before) + " -> " + errorText(remedy.after) +
-         (remedy.measured ? "" : ", by leaving frames out of the score");
+  // Between words and a number an arrow would not be read as "before and after".
+  const bool fromNothing = remedy.before.answered() == 0;
+  return errorText(remedy.before) + (fromNothing ? " before, " : " -> ") + errorText(remedy.after) +
+         (fromNothing ? " after" : "") + (remedy.measured ? "" : ", by leaving frames out of the score");
 }
 
 std::string diagnosisJson(const Inspection& inspection, const Diagnosis& diagnosis, const std::string& input) {
@@ -188,7 +191,7 @@ std::string diagnosisText(const Inspection& inspection, const Diagnosis& diagnos
     for (const std::string& cause : d.causes) text += "  because " + cause + "\n";
     addEvidence(inspection, d, text);
     for (const FitTrace& fit : d.fits)
-      for (const std::string& line : textOf(fit)) text += "  fit of light " + textOf(fit.key) + ": " + line + "\n";
+      for (const std::string& line : textOf(fit)) text += "  fit of " + lightName(textOf(fit.key)) + ": " + line + "\n";
     addRemedies(d, text);
     addCommand(inspection, d, text);
   }

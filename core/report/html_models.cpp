@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/base/html_text.h"
+#include "core/base/light_name.h"
 #include "core/diagnose/mismatch.h"
 #include "core/model/palette.h"
 #include "core/report/band_text.h"
@@ -151,7 +152,7 @@ std::string statisticsTable(const Inspection& inspection) {
     html += "<tbody>\n" + statisticsRow("<td>" + swatch(name) + escaped(name) + "</td>", summarise(inspection, result));
     if (const std::vector<std::string> lights = lightsOf(inspection, result); lights.size() > 1)
       for (const std::string& light : lights)
-        html += statisticsRow("<td class=\"part\">light " + escaped(light) + "</td>", ofLight(inspection, result, light));
+        html += statisticsRow("<td class=\"part\">" + escaped(lightName(light)) + "</td>", ofLight(inspection, result, light));
     html += "</tbody>\n";
   }
   return html + "</table>\n";

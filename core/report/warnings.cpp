@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/report/warnings.h"
 
+#include "core/base/light_name.h"
 #include "core/report/evaluation_notes.h"
 
 namespace glint {
 
 std::string fitWarning(const std::string& model, const std::string& light, const std::optional<std::string>& surface,
                        const std::string& remark) {
-  return model + ", light " + light + (surface ? ", surface " + *surface : "") + ": " + remark;
+  return model + ", " + lightName(light) + (surface ? ", surface " + *surface : "") + ": " + remark;
 }
 
 std::vector<std::string> warningsOf(const Inspection& inspection) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "core/base/light_name.h"
 #include "core/base/number_text.h"
 #include "core/model/reflectance_settings.h"
 #include "core/reflectance/radiance_field.h"
@@ -121,9 +122,9 @@ void addContours(const FrameComparison& c, PredictedRadiance& sum) {
     sum.coverage.push_back(h.coverage);
     if (h.coverage < kLeastCoverage)
       sum.remarks.push_back(
-          formatted("light %s: %.0f %% of the contour's directions were not predicted; there the highlight's edge is "
+          formatted("%s: %.0f %% of the contour's directions were not predicted; there the highlight's edge is "
                     "bridged",
-                    c.light.c_str(), 100 * (1 - h.coverage)));
+                    lightName(c.light).c_str(), 100 * (1 - h.coverage)));
   }
 }
 
@@ -140,8 +141,8 @@ Outcome<PredictedRadiance> predictedRadiance(const Inspection& in, int frame, co
   sum.extrapolated.assign(std::size_t(camera.width) * std::size_t(camera.height), 0);
   std::optional<Failure> why;
   const auto missing = [&](const std::string& id, const Failure& failure) {
-    if (!why) why = Failure{failure.reason, "light " + id + (failure.detail.empty() ? "" : ": " + failure.detail)};
-    sum.remarks.push_back("light " + id + " is not in the picture: " + failure.message());
+    if (!why) why = Failure{failure.reason, lightName(id) + (failure.detail.empty() ? "" : ": " + failure.detail)};
+    sum.remarks.push_back(lightName(id) + " is not in the picture: " + failure.message());
   };
   for (const FrameComparison& c : result->second.frames) {
     if (c.frame != frame || (!light.empty() && c.light != light)) continue;
@@ -163,14 +164,14 @@ Outcome<PredictedRadiance> predictedRadiance(const Inspection& in, int frame, co
       continue;
     }
     addContours(c, sum);
-    for (const std::string& r : appearance->remarks) sum.remarks.push_back("light " + c.light + ": " + r);
+    for (const std::string& r : appearance->remarks) sum.remarks.push_back(lightName(c.light) + ": " + r);
     sum.lights.push_back({c.light, *std::move(appearance)});
   }
   if (!sum.lights.empty()) return sum;
   const std::string& id = in.scene->frames[std::size_t(frame)].id;
   if (!why)
     return Failure{Reason::NotSupported,
-                   "frame " + id + " has no prediction of " + (light.empty() ? "any light" : "light " + light)};
+                   "frame " + id + " has no prediction of " + (light.empty() ? "any light" : lightName(light))};
   return *why;
 }
 

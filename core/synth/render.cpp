@@ -12,6 +12,7 @@
 #include "core/base/atomic_file.h"
 #include "core/base/atomic_folder.h"
 #include "core/base/json_text.h"
+#include "core/base/light_name.h"
 #include "core/base/parallel.h"
 #include "core/base/safe_text.h"
 #include "core/scene/scene_json.h"
@@ -311,7 +312,7 @@ Traced traced(const SynthSpec& spec, const std::vector<int>& frames, const Surfa
             frame.highlights.insert(frame.highlights.end(), found->begin(), found->end());
           } else {
             const std::lock_guard<std::mutex> lock(warningMutex);
-            scene.warnings.push_back("frame " + frame.id + ", light " + light.id + ": " + found.failure().message());
+            scene.warnings.push_back("frame " + frame.id + ", " + lightName(light.id) + ": " + found.failure().message());
           }
         }
         if (spec.render) tops[static_cast<std::size_t>(n)] = brightest(**surface, frame, lights, spec.material);

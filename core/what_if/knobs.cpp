@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "core/base/angle.h"
+#include "core/base/light_name.h"
 #include "core/base/number_text.h"
 
 namespace glint {
@@ -71,7 +72,7 @@ void addLights(std::vector<WhatIfKnob>& knobs, const Scene& scene, double distan
     const bool far = light.direction.has_value();  // its unit direction moves
     const double reach = far ? 1.0 : kLightReach * distance;
     for (int axis = 0; axis < 3; ++axis)
-      knobs.push_back({"Light " + light.id,
+      knobs.push_back({saysLight(light.id) ? light.id : "Light " + light.id,
                        numberKnob("light." + light.id + "." + kAxes[axis], std::string("Shift ") + kAxes[axis], far ? "" : "m", 0,
                                   -reach, reach, roundStep(2 * reach), "Moves the light along this world axis."),
                        true, [id = light.id, axis](const WhatIf& w) { return shiftOf(w, id)(axis); },
@@ -223,7 +224,7 @@ std::string frameNote(const WhatIf& w, int frame) {
     if (count > 0) add(counted(std::size_t(count), "highlight") + " " + pastOf(kind) + " by hand");
   }
   for (const auto& [at, on] : w.lightsSwitched)
-    if (at.first == frame && (!on || w.synthesise)) add("light " + at.second + " switched " + (on ? "on" : "off"));
+    if (at.first == frame && (!on || w.synthesise)) add(lightName(at.second) + " switched " + (on ? "on" : "off"));
   return text;
 }
 

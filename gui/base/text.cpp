@@ -6,6 +6,7 @@
 #include <QStringList>
 #include <cmath>
 
+#include "core/base/light_name.h"
 #include "core/base/safe_text.h"
 #include "gui/base/unit_text.h"
 
@@ -19,6 +20,10 @@ QString toQString(const std::string& s) {
 QString nameText(const std::string& name) {
   return toQString(name).replace(QLatin1Char('\n'), QStringLiteral("\\n")).replace(QLatin1Char('\t'), QStringLiteral("\\t"));
 }
+
+QString lightText(const std::string& id) { return saysLight(id) ? nameText(id) : QObject::tr("light %1").arg(nameText(id)); }
+
+QString lightTitle(const std::string& id) { return saysLight(id) ? nameText(id) : QObject::tr("Light %1").arg(nameText(id)); }
 
 QString shownText(const QString& text) { return nameText(text.toStdString()); }
 

@@ -16,6 +16,9 @@ namespace glint::gui {
 QString toQString(const std::string& s);
 /// The same for a name: line ends and tabs are shown escaped, too, so that it stays one line.
 QString nameText(const std::string& name);
+/// A light within a sentence, "light 3", or at its beginning, "Light 3"; the id alone where that begins with the word.
+QString lightText(const std::string& id);
+QString lightTitle(const std::string& id);
 /// A path or another text that comes as QString, for people: as nameText.
 QString shownText(const QString& text);
 /// For what reads it back: paths, keys, what goes to the clipboard. Not for labels.

@@ -27,8 +27,7 @@ QString selectionWords(const draw::Selection& before, const draw::Selection& aft
   if (!after.model.empty() && after.model != before.model) chosen << toQString(after.model);
   // A highlight's light follows from it.
   const bool highlight = after.highlight >= 0 && (another || after.highlight != before.highlight);
-  if (!after.light.empty() && after.light != before.light && !highlight)
-    chosen << QObject::tr("light %1").arg(nameText(after.light));
+  if (!after.light.empty() && after.light != before.light && !highlight) chosen << lightText(after.light);
   if (highlight) chosen << QObject::tr("highlight %1").arg(after.highlight + 1);
   const bool spurious = after.predicted >= 0 && (another || after.predicted != before.predicted);
   if (spurious) chosen << QObject::tr("spurious highlight %1").arg(after.predicted + 1);

@@ -8,6 +8,7 @@
 #include <QPainter>
 #include <QVBoxLayout>
 #include <algorithm>
+#include <utility>
 
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
@@ -101,6 +102,8 @@ QWidget* DualityWindow::canvas() const { return picture_; }
 
 void DualityWindow::showEvent(QShowEvent* e) {
   QDialog::showEvent(e);
+  if (!e->spontaneous()) lit_ = {};  // opened: one reads first what the planes are
+  frame_ = document_.selection().frame;
   refresh();
 }
 
@@ -128,17 +131,30 @@ void DualityWindow::refresh() {
            (p.view < 0 || p.plane < int(duality_->views[std::size_t(p.view)].planes.size()));
   };
   if (!has(lit_)) lit_ = {};
+  // Another training frame: its plane in the place of the one that was lit. Frames without a cone leave it.
+  const int frame = document_.selection().frame;
+  if (const int view = viewOf(frame); std::exchange(frame_, frame) != frame && view >= 0) {
+    lit_ = {view, std::max(lit_.plane, 0)};
+    if (!has(lit_)) lit_.plane = 0;
+  }
   picture_->update();
   showWords();
   emit litChanged();
 }
 
+/// -1 = none.
+int DualityWindow::viewOf(int frame) const {
+  for (std::size_t i = 0; duality_ && i < duality_->views.size(); ++i)
+    if (duality_->views[i].frame == frame) return int(i);
+  return -1;
+}
+
 /// That of the selected frame, else the first.
-int DualityWindow::strongView() const {
-  if (!duality_) return -1;
-  for (std::size_t i = 0; i < duality_->views.size(); ++i)
-    if (duality_->views[i].frame == document_.selection().frame) return int(i);
-  return 0;
+int DualityWindow::strongView() const { return duality_ ? std::max(0, viewOf(document_.selection().frame)) : -1; }
+
+void DualityWindow::showPicked(const viz::Picked& picked) {
+  if (!isVisible() || !duality_ || picked.frame < 0) return;
+  if (const auto found = viz::planeNearest(*duality_, picked.frame, picked.position)) light(*found);
 }
 
 void DualityWindow::showWords() {
@@ -149,13 +165,13 @@ void DualityWindow::showWords() {
   const int view = lit_.view >= 0 ? lit_.view : strongView();
   const std::string& frame = document_.scene()->frames[std::size_t(duality_->views[std::size_t(view)].frame)].id;
   subject_->setText(
-      tr("Model %1, light %2: %3 views, seen from their %4. Dual points y = ρ² n / h about the ellipsoid’s centre, ρ = %5 mm.")
-          .arg(toQString(duality_->model), toQString(duality_->light))
+      tr("Model %1, %2: %3 views, seen from their %4. Dual points y = ρ² n / h about the ellipsoid’s centre, ρ = %5 mm.")
+          .arg(toQString(duality_->model), lightText(duality_->light))
           .arg(duality_->views.size())
           .arg(duality_->views.front().mirrored ? tr("virtual cameras") : tr("cameras"))
           .arg(1000 * duality_->chart.radius, 0, 'g', 3));
   QString words = toQString(viz::dualityWords(*duality_, lit_, frame));
-  if (lit_.view < 0) words += tr(" Point at a plane or a point, or use the arrow keys; drag to turn both.");
+  if (lit_.view < 0) words += tr(" Point at a plane or a point, click a cone in 3D, or use the arrow keys; drag to turn both.");
   words_->setText(words);
   words_->setMinimumHeight(5 * fontMetrics().lineSpacing());  // the panes keep their size while the words change
 }

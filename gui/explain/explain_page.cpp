@@ -43,12 +43,6 @@ QString sectionLinks(const QString& section) {
 QString lessonLink(const Lesson& lesson) {
   return QStringLiteral("<a href='action:lesson.%1'>%2</a>").arg(lesson.id, numberedTitle(lesson).toHtmlEscaped());
 }
-
-const ExplainText* stepById(const QString& id) {
-  for (const ExplainText& text : explainTexts().steps)
-    if (text.id == id) return &text;
-  return nullptr;
-}
 }  // namespace
 
 QString ExplainPage::html() const { return withGlossary(step < 0 ? overview() : stepPage(), palette.color(QPalette::Text)); }
@@ -107,14 +101,8 @@ QString ExplainPage::overview() const {
     for (const Lesson& l : lessons()) html += QStringLiteral("<p>%1</p>").arg(lessonLink(l));
     return html;
   }
-  QString html = QStringLiteral("<h3>%1</h3><p>%2</p><h4>%3</h4>")
-                     .arg(numberedTitle(*lesson).toHtmlEscaped(), typeset(lesson->see), said("Steps"));
-  for (int i = 0; i < lesson->steps.size(); ++i)
-    if (const ExplainText* const text = stepById(lesson->steps[i]))
-      html += QStringLiteral("<p style='margin:3px 0 3px 12px'>%1. <a href='action:explain.step-%2'>%3</a></p>")
-                  .arg(i + 1)
-                  .arg(text->id, lesson->titleOf(text->id, text->title).toHtmlEscaped());
-  return html + ending();
+  // Its steps are the rows of the list above.
+  return QStringLiteral("<h3>%1</h3><p>%2</p>").arg(numberedTitle(*lesson).toHtmlEscaped(), typeset(lesson->see)) + ending();
 }
 
 /// The step's own words, or those of a plain lesson in their place.
@@ -144,7 +132,7 @@ QString ExplainPage::subject() const {
                                 ? said(", highlight %1 of %2").arg(explanation->highlight + 1).arg(highlights)
                                 : QString();
   QString words = said("Frame %1%2").arg(escaped(scene.frames[frame].id), ofSeveral);
-  if (!plain() && !explanation->light.empty()) words += said(", light %1").arg(escaped(explanation->light));
+  if (!plain() && !explanation->light.empty()) words += QStringLiteral(", ") + lightText(explanation->light).toHtmlEscaped();
   if (!plain() && !explanation->model.empty()) words += said(", model %1").arg(escaped(explanation->model));
   return QStringLiteral("<div class='subject' style='color:%1; margin-top:8px; margin-bottom:8px'>%2</div>")
       .arg(palette.color(QPalette::PlaceholderText).name(), words);

@@ -65,14 +65,28 @@ DevelopBar::DevelopBar(Document& document, QWidget* parent) : QWidget(parent), d
                 tr("Pink: clipped in the photograph; in the radiance, brighter than white at this exposure. Red: not a number"));
   connect(&document_, &Document::optionsChanged, this, &DevelopBar::refresh);
   connect(&document_, &Document::sceneOpened, this, &DevelopBar::refresh);
+  fitLabels();
   refresh();
+}
+
+/// As wide as the longest text that they may show, so that the sliders stand still while one is dragged.
+void DevelopBar::fitLabels() {
+  if (!gammaLabel_) return;
+  const QFontMetrics metrics = fontMetrics();
+  const int title = std::max(metrics.horizontalAdvance(tr("Exposure")), metrics.horizontalAdvance(tr("Gamma")));
+  const int width = std::max(title, metrics.horizontalAdvance(tr("Exp. %1%2").arg("+").arg(kExposureStep)));
+  for (QLabel* label : {exposureLabel_, gammaLabel_}) label->setFixedWidth(width);
+}
+
+void DevelopBar::changeEvent(QEvent* e) {
+  QWidget::changeEvent(e);
+  if (e->type() == QEvent::FontChange || e->type() == QEvent::StyleChange) fitLabels();  // larger texts in a presentation
 }
 
 QSlider* DevelopBar::addSlider(const char* option, const QString& title, const QString& tip, int low, int high, double step,
                                double usual, QLabel** label) {
   *label = new QLabel(title);
   (*label)->setProperty("role", "faded");
-  (*label)->setFixedWidth(fontMetrics().horizontalAdvance(QStringLiteral("Exp. +0.25")));
   layout()->addWidget(*label);
   auto* slider = new QSlider(Qt::Horizontal);
   slider->setObjectName(QLatin1String(option));

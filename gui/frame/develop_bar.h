@@ -26,17 +26,19 @@ class DevelopBar : public QWidget {
 
  protected:
   bool eventFilter(QObject* watched, QEvent* event) override;
+  void changeEvent(QEvent* e) override;
 
  private:
   QSlider* addSlider(const char* option, const QString& title, const QString& tip, int low, int high, double step, double usual,
                      QLabel** label);
   QToolButton* addToggle(const char* option, const QString& icon, const QString& title, const QString& tip);
+  void fitLabels();
   void refresh();
 
   Document& document_;
   QComboBox* source_;
   QSlider *exposure_ = nullptr, *gamma_ = nullptr;
-  QLabel *exposureLabel_, *gammaLabel_;
+  QLabel *exposureLabel_ = nullptr, *gammaLabel_ = nullptr;
   QToolButton *falseColour_, *clipped_;
   QList<QAction*> checks_;  ///< source, false colour, clipped
   int gesture_ = 0;

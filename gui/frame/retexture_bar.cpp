@@ -395,8 +395,8 @@ void RetextureBar::sayAnswer() {
   for (const std::string& remark : answer_.result->remarks)
     html += line(remark.rfind("assumed", 0) == 0 ? faded : warningColour(), toQString(remark));
   for (const PredictedRadiance::OfLight& l : answer_.result->lights)
-    html += line(faded, tr("%1, light %2: %3, strength %4 %5 %6 of the largest code, from %7 views that differ by %8 %")
-                            .arg(toQString(answer_.model), nameText(l.light), QLatin1String(nameOf(l.appearance.kind)))
+    html += line(faded, tr("%1, %2: %3, strength %4 %5 %6 of the largest code, from %7 views that differ by %8 %")
+                            .arg(toQString(answer_.model), lightText(l.light), QLatin1String(nameOf(l.appearance.kind)))
                             .arg(l.appearance.strength(0), 0, 'f', 3)
                             .arg(l.appearance.strength(1), 0, 'f', 3)
                             .arg(l.appearance.strength(2), 0, 'f', 3)

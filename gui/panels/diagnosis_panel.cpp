@@ -120,8 +120,8 @@ void addWrongFrames(QTreeWidgetItem* top, const Inspection& inspection, const st
     if (w.parts.size() == 1 && !w.parts.front().cause.isEmpty()) words << w.parts.front().cause;
     if (w.pct > kLargestExpectedPct) words.prepend(QObject::tr("off by %1 %").arg(numberText(w.pct, 3)));
     auto* line = addLine(list,
-                         QObject::tr("frame %1, light %2: %3")
-                             .arg(nameText(inspection.scene->frames[std::size_t(w.frame)].id), toQString(w.light),
+                         QObject::tr("frame %1, %2: %3")
+                             .arg(nameText(inspection.scene->frames[std::size_t(w.frame)].id), lightText(w.light),
                                   words.join(QStringLiteral("; "))),
                          ProblemLine::Wrong);
     const auto select = [&w](QTreeWidgetItem* item, int highlight, int predicted) {
@@ -327,7 +327,7 @@ void DiagnosisPanel::fillProblems() {
     const bool explained = diagnosis_ && isOf(*inspection);  // its causes say it
     for (const ModelResult::Fit& fit : result->second.fits)
       if (fit.failure() && !explained)
-        addLine(top, tr("because light %1: %2").arg(toQString(textOf(fit.key())), toQString(fit.failure()->message())),
+        addLine(top, tr("because %1: %2").arg(lightText(textOf(fit.key())), toQString(fit.failure()->message())),
                 ProblemLine::Cause);
     if (summary.answered) addShared(top, *inspection, name);
     if (summary.answered && !wrong.empty()) addWrongFrames(top, *inspection, wrong, !explained);
@@ -365,8 +365,8 @@ void DiagnosisPanel::fillDiagnosis(const ModelDiagnosis& d) {
     for (const std::string& a : e.against) words << toQString(a);
     auto* line = addLine(
         top,
-        tr("against it: frame %1, light %2: %3")
-            .arg(nameText(of_->scene->frames[std::size_t(e.frame)].id), toQString(e.light), words.join(QStringLiteral("; "))),
+        tr("against it: frame %1, %2: %3")
+            .arg(nameText(of_->scene->frames[std::size_t(e.frame)].id), lightText(e.light), words.join(QStringLiteral("; "))),
         ProblemLine::Against);
     line->setData(0, kFrame, e.frame);
     line->setData(0, kLight, toQString(e.light));
@@ -374,7 +374,7 @@ void DiagnosisPanel::fillDiagnosis(const ModelDiagnosis& d) {
   }
   for (const FitTrace& fit : d.fits)
     for (const std::string& line : textOf(fit))
-      addLine(top, tr("fit of light %1: %2").arg(toQString(textOf(fit.key)), toQString(line)), ProblemLine::Course)
+      addLine(top, tr("fit of %1: %2").arg(lightText(textOf(fit.key)), toQString(line)), ProblemLine::Course)
           ->setData(0, kLight, toQString(fit.key.light));
 }
 
@@ -404,7 +404,8 @@ void DiagnosisPanel::addRemedy(const std::string& model, const Remedy& remedy) {
   button->setToolTip(tr("Makes this change; undo takes it back"));
   row->addWidget(button);
   const QString effect = toQString(effectText(remedy)).replace(QStringLiteral("->"), QStringLiteral("\u2192"));
-  auto* label = new QLabel(tr("%1: error %2").arg(wordsOf(remedy.change), effect));
+  auto* label =
+      new QLabel((remedy.before.answered() == 0 ? tr("%1: %2") : tr("%1: error %2")).arg(wordsOf(remedy.change), effect));
   label->setTextFormat(Qt::PlainText);
   label->setToolTip(tr("%1\n%2\nThe error is the mean over views that the fit did not see; "
                        "\"6 of 22 views\": the others were not predicted, and count as 100 %.")

@@ -104,7 +104,7 @@ NumberGroup lightGroup(const std::string& id, const LightEstimate& estimate) {
   lines.add(QObject::tr("condition"), estimate.condition);
   if (estimate.rmsPx > 0)
     lines.addWithMeaning(QObject::tr("residual"), estimate.rmsPx, "px", QString::fromStdString(residualMeaning(estimate)));
-  return {QObject::tr("Light %1").arg(nameText(id)), lines.text()};
+  return {lightTitle(id), lines.text()};
 }
 
 NumberGroup fitGroup(const std::string& model, const ModelResult::Fit& f, int frame) {
@@ -223,7 +223,7 @@ std::vector<NumberGroup> describeSelection(const Inspection& inspection, const d
   }
   for (const auto& [id, estimate] : inspection.lightsFor(frame)) {
     if (!*estimate)
-      groups.push_back({QObject::tr("Light %1").arg(nameText(id)), toQString(estimate->failure().message())});
+      groups.push_back({lightTitle(id), toQString(estimate->failure().message())});
     else if (light.empty() || id == light)
       groups.push_back(lightGroup(id, **estimate));
   }

@@ -10,6 +10,7 @@
 #include <QVariant>
 #include <algorithm>
 
+#include "core/base/light_name.h"
 #include "core/inspect/summary.h"
 #include "core/report/warnings.h"
 #include "gui/base/elided_label.h"
@@ -349,7 +350,7 @@ void ConditioningPanel::build() {
         name.insert((name.size() + 1) / 2, "-\n");
     }
     auto* head = new QLabel(name);
-    head->setToolTip(toQString(c.model + ", light " + c.light + (c.surface ? ", surface " + *c.surface : std::string())));
+    head->setToolTip(toQString(c.model + ", " + lightName(c.light) + (c.surface ? ", surface " + *c.surface : std::string())));
     head->setStyleSheet(
         QStringLiteral("border-bottom: 2px solid %1; font-size: 8pt;").arg(toQColor(draw::modelColour(c.model)).name()));
     head->setAlignment(Qt::AlignHCenter | Qt::AlignBottom);
@@ -417,8 +418,7 @@ void ConditioningPanel::showLights() {
       if (c.light == id && c.worst() != Verdict::Unknown)
         worst = worst == Verdict::Unknown ? c.worst() : std::max(worst, c.worst());
     lights_->setTabText(i, menuText(QStringLiteral("%1 %2").arg(signOf(worst), nameText(id)).trimmed()));
-    lights_->setTabToolTip(i,
-                           plainTip(tr("Models of light %1; worst value: %2").arg(nameText(id), QLatin1String(nameOf(worst)))));
+    lights_->setTabToolTip(i, plainTip(tr("Models of %1; worst value: %2").arg(lightText(id), QLatin1String(nameOf(worst)))));
     lights_->setTabData(i, exactQString(id));
     if (id == light_) lights_->setCurrentIndex(i);
   }

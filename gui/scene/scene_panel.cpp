@@ -294,7 +294,7 @@ void ScenePanel::moveLamp(const QString& light, const Eigen::Vector3d& by) {
   }
   for (const TrueLight& lamp : document_.scene()->lights)
     if (lamp.id == light.toStdString())
-      document_.setWhatIf(draggedLight(*lampStart_, lamp, by), tr("What-if: light %1 moved").arg(light),
+      document_.setWhatIf(draggedLight(*lampStart_, lamp, by), tr("What-if: %1 moved").arg(lightText(lamp.id)),
                           QStringLiteral("lamp#%1").arg(gesture_));
 }
 

@@ -362,9 +362,9 @@ QString SceneTreeModel::nameOf(const SceneObject& o) const {
       return (o.predicted >= 0 ? tr("spurious highlight %1 of frame %2") : tr("highlight %1 of frame %2"))
           .arg(o.predicted >= 0 ? o.predicted + 1 : o.highlight + 1)
           .arg(nameText(scene->frames[std::size_t(o.frame)].id));
-    case Kind::Light: return tr("light %1").arg(nameText(o.key));
+    case Kind::Light: return lightText(o.key);
     case Kind::Ellipsoid:
-      return objectsOf(Kind::Light).size() < 2 ? nameText(o.key) : tr("%1 of light %2").arg(nameText(o.key), nameText(o.light));
+      return objectsOf(Kind::Light).size() < 2 ? nameText(o.key) : tr("%1 of %2").arg(nameText(o.key), lightText(o.light));
   }
   return {};
 }
@@ -435,7 +435,7 @@ QString SceneTreeModel::tipOf(const SceneObject& o, int column) const {
 
 /// Whole names, which the panel may cut, and why it is so.
 QString SceneTreeModel::highlightTip(const SceneObject& o) const {
-  QStringList lines{tr("%1, light %2").arg(nameOf(o), nameText(o.light))};
+  QStringList lines{tr("%1, %2").arg(nameOf(o), lightText(o.light))};
   const std::vector<std::string> models = o.predicted >= 0 ? std::vector<std::string>{o.key} : missedBy(o);
   const auto inspection = document_.inspection();
   // A depth map would have to be read for the cause, on the interface's thread.

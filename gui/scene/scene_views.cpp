@@ -175,6 +175,11 @@ void SceneViews::setDark(bool dark) {
   scheduleRender();
 }
 
+void SceneViews::setTextScale(double scale) {
+  for (auto& view : views_) view->setTextScale(scale);
+  if (widget_->isVisible()) renderFull();
+}
+
 void SceneViews::apply(const SceneOptions& options) {
   for (int i = options.viewCount(); i < shown_; ++i) own_[std::size_t(i)] = !options_.linked && inspection_;
   options_ = options;

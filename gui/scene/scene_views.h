@@ -61,6 +61,7 @@ class SceneViews : public QWidget {
   /// What the layer "solver-runs" draws; null = nothing.
   void setRuns(const std::shared_ptr<const std::vector<viz::DrawnRuns>>& runs);
   void setDark(bool dark);
+  void setTextScale(double scale);  ///< of the texts in all views; draws at once
   void apply(const SceneOptions& options);
   /// Draws soon; several changes in one turn of the event loop make one picture.
   void scheduleRender();

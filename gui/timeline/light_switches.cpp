@@ -51,9 +51,9 @@ void switchLight(Document& document, const viz::LightRow& row, int frame) {
   if (!canSwitch(document, state)) return;
   const bool on = !turnsOff(state);
   const QString id = nameText(scene->frames[std::size_t(frame)].id);
-  document.setWhatIf(switched(now, *scene, frame, row.light, on),
-                     (on ? Texts::tr("Switch light %1 on in frame %2") : Texts::tr("Switch light %1 off in frame %2"))
-                         .arg(nameText(row.light), id));
+  document.setWhatIf(
+      switched(now, *scene, frame, row.light, on),
+      (on ? Texts::tr("Switch %1 on in frame %2") : Texts::tr("Switch %1 off in frame %2")).arg(lightText(row.light), id));
 }
 
 void switchLightEverywhere(Document& document, const viz::LightRow& row, bool asCaptured) {
@@ -66,9 +66,8 @@ void switchLightEverywhere(Document& document, const viz::LightRow& row, bool as
     else if (turnsOff(viz::lightState(row, *scene, w, frame)))
       w = switched(std::move(w), *scene, frame, row.light, false);
   }
-  document.setWhatIf(w,
-                     (asCaptured ? Texts::tr("Restore light %1 in every frame") : Texts::tr("Switch light %1 off in every frame"))
-                         .arg(nameText(row.light)));
+  document.setWhatIf(w, (asCaptured ? Texts::tr("Restore %1 in every frame") : Texts::tr("Switch %1 off in every frame"))
+                            .arg(lightText(row.light)));
 }
 
 void addLights(QMenu& menu, Document& document, const std::vector<viz::LightRow>& rows, int frame) {
@@ -79,7 +78,7 @@ void addLights(QMenu& menu, Document& document, const std::vector<viz::LightRow>
   }
   for (const viz::LightRow& row : rows) {
     const viz::LightState state = viz::lightState(row, *document.scene(), document.request().whatIf, frame);
-    QAction* action = menu.addAction(Texts::tr("Light %1").arg(menuText(nameText(row.light))));
+    QAction* action = menu.addAction(menuText(lightTitle(row.light)));
     action->setCheckable(true);
     action->setChecked(turnsOff(state));
     action->setEnabled(canSwitch(document, state));

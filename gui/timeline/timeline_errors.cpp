@@ -17,6 +17,9 @@ namespace glint::gui {
 namespace {
 constexpr double kMissedLine = 6, kLeastMissedRow = 12;  // px: height of a model's crosses; of their row with its name
 constexpr double kRoomForName = 34;                      // height of the chart, px
+constexpr double kTwoTexts = 22, kThreeTexts = 36;       // height of the errors, px, that has room for so many texts beside it
+constexpr double kBesideChart = 5;                       // px between a text and the chart
+constexpr double kTinyPx = 9;                            // the word "missed"
 }  // namespace
 
 bool TimelineStrip::marksMissed(const viz::TimelineData::Series& series) const {
@@ -32,7 +35,22 @@ QRectF TimelineStrip::missedRow() const {
   const QRectF c = chart();
   const auto models = std::count_if(data_.series.begin(), data_.series.end(), [this](const auto& s) { return marksMissed(s); });
   if (models == 0) return QRectF(c.topLeft(), QSizeF(c.width(), 0));
-  return QRectF(c.left(), c.top(), c.width(), std::min(std::max(kLeastMissedRow, double(models) * kMissedLine), c.height() / 3));
+  return QRectF(c.left(), c.top(), c.width(),
+                std::min(std::max(kLeastMissedRow * scale_, double(models) * kMissedLine), c.height() / 3));
+}
+
+QStringList TimelineStrip::axisTexts() const {
+  const auto percent = [](double value) { return numberText(value) + QStringLiteral(" %"); };
+  if (axis_.logarithmic) return {percent(axis_.highPct), percent(axis_.lowPct), tr("log")};
+  return {percent(axis_.highPct), QStringLiteral("0")};
+}
+
+bool TimelineStrip::axisFits() const {
+  const QFontMetricsF metrics(smallFont());
+  const QStringList texts = axisTexts();
+  return metrics.height() <= lineHeight() && std::all_of(texts.begin(), texts.end(), [&](const QString& text) {
+           return metrics.horizontalAdvance(text) <= chart().left() - kBesideChart;
+         });
 }
 
 /// A cross for each frame, or column of frames, where a model missed a highlight: it has no error there. A triangle where one is
@@ -73,14 +91,14 @@ void TimelineStrip::paintMissed(QPainter& painter) {
     }
   }
   painter.setClipping(false);
-  if (chart().height() < kRoomForName) return;
+  if (chart().height() < kRoomForName * scale_) return;
   painter.setPen(palette().color(QPalette::PlaceholderText));
   const QFont usual = painter.font();
   QFont tiny = usual;
-  tiny.setPixelSize(9);
+  tiny.setPixelSize(int(kTinyPx * scale_));
   painter.setFont(tiny);
-  painter.drawText(QRectF(0, row.top() - 2, chart().left() - 5, kLeastMissedRow), Qt::AlignRight | Qt::AlignVCenter,
-                   tr("missed"));
+  painter.drawText(QRectF(0, row.top() - 2, chart().left() - kBesideChart, kLeastMissedRow * scale_),
+                   Qt::AlignRight | Qt::AlignVCenter, tr("missed"));
   painter.setFont(usual);
 }
 
@@ -94,20 +112,20 @@ void TimelineStrip::paintErrors(QPainter& painter) {
   painter.setRenderHint(QPainter::Antialiasing);
   paintMissed(painter);
   painter.setRenderHint(QPainter::Antialiasing, false);
-  const double left = c.left() - 5;  // of what stands beside the chart
+  const double left = c.left() - kBesideChart;  // of what stands beside the chart
   c.setTop(missedRow().bottom());
   if (missedRow().height() > 0) {
     painter.setPen(QPen(palette().color(QPalette::Mid), 1, Qt::DotLine));
     painter.drawLine(c.topLeft(), c.topRight());
   }
   painter.setPen(palette().color(QPalette::PlaceholderText));
-  painter.drawText(QRectF(0, c.top() - 7, left, 14), Qt::AlignRight | Qt::AlignVCenter,
-                   numberText(axis_.highPct) + QStringLiteral(" %"));
-  if (c.height() > 22)
-    painter.drawText(QRectF(0, c.bottom() - 13, left, 14), Qt::AlignRight | Qt::AlignVCenter,
-                     axis_.logarithmic ? numberText(axis_.lowPct) + QStringLiteral(" %") : QStringLiteral("0"));
-  if (axis_.logarithmic && c.height() > 36)
-    painter.drawText(QRectF(0, c.center().y() - 7, left, 14), Qt::AlignRight | Qt::AlignVCenter, tr("log"));
+  const QStringList texts = axisTexts();
+  const auto write = [&](const QString& text, double middle) {
+    painter.drawText(QRectF(0, middle - lineHeight() / 2, left, lineHeight()), Qt::AlignRight | Qt::AlignVCenter, text);
+  };
+  write(texts[0], c.top());
+  if (c.height() > kTwoTexts * scale_) write(texts[1], c.bottom() + 1 - lineHeight() / 2);
+  if (texts.size() > 2 && c.height() > kThreeTexts * scale_) write(texts[2], c.center().y());
   painter.setClipRect(c.adjusted(0, -2, 0, 1));
   QColor excluded = toQColor(draw::kExcluded);
   excluded.setAlpha(70);

@@ -23,10 +23,12 @@
 namespace glint::gui {
 
 namespace {
-constexpr double kLeft = 56, kRight = 10, kTop = 4, kMarkRow = 17, kNumberRow = 14;
-constexpr double kThumbnailHeight = 34, kRoomForThumbnails = 112;  // below this height only errors and roles are shown
+constexpr double kLeft = 56, kRight = 10, kTop = 4, kMarkRow = 17;  // px; the axis has more where its texts are larger
+constexpr double kBesideAxis = 9;                                   // px: left and right of a text of the axis
+constexpr double kThumbnailHeight = 34, kRoomForThumbnails = 112;   // below this height only errors and roles are shown
 constexpr double kMinFramesInView = 4;
-constexpr double kNamedRow = 10;          // height of a light's row with its name
+constexpr double kSmall = 0.85;           // its texts, of those of the window
+constexpr double kNamedRow = 10;          // height of a light's row with its name, at the usual size of texts
 const QColor kLightOn(0xf0, 0xe4, 0x42);  // draw::kLightColour
 QPointF positionOf(const QMouseEvent& e) {
 #if QT_VERSION >= QT_VERSION_CHECK(6, 0, 0)
@@ -74,7 +76,22 @@ void TimelineStrip::readView() {
   plotted_ = document_.plottedModel();
   drawn_ = {document_.request().train, document_.request().excluded, document_.request().whatIf};
   axis_ = viz::errorAxis(data_, bars_ ? plotted_ : std::string(), shownExcluded(document_));
+  measure();
   repaintAll();
+}
+
+QFont TimelineStrip::smallFont() const {
+  QFont small = font();
+  small.setPointSizeF(font().pointSizeF() * kSmall);
+  return small;
+}
+
+/// In large print (a presentation) its texts need more room.
+void TimelineStrip::measure() {
+  const QFontMetricsF metrics(smallFont());
+  scale_ = std::max(1.0, metrics.height() / kLine);
+  left_ = kLeft;
+  for (const QString& text : axisTexts()) left_ = std::max(left_, metrics.horizontalAdvance(text) + kBesideAxis);
 }
 
 void TimelineStrip::setUnreadable(const QMap<int, QString>& reasons) {
@@ -128,17 +145,17 @@ void TimelineStrip::zoom(double factor) { zoomAt(document_.selection().frame + 0
 
 QRectF TimelineStrip::thumbnailRow() const {
   const bool on = thumbnailsOn_ && height() >= kRoomForThumbnails;
-  return QRectF(kLeft, kTop, width() - kLeft - kRight, on ? kThumbnailHeight : 0);
+  return QRectF(left_, kTop, width() - left_ - kRight, on ? kThumbnailHeight : 0);
 }
 
 double TimelineStrip::lightRowHeight() const {
-  return data_.lights.empty() ? 0 : namesLights() ? kNamedRow : std::clamp(24.0 / double(data_.lights.size()), 2.0, 7.0);
+  return data_.lights.empty() ? 0 : namesLights() ? kNamedRow * scale_ : std::clamp(24.0 / double(data_.lights.size()), 2.0, 7.0);
 }
 
 bool TimelineStrip::namesLights() const {
-  constexpr double kLeastChart = 24;  // its two numbers
-  const double rest = height() - kMarkRow - kNumberRow - thumbnailRow().bottom() - 6;
-  return rest - kNamedRow * double(data_.lights.size()) >= kLeastChart;
+  const double leastChart = 24 * scale_;  // its two numbers
+  const double rest = height() - kMarkRow - lineHeight() - thumbnailRow().bottom() - 6 * scale_;
+  return rest - kNamedRow * scale_ * double(data_.lights.size()) >= leastChart;
 }
 
 int TimelineStrip::lightAt(double y) const {
@@ -147,20 +164,20 @@ int TimelineStrip::lightAt(double y) const {
 }
 
 QRectF TimelineStrip::chart() const {
-  const double top = thumbnailRow().bottom() + 6;
-  const double bottom = height() - kMarkRow - kNumberRow - lightRowHeight() * double(data_.lights.size());
-  return QRectF(kLeft, top, width() - kLeft - kRight, std::max(8.0, bottom - top));
+  const double top = thumbnailRow().bottom() + 6 * scale_;
+  const double bottom = height() - kMarkRow - lineHeight() - lightRowHeight() * double(data_.lights.size());
+  return QRectF(left_, top, width() - left_ - kRight, std::max(8.0, bottom - top));
 }
 
-double TimelineStrip::frameX(double frame) const { return kLeft + (frame - first_) / inView_ * (width() - kLeft - kRight); }
+double TimelineStrip::frameX(double frame) const { return left_ + (frame - first_) / inView_ * (width() - left_ - kRight); }
 
 QRectF TimelineStrip::cell(int frame) const {
-  return QRectF(frameX(frame), kTop, (width() - kLeft - kRight) / inView_, chart().bottom() - kTop);
+  return QRectF(frameX(frame), kTop, (width() - left_ - kRight) / inView_, chart().bottom() - kTop);
 }
 
 QRectF TimelineStrip::roleMark(int frame) const {
   const QRectF c = cell(frame);
-  return QRectF(c.left(), height() - kNumberRow - kMarkRow, c.width(), kMarkRow);
+  return QRectF(c.left(), height() - lineHeight() - kMarkRow, c.width(), kMarkRow);
 }
 
 QRectF TimelineStrip::lightMark(int light, int frame) const {
@@ -170,8 +187,8 @@ QRectF TimelineStrip::lightMark(int light, int frame) const {
 
 int TimelineStrip::frameAt(const QPointF& position) const {
   const int n = document_.frameCount();
-  if (n == 0 || position.x() < kLeft || position.x() >= width() - kRight) return -1;
-  return std::clamp(int(first_ + (position.x() - kLeft) / (width() - kLeft - kRight) * inView_), 0, n - 1);
+  if (n == 0 || position.x() < left_ || position.x() >= width() - kRight) return -1;
+  return std::clamp(int(first_ + (position.x() - left_) / (width() - left_ - kRight) * inView_), 0, n - 1);
 }
 
 void TimelineStrip::paintEvent(QPaintEvent*) {
@@ -188,12 +205,10 @@ void TimelineStrip::paintEvent(QPaintEvent*) {
   painter.fillRect(current, accent);
   painter.setPen(QPen(accentColour(), 1));
   painter.drawRect(current.adjusted(0, 0, -1, 0));
-  QFont small = font();
-  small.setPointSizeF(font().pointSizeF() * 0.85);
-  painter.setFont(small);
+  painter.setFont(smallFont());
   const QString number = idText(frame);
-  QRectF label(0, 0, painter.fontMetrics().horizontalAdvance(number) + 8, kNumberRow);
-  label.moveCenter({std::clamp(current.center().x(), kLeft, width() - kRight), height() - kNumberRow / 2 - 1});
+  QRectF label(0, 0, painter.fontMetrics().horizontalAdvance(number) + 8, lineHeight());
+  label.moveCenter({std::clamp(current.center().x(), left_, width() - kRight), height() - lineHeight() / 2 - 1});
   painter.fillRect(label, accentColour());
   painter.setPen(Qt::white);
   painter.drawText(label, Qt::AlignCenter, number);
@@ -205,9 +220,7 @@ void TimelineStrip::paintBackground() {
   background_.setDevicePixelRatio(devicePixelRatioF());
   background_.fill(palette().color(QPalette::Base));
   QPainter painter(&background_);
-  QFont small = font();
-  small.setPointSizeF(font().pointSizeF() * 0.85);
-  painter.setFont(small);
+  painter.setFont(smallFont());
   if (document_.frameCount() == 0) {
     painter.setPen(palette().color(QPalette::PlaceholderText));
     painter.drawText(rect(), Qt::AlignCenter, tr("No frames"));
@@ -279,16 +292,16 @@ void TimelineStrip::paintRows(QPainter& painter) {
   if (!data_.lights.empty() && namesLights()) {
     const QFont usual = painter.font();
     QFont tiny = usual;
-    tiny.setPixelSize(int(kNamedRow) - 1);
+    tiny.setPixelSize(int((kNamedRow - 1) * scale_));
     painter.setFont(tiny);
     for (std::size_t i = 0; i < data_.lights.size(); ++i) {
-      const QRectF place(0, top - rowHeight * double(data_.lights.size() - i) - 1, kLeft - 5, rowHeight);
+      const QRectF place(0, top - rowHeight * double(data_.lights.size() - i) - 1, left_ - 5, rowHeight);
       painter.drawText(place, Qt::AlignRight | Qt::AlignVCenter,
-                       painter.fontMetrics().elidedText(nameText(data_.lights[i].light), Qt::ElideMiddle, int(kLeft) - 7));
+                       painter.fontMetrics().elidedText(nameText(data_.lights[i].light), Qt::ElideMiddle, int(left_) - 7));
     }
     painter.setFont(usual);
   } else if (!data_.lights.empty()) {
-    painter.drawText(QRectF(0, top - rowHeight * double(data_.lights.size()) / 2 - 7, kLeft - 5, 14),
+    painter.drawText(QRectF(0, top - rowHeight * double(data_.lights.size()) / 2 - lineHeight() / 2, left_ - 5, lineHeight()),
                      Qt::AlignRight | Qt::AlignVCenter, tr("lights"));
   }
   painter.setRenderHint(QPainter::Antialiasing);
@@ -315,7 +328,8 @@ void TimelineStrip::paintRows(QPainter& painter) {
     }
     if (i % labelEvery == 0) {
       painter.setPen(palette().color(QPalette::PlaceholderText));
-      painter.drawText(QRectF(frameX(i + 0.5) - 40, height() - kNumberRow - 1, 80, kNumberRow), Qt::AlignCenter, idText(i));
+      painter.drawText(QRectF(frameX(i + 0.5) - 40 * scale_, height() - lineHeight() - 1, 80 * scale_, lineHeight()),
+                       Qt::AlignCenter, idText(i));
     }
   }
 }
@@ -327,7 +341,7 @@ void TimelineStrip::paintUnreadable(QPainter& painter) {
   const double y = chart().top() - 6, r = 4;  // between thumbnails and errors, which also a narrow strip has
   for (auto it = unreadable_.begin(); it != unreadable_.end(); ++it) {
     const double x = frameX(it.key() + 0.5);
-    if (x < kLeft || x > width() - kRight) continue;
+    if (x < left_ || x > width() - kRight) continue;
     painter.drawPolygon(QPolygonF({{x - r, y + 2 * r - 2}, {x + r, y + 2 * r - 2}, {x, y - 2}}));
   }
 }
@@ -335,6 +349,7 @@ void TimelineStrip::paintUnreadable(QPainter& painter) {
 void TimelineStrip::resizeEvent(QResizeEvent*) { repaintAll(); }
 
 void TimelineStrip::changeEvent(QEvent* e) {
+  if (e->type() == QEvent::FontChange || e->type() == QEvent::StyleChange) measure();
   if (e->type() == QEvent::PaletteChange || e->type() == QEvent::FontChange || e->type() == QEvent::StyleChange) repaintAll();
   QWidget::changeEvent(e);
 }
@@ -345,7 +360,7 @@ void TimelineStrip::wheelEvent(QWheelEvent* e) {
     const int by = turn.x() != 0 ? turn.x() : turn.y();
     setView(first_ - by / 120.0 * inView_ / 10, inView_);
   } else {
-    zoomAt(first_ + (e->position().x() - kLeft) / (width() - kLeft - kRight) * inView_, std::pow(2.0, turn.y() / 240.0));
+    zoomAt(first_ + (e->position().x() - left_) / (width() - left_ - kRight) * inView_, std::pow(2.0, turn.y() / 240.0));
   }
   e->accept();
 }
@@ -402,11 +417,10 @@ void TimelineStrip::contextMenuEvent(QContextMenuEvent* e) {
   }
   if (const int light = lightAt(e->pos().y()); light >= 0) {
     const viz::LightRow row = data_.lights[std::size_t(light)];
-    const QString name = menuText(nameText(row.light));
-    menu.addAction(tr("Switch light %1 off in every frame").arg(name), this,
+    const QString name = menuText(lightText(row.light));
+    menu.addAction(tr("Switch %1 off in every frame").arg(name), this,
                    [this, row] { switchLightEverywhere(document_, row, false); });
-    menu.addAction(tr("Restore light %1 in every frame").arg(name), this,
-                   [this, row] { switchLightEverywhere(document_, row, true); });
+    menu.addAction(tr("Restore %1 in every frame").arg(name), this, [this, row] { switchLightEverywhere(document_, row, true); });
   }
   menu.addSeparator();
   menu.addAction(tr("Show beside selected frame"), this, [this, frame, id] {
@@ -440,15 +454,15 @@ QString TimelineStrip::idText(int frame) const {
 
 QString TimelineStrip::lightTip(int row, int frame) const {
   const viz::LightRow& light = data_.lights[std::size_t(row)];
-  const QString name = nameText(light.light);
+  const QString name = lightTitle(light.light);
   if (frame < 0)
-    return tr("Light %1 (row %2 of %3): on in frames where its row is yellow. Click to switch it in a frame; a line through "
+    return tr("%1 (row %2 of %3): on in frames where its row is yellow. Click to switch it in a frame; a line through "
               "it marks a change from what was captured")
         .arg(name)
         .arg(row + 1)
         .arg(data_.lights.size());
   const viz::LightState state = viz::lightState(light, *document_.scene(), document_.request().whatIf, frame);
-  return tr("Light %1: %2\n%3").arg(name, lightStateText(state), lightClickText(document_, state));
+  return tr("%1: %2\n%3").arg(name, lightStateText(state), lightClickText(document_, state));
 }
 
 QString TimelineStrip::toolTip(int frame) const {
@@ -476,7 +490,7 @@ QString TimelineStrip::toolTip(int frame) const {
 
 QString TimelineStrip::tipAt(const QPoint& position) const {
   const int frame = frameAt(position), light = lightAt(position.y());
-  const bool beside = position.x() < kLeft;  // where the rows' names stand
+  const bool beside = position.x() < left_;  // where the rows' names stand
   if (light >= 0 && (frame >= 0 || beside))
     return frame < 0 ? lightTip(light, frame) : lightTip(light, frame) + QLatin1Char('\n') + toolTip(frame);
   return frame < 0 ? QString() : toolTip(frame);

@@ -32,6 +32,8 @@ class TimelineStrip : public QWidget {
   /// Frames in view: from `firstFrame`, as many as `framesInView` (not whole numbers while zooming).
   double firstFrame() const { return first_; }
   double framesInView() const { return inView_; }
+  /// Whether every text beside the chart has room there.
+  bool axisFits() const;
   void setView(double first, double inView);
   /// Frames that are marked as without a readable photograph, with the reason.
   void setUnreadable(const QMap<int, QString>& reasons);
@@ -80,6 +82,10 @@ class TimelineStrip : public QWidget {
   QRectF chart() const;
   bool marksMissed(const viz::TimelineData::Series& series) const;
   double lightRowHeight() const;
+  double lineHeight() const { return kLine * scale_; }  ///< of a text, px
+  QFont smallFont() const;
+  void measure();                 ///< scale_ and left_, after font or axis have changed
+  QStringList axisTexts() const;  ///< what stands beside the chart: its upper end, its lower end, "log"
   QString toolTip(int frame) const;
   QString lightTip(int row, int frame) const;  ///< frame -1: of the row
   int lightAt(double y) const;                 ///< row, -1 outside
@@ -96,6 +102,9 @@ class TimelineStrip : public QWidget {
     std::vector<int> excluded;
     WhatIf whatIf;
   } drawn_;  ///< of the request
+  static constexpr double kLine = 14;
+  double scale_ = 1;  ///< of its texts: 1 = as usual, or smaller
+  double left_ = 56;  ///< px, of the chart: left of it stand the texts of its axis
   double first_ = 0, inView_ = 1;
   bool bars_ = false, thumbnailsOn_ = true;
   std::string plotted_;

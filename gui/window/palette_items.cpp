@@ -142,7 +142,7 @@ void addLightSwitches(QList<PaletteItem>& items, Document& document) {
   const QString id = nameText(document.scene()->frames[std::size_t(frame)].id);
   for (const viz::LightRow& row : viz::lightRows(*document.scene(), document.inspection().get())) {
     const viz::LightState state = viz::lightState(row, *document.scene(), document.request().whatIf, frame);
-    items.append({QObject::tr("Light %1 in frame %2").arg(nameText(row.light), id), QObject::tr("What-if"),
+    items.append({QObject::tr("%1 in frame %2").arg(lightTitle(row.light), id), QObject::tr("What-if"),
                   canSwitch(document, state) ? lightStateText(state) : lightClickText(document, state),
                   canSwitch(document, state), [&document, row, frame] { switchLight(document, row, frame); },
                   QObject::tr("lamp switch on off")});

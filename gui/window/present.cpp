@@ -28,6 +28,8 @@ void setTextFont(const QFont& font) {
 Present::Present(QMainWindow* window, std::function<void()> arrange)
     : QObject(window), window_(window), arrange_(std::move(arrange)) {}
 
+double Present::textScale() const { return on_ ? kLarger : 1; }
+
 void Present::start() {
   if (std::exchange(on_, true)) return;
   docks_ = window_->saveState();  // of the tool bar, too: before it is hidden

@@ -21,6 +21,8 @@ class Present : public QObject {
   /// @param arrange  shows only what belongs on a screen for a room.
   Present(QMainWindow* window, std::function<void()> arrange);
   bool on() const { return on_; }
+  /// How much larger than usual texts are now.
+  double textScale() const;
 
  public slots:
   void start();

@@ -37,6 +37,7 @@ void SymbolLinks::follow(DualityWindow& duality) {
   if (duality_ == &duality) return;
   duality_ = &duality;
   connect(&duality, &DualityWindow::litChanged, this, &SymbolLinks::showPlane);
+  connect(&views_, &SceneViews::picked, &duality, &DualityWindow::showPicked);  // after what is picked was selected
 }
 
 void SymbolLinks::light(const QSet<QString>& symbols) {

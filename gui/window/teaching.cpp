@@ -51,6 +51,7 @@ Teaching::Teaching(const Parts& parts) : QObject(parts.window), parts_(parts) {
     if (teaches()) parts_.docks.bring(QStringLiteral("explain"));
     parts_.docks.keepLow(QStringLiteral("timeline"));
   });
+  connect(present_, &Present::changed, this, [this] { parts_.scene.views().setTextScale(present_->textScale()); });
   connect(present_, &Present::step, this, [this](int by) {
     if (parts_.explain.step() < 0 && parts_.document.option("explain/lesson", std::string()).empty())
       return emit frameRequested(by);

@@ -299,9 +299,11 @@ function glintScene(data, canvas, labelBox, select) {
     else addLight(group, V(homogeneous).divideScalar(homogeneous[3]), size, colour, text);
   }
   const same = (a, b) => a && b && V(a).multiplyScalar(b[3]).distanceTo(V(b).multiplyScalar(a[3])) < 1e-9 * (1 + V(a).length() * Math.abs(b[3]));
+  // As core/base/light_name.h: an id that says that it is a light is not told twice.
+  const lightName = (id) => (/^light(?![a-z])/i.test(id) ? id : 'light ' + id);
   function addLights(group) {
     const common = lightsOf(state.frame);
-    for (const l of common) addEstimate(group, l.homogeneous, 1.7 * point, kLight[theme], 'light ' + l.id + ' (estimate)');
+    for (const l of common) addEstimate(group, l.homogeneous, 1.7 * point, kLight[theme], lightName(l.id) + ' (estimate)');
     for (const fit of fits())
       if (fit.light_position && !common.some((l) => same(l.homogeneous, fit.light_position)))
         addEstimate(group, fit.light_position, 1.2 * point, fit.colour, fit.model + ' light');

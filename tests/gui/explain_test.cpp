@@ -26,6 +26,7 @@
 #include "gui/scene/scene_panel.h"
 #include "gui/scene/scene_views.h"
 #include "gui/window/main_window.h"
+#include "gui/window/palette.h"
 #include "gui/window/symbol_links.h"
 #include "tests/gui/fixture.h"
 
@@ -120,6 +121,30 @@ class ExplainTest : public QObject {
              QString::fromStdString(selection.model));
     shown->close();
     QVERIFY(!window_->findChild<SymbolLinks*>()->lit().planeShown());
+  }
+
+  /// What is clicked in 3D, and a training frame that is selected, lights its plane there. The main window's keys work, too; Esc closes it.
+  void theWindowOfPrimalAndDualFollowsThe3dViewAndKnowsTheKeys() {
+    window_->actions().find("explain.duality")->trigger();
+    auto* shown = window_->findChild<DualityWindow*>("duality");
+    QCOMPARE(shown->lit().view, -1);
+    const int view = shown->duality()->views.front().frame == window_->document().selection().frame ? 1 : 0;
+    viz::Picked picked;
+    picked.layer = "cones";
+    picked.frame = shown->duality()->views[std::size_t(view)].frame;
+    window_->document().selectFrame(picked.frame);
+    QVERIFY((shown->lit() == viz::DualityPlane{view, 0}));
+    const Duality::View& cone = shown->duality()->views[std::size_t(view)];
+    picked.position = cone.apex + 0.7 * cone.planes[5].cone.along;
+    emit window_->findChild<SceneViews*>()->picked(picked);
+    QVERIFY((shown->lit() == viz::DualityPlane{view, 5}));
+    QVERIFY(window_->findChild<SymbolLinks*>()->lit().planeShown());
+    QTRY_VERIFY(shown->isActiveWindow());
+    QTest::keyClick(shown->canvas(), Qt::Key_K, Qt::ControlModifier);
+    QTRY_VERIFY(window_->findChild<Palette*>("palette")->isVisible());
+    window_->findChild<Palette*>("palette")->hide();
+    QTest::keyClick(shown->canvas(), Qt::Key_Escape);
+    QVERIFY(!shown->isVisible());
   }
 
   void everyStepIsReachedForwardsAndBackAndIsOneStepOfUndo() {

@@ -10,6 +10,7 @@
 
 #include "gui/explain/explain_panel.h"
 #include "gui/explain/lessons.h"
+#include "gui/frame/develop_bar.h"
 #include "gui/timeline/timeline.h"
 #include "gui/window/main_window.h"
 #include "tests/gui/window_fixture.h"
@@ -107,6 +108,13 @@ class StartPageTest : public QObject, WindowFixture {
     QVERIFY2(QFontInfo(text->font()).pointSizeF() > 1.3 * small,
              qPrintable(QString::number(QFontInfo(text->font()).pointSizeF())));
     QTRY_VERIFY2(timeline->height() < window.height() * 2 / 5, qPrintable(QString::number(timeline->height())));
+    // Nothing is cut off: beside the timeline's chart, beside the frame view's sliders.
+    auto* const strip = window.findChild<TimelineStrip*>("timelineStrip");
+    QTRY_VERIFY(strip->axisFits());
+    const QList<QLabel*> labels = window.findChild<DevelopBar*>()->findChildren<QLabel*>();
+    QCOMPARE(labels.size(), 2);
+    for (const QLabel* label : labels)
+      QTRY_VERIFY2(label->fontMetrics().horizontalAdvance(label->text()) <= label->width(), qPrintable(label->text()));
     const int frame = window.document().selection().frame;
     QTest::keyClick(window.focusWidget() ? window.focusWidget() : &window, Qt::Key_PageDown);
     QCOMPARE(window.document().selection().frame, frame + 1);

@@ -15,6 +15,8 @@
 #include <cstdlib>
 #include <functional>
 #include <map>
+#include <numbers>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -213,6 +215,51 @@ TEST(LabelPlaces, KeepOffCamerasWhereThereIsRoom) {
   EXPECT_FALSE(placeForLabel(at, size, picture, kFont, {all}, {}));
 }
 
+/// As far from the tip at every zoom: no corner of the text is nearer along the arrow than the gap, and its middle is on the arrow's line.
+TEST(LabelPlaces, ALetterStandsInFrontOfItsArrowsTip) {
+  const Eigen::Vector2d tip(200, 180), size(12, 16), picture(400, 400);
+  constexpr double kFont = 20, kGap = 6;
+  for (int degrees = 0; degrees < 360; degrees += 15) {
+    SCOPED_TRACE(degrees);
+    const double a = degrees * std::numbers::pi / 180;
+    const Eigen::Vector2d along(std::cos(a), std::sin(a));
+    for (const double length : {5.0, 80.0, 3000.0}) {
+      const std::optional<Rectangle> r = placeAtTip(tip, length * along, size, picture, kFont, {});
+      ASSERT_TRUE(r);
+      double nearest = 1e9;
+      for (const double x : {r->x, r->x + r->width})
+        for (const double y : {r->y, r->y + r->height}) nearest = std::min(nearest, (Eigen::Vector2d(x, y) - tip).dot(along));
+      EXPECT_NEAR(nearest, kGap, 1e-9);
+      const Eigen::Vector2d middle(r->x + 0.5 * r->width - tip.x(), r->y + 0.5 * r->height - tip.y());
+      EXPECT_NEAR(middle.x() * along.y() - middle.y() * along.x(), 0, 1e-9);
+      EXPECT_FALSE(placeAtTip(tip, length * along, size, picture, kFont, {*r})) << "taken";
+    }
+  }
+  EXPECT_FALSE(placeAtTip(tip, {0.5, 0}, size, picture, kFont, {})) << "seen from its end";
+  EXPECT_FALSE(placeAtTip({398, 180}, {50, 0}, size, picture, kFont, {})) << "out of the picture";
+}
+
+TEST(LabelPlaces, KeepOffWhatIsDrawnAtTheirPoint) {
+  const Eigen::Vector2d at(200, 200), size(80, 14), picture(400, 400);
+  constexpr double kFont = 14;
+  for (const double clear : {3.0, 20.0, 70.0}) {
+    const std::optional<Rectangle> r = placeForLabel(at, size, picture, kFont, {}, {}, clear);
+    ASSERT_TRUE(r);
+    EXPECT_GT(r->x, at.x() + clear);
+    EXPECT_LT(r->x, at.x() + clear + kFont) << "and is seen to belong to it";
+  }
+}
+
+TEST_F(LegendPicture, ALetterStandsAtTheTipOfItsArrow) {
+  // VTK's first camera looks at the origin, which is in the middle of the picture.
+  picture(800, true, [](Annotations& a) { a.setLabels({{{0, 0, 0}, "N", kMagenta, Eigen::Vector3d(-0.1, 0, 0)}}); });
+  ASSERT_TRUE(texts_.count("N"));
+  const Box& box = texts_["N"];
+  EXPECT_GT(box.x, 400);
+  EXPECT_LT(box.x, 400 + fontSizeFor(kHeight));
+  EXPECT_NEAR(box.y + 0.5 * box.height, 0.5 * kHeight, 1.5);
+}
+
 TEST(ErrorText, HasThreeSignificantDigits) {
   EXPECT_EQ(errorText(0), "0.00");
   EXPECT_EQ(errorText(0.0512), "0.05");
@@ -247,6 +294,28 @@ TEST_F(LegendPicture, LabelsNeverLieOverOneAnother) {
         EXPECT_FALSE(a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height) << i << " " << j;
       }
   }
+}
+
+/// In a presentation all of them are larger, and the legend reaches as much farther.
+TEST_F(LegendPicture, AllTextsGrowTogether) {
+  const auto fill = [](double scale) {
+    return [scale](Annotations& a) {
+      a.setTextScale(scale);
+      a.setLegend({{kOrange, "primal"}}, {"a note"}, {}, "a title");
+      a.setLabels({{{0.1, 0, 0}, "label", kMagenta}});
+    };
+  };
+  picture(900, true, fill(1));
+  const std::map<std::string, Box> usual = texts_;
+  const Eigen::Vector2d legend = legend_;
+  picture(900, true, fill(2));
+  ASSERT_EQ(texts_.size(), usual.size());
+  for (const auto& [text, box] : usual) {
+    if (text.size() < 3) continue;
+    ASSERT_TRUE(texts_.count(text)) << text;
+    EXPECT_NEAR(texts_[text].width / box.width, 2, 0.25) << text;  // whole points and pixels
+  }
+  EXPECT_NEAR(legend_.y() / legend.y(), 2, 0.2);
 }
 
 /// The label of a point that lies under the legend stands beside it.

@@ -73,6 +73,18 @@ TEST(DualityPicture, HasEveryPlaneOnceOnEachSide) {
   for (const auto& place : p.points) EXPECT_GT(place.at.x(), 450);
 }
 
+/// A place on the line in which a plane touches its cone is nearest to that plane, however far it is from the apex.
+TEST(DualityPicture, APlaceOnAConeHasItsPlane) {
+  const Duality d = told();
+  for (const int i : {0, 7, 23}) {
+    const Duality::View& view = d.views[2];
+    for (const double far : {0.1, 2.0, 9.0})
+      EXPECT_EQ(planeNearest(d, view.frame, view.apex + far * view.planes[std::size_t(i)].cone.along), (DualityPlane{2, i}));
+  }
+  EXPECT_FALSE(planeNearest(d, 7, {0, 0, 0})) << "no view is of that frame";
+  EXPECT_FALSE(planeNearest(d, d.views[1].frame, d.views[1].apex)) << "the apex is on all of them";
+}
+
 TEST(DualityPicture, APlanesNormalAndItsDualPointShowInTheSameDirection) {
   const Duality d = told();
   for (const double turn : {0.0, 0.9, -2.0}) {

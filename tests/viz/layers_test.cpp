@@ -421,13 +421,40 @@ TEST(Layers, TheSelectedFrameAloneNamesItsDirections) {
     input.solo = true;
     std::map<std::string, Eigen::Vector3d> at;
     for (const LayerContent& content : {raysLayer(input), peaksLayer(input)})
-      for (const DrawnLabel& label : content.labels) at[label.text] = label.anchor;
+      for (const DrawnLabel& label : content.labels) {
+        at[label.text] = label.anchor;
+        ASSERT_TRUE(label.tail) << "each stands at the tip of its arrow";
+        EXPECT_NEAR((label.anchor - *label.tail).norm(), 1.3 * input.scale.arrow, 1e-6 * input.scale.arrow);
+      }
     ASSERT_EQ(at.size(), 3u) << frame;
     const SurfacePoint p = inspection->models["canonical"].frames[std::size_t(frame)].prediction.highlights()[0].brightest.point;
     const Eigen::Vector3d eye = inspection->scene->frames[std::size_t(frame)].camera.centreInWorld();
     EXPECT_LT((at["V"] - p.position).cross(eye - p.position).norm(), kDrawn);
     EXPECT_LT((at["N"] - p.position).cross(p.normal).norm(), kDrawn);
     EXPECT_LT((at["L"] - p.position).cross(*inspection->scene->lights[0].position - p.position).norm(), kDrawn);
+  }
+}
+
+/// The word at a light stands beside all of its star, and beside the ring about it when it is selected.
+TEST(Layers, ALightsLabelKeepsOffItsStar) {
+  const TemporaryFolder folder;
+  const auto inspection = smallInspection(folder.path());
+  LayerInput input = heldOutInput(*inspection);
+  for (const bool selected : {false, true}) {
+    input.selection.light = selected ? inspection->scene->lights[0].id : "";
+    const LayerContent content = lightLayer(input);
+    ASSERT_FALSE(content.labels.empty());
+    ASSERT_FALSE(content.drawn.empty());
+    double reach = 0;
+    for (const Drawn& drawn : content.drawn) {
+      if (!drawn.info.model.empty()) continue;  // a model's own estimate, which has a star of its own
+      const double* box = drawn.prop->GetBounds();
+      for (int axis = 0; axis < 3; ++axis)
+        for (const int side : {0, 1}) reach = std::max(reach, std::abs(box[2 * axis + side] - content.labels[0].anchor(axis)));
+    }
+    EXPECT_GE(content.labels[0].clear, (1 - 1e-6) * reach);
+    EXPECT_LE(content.labels[0].clear, 1.05 * reach);
+    ASSERT_EQ(content.glyphs.size(), content.labels.size());
   }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <numbers>
 
+#include "core/base/light_name.h"
 #include "core/base/number_text.h"
 #include "core/diagnostics/conditioning.h"
 #include "viz/glyphs.h"
@@ -9,7 +10,8 @@
 namespace glint::viz {
 namespace {
 
-constexpr double kFarLight = 4;  ///< in scene sizes: beyond, an arrow shows the direction
+constexpr double kStar = 2.4, kRing = 3.2;  ///< radii of the light's rays and of the ring about a selected one, of its ball's
+constexpr double kFarLight = 4;             ///< in scene sizes: beyond, an arrow shows the direction
 
 std::string distanceText(double metres) { return formatted("%.3g m", metres); }
 
@@ -40,21 +42,25 @@ void addEstimate(LayerContent& content, const LayerInput& in, const Light& light
   const double r = size * 1.6 * in.scale.point;
   const Eigen::Vector3d p = light.position();
   std::vector<Segment> rays;
+  Points corners;
   for (int i = 0; i < 26; ++i) {  // a star: the neighbours of a cube's centre
     const int k = i < 13 ? i : i + 1;
     const Eigen::Vector3d d(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
-    rays.emplace_back(p + 1.4 * r * d.normalized(), p + 2.4 * r * d.normalized());
+    rays.emplace_back(p + 1.4 * r * d.normalized(), p + kStar * r * d.normalized());
+    corners.push_back(rays.back().second);
   }
   content.add(sphereActor({p}, r, colour), info);
-  if (!in.selection.light.empty() && in.selection.light == info.light && info.model.empty()) {
-    const Eigen::Matrix3d axes = 3.2 * r * Eigen::Matrix3d::Identity();
+  const bool selected = !in.selection.light.empty() && in.selection.light == info.light && info.model.empty();
+  if (selected) {
+    const Eigen::Matrix3d axes = kRing * r * Eigen::Matrix3d::Identity();
     content.add(
         lineActor({circle(p, axes.col(0), axes.col(1)), circle(p, axes.col(1), axes.col(2)), circle(p, axes.col(2), axes.col(0))},
                   in.ink(), 2),
         info, 2);
   }
   content.add(segmentActor(rays, colour, 1.5), info, 1.5);
-  content.labels.push_back({p, label, colour});
+  content.labels.push_back({p, label, colour, {}, (selected ? kRing : kStar) * r});
+  content.glyphs.push_back(std::move(corners));
   content.extent.push_back(p);
 }
 
@@ -91,7 +97,7 @@ LayerContent lightLayer(const LayerInput& in) {
           line("standard deviation, noise alone", Eigen::Vector3d(estimate.covariance->diagonal().cwiseMax(0).cwiseSqrt()), "m");
     }
     info.text += lampBeside(in, id, estimate.light);
-    addEstimate(content, in, estimate.light, 1, kLightColour, "light " + id + " (estimate)", info);
+    addEstimate(content, in, estimate.light, 1, kLightColour, lightName(id) + " (estimate)", info);
   }
   // A model may refine the light by itself: drawn smaller, in the model's colour, where it differs from the common one.
   for (const std::string& model : in.models) {
@@ -121,7 +127,7 @@ LayerContent trueLightLayer(const LayerInput& in) {
     info.layer = "true-light";
     info.light = light.id;
     info.text = line("true light (not used by the method)", light.id) + line("radius", light.radius, "m");
-    const std::string label = "truth: light " + light.id;
+    const std::string label = "truth: " + lightName(light.id);
     if (light.direction && light.direction->norm() > 0) {
       info.text += line("direction", *light.direction);
       addDirection(content, in, light.direction->normalized(), kTruth, label + ", at infinity", info);
@@ -147,7 +153,7 @@ LayerContent trueLightLayer(const LayerInput& in) {
                           kTruth, 2.5),
                 info, 2.5);
     content.add(sphereActor({middle}, std::max(light.radius, 0.5 * in.scale.point), kTruth), info);
-    content.labels.push_back({middle, label, kTruth});
+    content.labels.push_back({middle, label, kTruth, {}, r});
     content.extent.push_back(middle);
   }
   return content;

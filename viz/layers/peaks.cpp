@@ -30,12 +30,12 @@ LayerContent peaksLayer(const LayerInput& in) {
   const auto add = [&](const BrightestPoint& b, const Camera& camera, double size, const Colour& colour, const Picked& info) {
     const SurfacePoint p = facing(b.point, camera.centreInWorld());
     content.add(named(sphereActor({p.position}, size * in.scale.point, colour), "point"), info);
-    content.add(named(arrowActor({{p.position, p.position + size * in.scale.arrow * p.normal}}, 0.22 * size * in.scale.point,
+    const Eigen::Vector3d tip = p.position + size * in.scale.arrow * p.normal;
+    content.add(named(arrowActor({{p.position, tip}}, 0.22 * size * in.scale.point,
                                  info.model.empty() ? in.ink() : colour),  // white would not be seen on a light ground
                       "normal"),
                 info);
-    if (in.solo && info.model.empty())
-      content.labels.push_back({p.position + 1.2 * size * in.scale.arrow * p.normal, "N", in.ink()});
+    if (in.solo && info.model.empty()) content.labels.push_back({tip, "N", in.ink(), p.position});
   };
   for (const TrainingView* view : in.views()) {
     if (!view->seen) continue;

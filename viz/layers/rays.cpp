@@ -11,6 +11,7 @@
 namespace glint::viz {
 namespace {
 
+constexpr double kUnit = 1.3;        // length of V and L, as peaksLayer() draws N of the selected frame
 constexpr double kElsewhere = 0.35;  // opacity of rays that left a surface which is not shown
 
 void addRay(LayerContent& content, const LayerInput& in, const TrainingView& view, bool elsewhere) {
@@ -41,8 +42,14 @@ void addRay(LayerContent& content, const LayerInput& in, const TrainingView& vie
   add(named(segmentActor(dashed(eye, p.position, 0.015 * in.scale.sceneSize), kHeldOut, 1.0), "view"), 1.0);
   add(named(segmentActor({{p.position, p.position + reach * r}}, kLightColour, width), "reflected"), width);
   if (!in.solo || !selected) return;
-  content.labels.push_back({p.position + 1.3 * in.scale.arrow * v, "V", in.ink()});
-  content.labels.push_back({p.position + 1.3 * in.scale.arrow * r, "L", in.ink()});
+  // As long as the normal, so that the three are seen as one figure, each letter at the tip of its own.
+  const auto addUnit = [&](const Eigen::Vector3d& direction, const char* letter, const Colour& colour, const char* part) {
+    const Eigen::Vector3d tip = p.position + kUnit * in.scale.arrow * direction;
+    add(named(arrowActor({{p.position, tip}}, 0.22 * kUnit * in.scale.point, colour), part), 0);
+    content.labels.push_back({tip, letter, in.ink(), p.position});
+  };
+  addUnit(v, "V", kHeldOut, "view");
+  addUnit(r, "L", kLightColour, "reflected");
 }
 
 }  // namespace

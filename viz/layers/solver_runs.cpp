@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "viz/solver_runs.h"
 
+#include "core/base/light_name.h"
 #include "core/base/number_text.h"
 #include "viz/glyphs.h"
 #include "viz/layers.h"
@@ -56,9 +57,8 @@ void addRun(LayerContent& content, const LayerInput& in, const DrawnRuns& of, co
   if (!run.answer || in.selection.model != of.model) return;  // of several models they would cover the scene
   const auto label = [&](const Shown& s, const char* what) {
     content.labels.push_back({s.at,
-                              std::string(what) + " of " +
-                                  (run.what.rfind("ellipsoid", 0) == 0 ? "ellipsoid, light " : "light ") + of.light +
-                                  (s.far ? " (far away)" : ""),
+                              std::string(what) + " of " + (run.what.rfind("ellipsoid", 0) == 0 ? "ellipsoid, " : "") +
+                                  lightName(of.light) + (s.far ? " (far away)" : ""),
                               colour});
   };
   if ((from.at - to.at).norm() > 4 * r) label(from, "start");

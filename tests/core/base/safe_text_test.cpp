@@ -8,6 +8,8 @@
 #include <set>
 #include <string>
 
+#include "core/base/light_name.h"
+
 namespace glint {
 namespace {
 
@@ -109,6 +111,18 @@ TEST(FileName, DifferentIdsHaveDifferentNames) {
                                     fileNameOf("ab"),  fileNameOf(longId + "1"), fileNameOf(longId + "2")};
   EXPECT_EQ(names.size(), 6u);
   for (const std::string& name : names) EXPECT_LE(name.size(), 200u);
+}
+
+/// As one would say it: nobody says "light light", but "light lighthouse" names another thing than a lighthouse.
+TEST(LightName, SaysTheWordOnce) {
+  for (const char* id : {"light", "Light", "LIGHT", "light2", "light_left", "Light 3", "light@bowl"})
+    EXPECT_EQ(lightName(id), id);
+  EXPECT_EQ(lightName("3"), "light 3");
+  EXPECT_EQ(lightName("lamp"), "light lamp");
+  EXPECT_EQ(lightName("lights"), "light lights");
+  EXPECT_EQ(lightName("lighthouse"), "light lighthouse");
+  EXPECT_EQ(lightName("key light"), "light key light");
+  EXPECT_EQ(lightName("ligh"), "light ligh");
 }
 
 }  // namespace

@@ -147,9 +147,26 @@ TEST(FirstLook, ShowsModelsWithoutPixelsAndLeavesTheRest) {
   quick.settings.setFromText("detect.min_contrast", "0.2");
   EXPECT_TRUE(firstLook(scene, quick, 5, {}, &all));  // it is one of other contours
   EXPECT_FALSE(with({"reflectance"}));
-  EXPECT_FALSE(with(q.models, "detect.background", "lobe"));
   EXPECT_FALSE(with(q.models, "fit.evidence", "contours"));
   EXPECT_TRUE(with(q.models));
+}
+
+/// Contours of the smooth background first, those of the lobe afterwards.
+TEST(FirstLook, LeavesContoursToBeFoundAgainWithTheLobe) {
+  const TemporaryFolder folder;
+  const auto scene = photographed(painted(), folder, {"lamp"});
+  InspectionRequest q = request("spread:6"), smooth = q;
+  q.settings.setFromText("detect.background", "lobe");
+  const Inspection all = inspect(scene, q);
+  const std::optional<Inspection> look = firstLook(scene, q, 5);
+  ASSERT_TRUE(look);
+  expectSame(*look, inspectOneFrame(scene, smooth, 5));
+  const Inspection one = inspectOneFrame(scene, q, 5, {}, &*look);
+  EXPECT_EQ(one.work.framesDetected, 0);
+  EXPECT_GT(one.work.framesContouredAgain, 0);
+  EXPECT_EQ(digestOf(inspect(scene, q, {}, &one)), digestOf(all));
+  EXPECT_EQ(digestOf(inspect(scene, q, {}, &*look)), digestOf(all));
+  EXPECT_FALSE(firstLook(scene, q, 5, {}, &one));
 }
 
 /// A person who stops does not wait for the lobe's fit.

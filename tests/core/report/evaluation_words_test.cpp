@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "core/report/diagnosis_report.h"
 #include "tests/core/inspect/exact_scene.h"
 
 namespace glint::evaluation_words_tests {
@@ -144,6 +145,26 @@ TEST(EvaluationWords, RemarksOfTheBestAreDoubts) {
   const std::string doubts = joined(evaluationWords(run, {}).doubts);
   EXPECT_THAT(doubts, HasSubstr("remark of dual"));
   EXPECT_THAT(doubts, Not(HasSubstr("remark of primal")));
+}
+
+LeftOutError errorOf(const std::vector<LeftOutError::View>& views) {
+  LeftOutError e;
+  e.views = views;
+  return e;
+}
+
+LeftOutError::View viewOff(double pct) { return {0, "light", true, pct, 10, pct < 100}; }
+
+/// Numbers have an arrow between them; words read as a sentence.
+TEST(DiagnosisWords, EffectOfARemedy) {
+  Remedy remedy;
+  remedy.before = errorOf({viewOff(20), viewOff(10)});
+  remedy.after = errorOf({viewOff(2), viewOff(1)});
+  EXPECT_EQ(effectText(remedy), "15 % -> 1.5 %");
+  remedy.before = errorOf({viewOff(100), viewOff(100)});
+  EXPECT_EQ(effectText(remedy), "no prediction before, 1.5 % after");
+  remedy.before = errorOf({});
+  EXPECT_EQ(effectText(remedy), "no view before, 1.5 % after");
 }
 
 }  // namespace glint::evaluation_words_tests
