@@ -258,8 +258,7 @@ PlotData semiAxesPlot(const Inspection& inspection) {
       p.y = axes(k);
       if (axes(k) > 0) values.push_back(axes(k));
       p.target.model = fits[i].model;
-      p.label =
-          fits[i].model + (severalLights ? ", " + lightName(fits[i].light) : std::string()) + formatted("\n%.6g m", axes(k));
+      p.label = fits[i].model + (severalLights ? ", " + lightName(fits[i].light) : "") + formatted("\n%.6g m", axes(k));
       if (sigma && std::isfinite((*sigma)(k))) {
         p.band = {{axes(k) - (*sigma)(k), axes(k) + (*sigma)(k)}};
         p.label += formatted(" \u00b1 %.2g m", (*sigma)(k));
