@@ -57,7 +57,8 @@ class PixelCost final : public ceres::CostFunction {
     const State at = stateOf(parameters, shape_);
     if (!(at.logRoughness < std::log(kNoHighlightRoughness)) || !(at.logRoughness > std::log(kMirrorRoughness))) return false;
     if (shape_ == lobe::LampShape::Segment && !(at.halfAxis.norm() > 0)) return false;
-    if (!goesOn() || !problem_.residualsAt(at, residuals)) return false;
+    if (!goesOn()) return nothingLeft(residuals, jacobians);
+    if (!problem_.residualsAt(at, residuals)) return false;
     if (!jacobians) return true;
     if (jacobians[0]) {
       const Eigen::Matrix<double, 4, 3> basis = across(at.light);
@@ -81,11 +82,18 @@ class PixelCost final : public ceres::CostFunction {
         moved.halfAxis(k) += axisStep(at);
         problem_.differences(moved, axisStep(at), jacobians[3] + k, 3);
       }
-    return !stopped_;
+    return stopped_ ? nothingLeft(residuals, jacobians) : true;
   }
   bool stopped() const { return stopped_; }
 
  private:
+  /// Ends the solver at once, without the error that it logs where an evaluation fails.
+  bool nothingLeft(double* residuals, double** jacobians) const {
+    std::fill_n(residuals, num_residuals(), 0.0);
+    for (std::size_t k = 0; jacobians && k < parameter_block_sizes().size(); ++k)
+      if (jacobians[k]) std::fill_n(jacobians[k], num_residuals() * parameter_block_sizes()[k], 0.0);
+    return true;
+  }
   bool goesOn() const {
     stopped_ = stopped_ || !report(progress_, {"fit", 0, 0});
     return !stopped_;

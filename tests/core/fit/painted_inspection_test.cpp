@@ -144,7 +144,7 @@ TEST(FirstLook, ShowsModelsWithoutPixelsAndLeavesTheRest) {
   InspectionRequest quick = q;
   quick.models = {"limit-angle"};
   EXPECT_FALSE(firstLook(scene, quick, 5, {}, &all));  // the lobe is there
-  quick.settings.setFromText("detect.min_contrast", "0.2");
+  quick.settings.setFromText("detect.min_contrast", "5");
   EXPECT_TRUE(firstLook(scene, quick, 5, {}, &all));  // it is one of other contours
   EXPECT_FALSE(with({"reflectance"}));
   EXPECT_FALSE(with(q.models, "fit.evidence", "contours"));
