@@ -26,6 +26,7 @@ SLIDERS = [("predict.directions", "prediction"), ("predict.walk_tolerance", "pre
            ("detect.level", "detection in every frame")]
 SEMI_AXES = [0.6, 0.35, 0.25]
 PRESETS = ["fast", "balanced"]
+TELLING = ["detect.background", "fit.evidence"]  # what else says how much a preset computes
 STANDSTILLS = {"opening": r"opening: .* at most (\d+) ms", "computing": r"computing: .* at most (\d+) ms",
                "first results": r"showing the first results: at most (\d+) ms", "another frame": r"another frame: at most (\d+) ms",
                "from *Stop* to the end of the run": r"stopped (?:while \w+ )?after (\d+) ms"}
@@ -79,10 +80,11 @@ def standstills(args, scratch):
 
 
 def measured(args, session, preset, scratch):
-    models = ", ".join(json.loads(session.read_text())["request"]["models"])
+    request = json.loads(session.read_text())["request"]
+    asked = ", ".join([*request["models"], *(f"`{key} = {request['settings'][key]}`" for key in TELLING)])
     result = json.loads(on_display([args.build / "bin/bench_inspector", session, args.events, *(f"slider:{name}" for name, _ in SLIDERS)],
                                    scratch).stdout)
-    lines = [f"Preset `{preset}` ({models}): from the start to the first photograph {result['first_photograph_ms']:.0f} ms, to the "
+    lines = [f"Preset `{preset}` ({asked}): from the start to the first photograph {result['first_photograph_ms']:.0f} ms, to the "
              f"first overlay {result['first_overlay_ms']:.0f} ms, to everything {result['everything_ms']:.0f} ms.", "",
              "| slider | recomputes | positions | first overlay: median ms | 95 % ms | most ms | every model: median ms | 95 % ms |",
              "|---|---|---|---|---|---|---|---|"]
