@@ -139,6 +139,7 @@ class ExplainTest : public QObject {
     emit window_->findChild<SceneViews*>()->picked(picked);
     QVERIFY((shown->lit() == viz::DualityPlane{view, 5}));
     QVERIFY(window_->findChild<SymbolLinks*>()->lit().planeShown());
+    QApplication::setActiveWindow(shown);  // there is no window manager
     QTRY_VERIFY(shown->isActiveWindow());
     QTest::keyClick(shown->canvas(), Qt::Key_K, Qt::ControlModifier);
     QTRY_VERIFY(window_->findChild<Palette*>("palette")->isVisible());
