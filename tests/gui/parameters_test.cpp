@@ -257,7 +257,8 @@ class ParametersTest : public QObject {
   const Inspection& inspected(const std::string& name, const InspectionRequest& request) {
     std::string key = name;
     for (const std::string& model : request.models) key += ' ' + model;
-    for (const auto& [setting, value] : request.settings.values()) key += ' ' + setting + '=' + valueText(value, paramSpec(setting)).toStdString();
+    for (const auto& [setting, value] : request.settings.values())
+      key += ' ' + setting + '=' + valueText(value, paramSpec(setting)).toStdString();
     auto it = inspections_.find(key);
     if (it == inspections_.end()) it = inspections_.emplace(key, inspect(scene(name), request)).first;
     return it->second;
