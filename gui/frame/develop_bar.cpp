@@ -92,7 +92,7 @@ QSlider* DevelopBar::addSlider(const char* option, const QString& title, const Q
   slider->setObjectName(QLatin1String(option));
   slider->setRange(low, high);
   slider->setPageStep(4);
-  slider->setFixedWidth(60);
+  slider->setFixedWidth(44);  // all tools of the bar on one line at the usual width of the view
   slider->setFocusPolicy(Qt::NoFocus);
   slider->setAccessibleName(title);
   slider->setToolTip(tip + tr("; double-click to reset"));
