@@ -33,9 +33,9 @@ def run(*command, **options):
     return done.stdout
 
 
-def packed(build, folder):
+def packed(build, folder, umask):
     environment = {key: value for key, value in os.environ.items() if key != "SOURCE_DATE_EPOCH"}
-    run("cpack", "--config", build / "CPackConfig.cmake", "-B", folder, env=environment)
+    run("cpack", "--config", build / "CPackConfig.cmake", "-B", folder, env=environment, preexec_fn=lambda: os.umask(umask))
     return sorted(folder.glob("*.deb"))
 
 
@@ -114,8 +114,8 @@ def main():
         HOLDS["glint-paraview"] = PARAVIEW
     folder = pathlib.Path(tempfile.mkdtemp(prefix="glint_packages_"))
     try:
-        packages = packed(options.build.resolve(), folder / "first")
-        again = packed(options.build.resolve(), folder / "second")
+        packages = packed(options.build.resolve(), folder / "first", 0o022)
+        again = packed(options.build.resolve(), folder / "second", 0o077)  # of a builder who keeps what he writes to himself
         if not set(HOLDS) <= {p.name.split("_")[0] for p in packages}:
             sys.exit(f"packages are missing: {[p.name for p in packages]}")
         for one, other in zip(packages, again, strict=True):
