@@ -8,6 +8,8 @@ root=$(dirname -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")")
 bin=${GLINT_BIN:-$root/build/release/bin}
 out=$root/docs/pictures
 mkdir -p "$out"
+started=$(mktemp)
+trap 'rm -f "$started"' EXIT
 
 inspector() {  # NAME SESSION FRAME THEME [MORE OPTIONS]
   QT_QPA_PLATFORM=xcb xvfb-run -a -s "-screen 0 1600x1000x24 -noreset" "$bin/glint-inspector" "$root/sessions/$2/${2##*/}.glint" --frame "$3" \
@@ -59,4 +61,7 @@ with Browser(1280, 920) as browser:
     browser.picture(sys.argv[2])' "$page/vase.html" "$out/share.png"
   rm -r "$page"
 fi
-if command -v mogrify > /dev/null; then mogrify -strip -colors 128 -define png:compression-level=9 "$out"/*.png; fi
+if command -v mogrify > /dev/null; then
+  # Other commands draw the other pictures of the folder.
+  find "$out" -name '*.png' -newer "$started" -exec mogrify -strip -colors 128 -define png:compression-level=9 {} +
+fi
