@@ -123,9 +123,12 @@ void TimelineStrip::paintErrors(QPainter& painter) {
   const auto write = [&](const QString& text, double middle) {
     painter.drawText(QRectF(0, middle - lineHeight() / 2, left, lineHeight()), Qt::AlignRight | Qt::AlignVCenter, text);
   };
-  write(texts[0], c.top());
-  if (c.height() > kTwoTexts * scale_) write(texts[1], c.bottom() + 1 - lineHeight() / 2);
-  if (texts.size() > 2 && c.height() > kThreeTexts * scale_) write(texts[2], c.center().y());
+  // Below the line where the word "missed" stands above it.
+  const bool named = missedRow().height() > 0 && chart().height() >= kRoomForName * scale_;
+  const double lower = named ? lineHeight() / 2 : 0;
+  write(texts[0], c.top() + lower);
+  if (c.height() > kTwoTexts * scale_ + lower) write(texts[1], c.bottom() + 1 - lineHeight() / 2);
+  if (texts.size() > 2 && c.height() > kThreeTexts * scale_ + lower) write(texts[2], c.center().y());
   painter.setClipRect(c.adjusted(0, -2, 0, 1));
   QColor excluded = toQColor(draw::kExcluded);
   excluded.setAlpha(70);

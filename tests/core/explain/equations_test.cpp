@@ -3,24 +3,19 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <set>
-#include <sstream>
+
+#include "tests/core/scene/scene_fixture.h"
 
 namespace glint::equations_tests {
 namespace {
 
-const std::filesystem::path kExplain = GLINT_SOURCE_DIR "/resources/explain";
+using testing_support::contentOf;
 
-std::string contentOf(const std::filesystem::path& path) {
-  std::ifstream file(path);
-  std::stringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
+const std::filesystem::path kExplain = GLINT_SOURCE_DIR "/resources/explain";
 
 const nlohmann::json& source() {
   static const nlohmann::json read = nlohmann::json::parse(contentOf(kExplain / "equations.json"));

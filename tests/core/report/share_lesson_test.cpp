@@ -3,27 +3,21 @@
 #include <gmock/gmock.h>
 
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <sstream>
 
 #include "core/report/share_parts.h"
+#include "tests/core/scene/scene_fixture.h"
 
 namespace glint::share_lesson_tests {
 namespace {
+
+using testing_support::contentOf;
 
 using Json = nlohmann::json;
 using testing::HasSubstr;
 
 const std::filesystem::path kExplain = GLINT_SOURCE_DIR "/resources/explain";
-
-std::string contentOf(const std::filesystem::path& path) {
-  std::ifstream file(path);
-  std::stringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
 
 Json fileOf(const char* name) { return Json::parse(contentOf(kExplain / name)); }
 
