@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/highlight/iso_contour.h"
 #include "core/reflectance/added_lobe.h"
 
 namespace glint {
@@ -19,9 +20,16 @@ constexpr double kNarrowest = 0.003, kWidest = 1.3;  // of m: a mirror, and what
 constexpr int kBits = 20;                            // of log m: a millionth
 constexpr double kToldApart = 9;                     // of chi squared: three standard deviations of one number
 
+/// Logarithm of S. Behind the horizon, and beyond 90 degrees from Phong's mirror direction, there is no light.
+double logOfLobe(Lobe lobe, double m, const LobePixel& p) {
+  const std::optional<LogRadiance> log = logRadiance(lobe, m, p.normal, p.toLight, p.toCamera);
+  return log ? log->total() - 2 * std::log(p.distance) : -std::numeric_limits<double>::infinity();
+}
+
 /// Equal-weight least squares of I = K S + b for one lobe and width.
 struct Line {
   double height = 0, offset = 0, rms = std::numeric_limits<double>::infinity();
+  double logMost = 0;          ///< logarithm of the greatest S, for which `height` is K S
   std::vector<double> values;  ///< S of each pixel over its greatest; empty where the lobe is not defined at a pixel
 };
 
@@ -30,12 +38,11 @@ Line lineFor(const std::vector<LobePixel>& pixels, Lobe lobe, double m) {
   std::vector<double> logs;
   double most = -std::numeric_limits<double>::infinity();
   for (const LobePixel& p : pixels) {
-    const std::optional<LogRadiance> log = logRadiance(lobe, m, p.normal, p.toLight, p.toCamera);
-    // Behind the horizon, and beyond 90 degrees from Phong's mirror direction, there is no light.
-    logs.push_back(log ? log->total() - 2 * std::log(p.distance) : -std::numeric_limits<double>::infinity());
+    logs.push_back(logOfLobe(lobe, m, p));
     most = std::max(most, logs.back());
   }
   if (!std::isfinite(most)) return line;
+  line.logMost = most;
   double s = 0, i = 0, ss = 0, si = 0;
   const double n = double(pixels.size());
   for (std::size_t k = 0; k < pixels.size(); ++k) {
@@ -81,6 +88,26 @@ Fitted fitted(const std::vector<LobePixel>& pixels, Lobe lobe) {
   if (!(result.line.height > 0))
     result.match.failure = Failure{Reason::NotConverged, "the radiance does not fall as the lobe does"};
   return result;
+}
+
+/// The runs of a closed contour between points that keep(point) refuses; the whole where it refuses none.
+template <typename Keep>
+void addRuns(const Polyline& closed, const Keep& keep, std::vector<Polyline>& runs) {
+  const std::size_t n = closed.points.size();
+  std::size_t start = 0;
+  while (start < n && keep(closed.points[start])) ++start;
+  if (start == n) return runs.push_back(closed);
+  Polyline run;
+  run.closed = false;
+  for (std::size_t i = 1; i <= n; ++i) {  // from behind a refused point to it
+    const Pixel& p = closed.points[(start + i) % n];
+    if (keep(p)) {
+      run.points.push_back(p);
+      continue;
+    }
+    if (run.points.size() > 1) runs.push_back(run);
+    run.points.clear();
+  }
 }
 
 /// The bin of every pixel; -1 where its bin has too few.
@@ -137,6 +164,7 @@ Outcome<LobeComparison> compareLobes(const LobeSamples& samples) {
     if (!one.match.failure) {
       one.match.rmsPct = 100 * one.line.rms / peak;
       one.match.offsetPct = 100 * one.line.offset / peak;
+      one.match.logUnit = one.line.logMost - std::log(one.line.height / peak);
       const double ratio = winner.rms > 0 ? one.line.rms / winner.rms : one.line.rms > 0 ? std::numeric_limits<double>::max() : 1;
       one.match.asGood = result.pixels * (ratio * ratio - 1) < kToldApart;
       one.match.profile.assign(result.measured.size(), 0);
@@ -148,6 +176,32 @@ Outcome<LobeComparison> compareLobes(const LobeSamples& samples) {
     result.matches.push_back(std::move(one.match));
   }
   return result;
+}
+
+std::vector<Polyline> lobeContours(const LobeGrid& grid, const LobeMatch& match, double level) {
+  require(level > 0 && grid.places.size() == std::size_t(grid.width) * std::size_t(grid.height),
+          "lobeContours: the level must be positive, the grid complete");
+  std::vector<Polyline> lines;
+  if (match.failure || grid.width < 2 || grid.height < 2) return lines;
+  Image share(grid.width, grid.height, 1);
+  const auto at = [&](int x, int y) -> const std::optional<LobePixel>& {
+    return grid.places[std::size_t(y) * std::size_t(grid.width) + std::size_t(x)];
+  };
+  for (int y = 0; y < grid.height; ++y)
+    for (int x = 0; x < grid.width; ++x)
+      if (const std::optional<LobePixel>& place = at(x, y))
+        share.at(x, y) = float(std::exp(logOfLobe(match.lobe, match.m, *place) - match.logUnit) + match.offsetPct / 100);
+  // Beside a cell that is none, the contour is the border of what is known, not of the highlight.
+  const auto known = [&](const Pixel& p) {
+    for (int y = int(std::floor(p.y())); y <= int(std::ceil(p.y())); ++y)
+      for (int x = int(std::floor(p.x())); x <= int(std::ceil(p.x())); ++x)
+        if (x < 0 || y < 0 || x >= grid.width || y >= grid.height || !at(x, y)) return false;
+    return true;
+  };
+  for (const IsoContour& contour : isoContours(share, level)) addRuns(contour.line, known, lines);
+  for (Polyline& line : lines)
+    for (Pixel& p : line.points) p = grid.first + grid.step * p;
+  return lines;
 }
 
 }  // namespace glint

@@ -111,15 +111,15 @@ Outcome<LobeSamples> lobeSamples(const Image& linear, const Image* mask, const H
   const Pixel middle = centroid(highlight.contour);
   const Eigen::Vector3d eye = camera.centreInWorld();
   double brightest = 0;
+  result.grid = {Pixel(x0, y0), step, (cut.width + step - 1) / step, (cut.height + step - 1) / step, {}};
+  result.grid.places.resize(std::size_t(result.grid.width) * std::size_t(result.grid.height));
   for (int y = 0; y < cut.height; y += step)
     for (int x = 0; x < cut.width; x += step) {
       if (!usable[std::size_t(y) * std::size_t(cut.width) + std::size_t(x)]) continue;
       const Pixel d = Pixel(x, y) - local.centre;
       if (d.dot(inverse * d) > options.reach * options.reach) continue;
-      if (options.clipValue > 0 && cut.at(x, y) >= options.clipValue) {
-        ++result.clipped;
-        continue;
-      }
+      const bool clipped = options.clipValue > 0 && cut.at(x, y) >= options.clipValue;
+      if (clipped) ++result.clipped;
       const double above = cut.at(x, y) - background.at(x, y);
       const Pixel stored(x0 + x, y0 + y);
       const Pixel ideal = camera.hasDistortion() ? camera.undistorted(stored) : stored;
@@ -135,7 +135,10 @@ Outcome<LobeSamples> lobeSamples(const Image& linear, const Image* mask, const H
       s.alpha = incidentAngle(p.normal, toLight, toCamera);
       if (!std::isfinite(s.alpha) || !std::isfinite(above)) continue;
       const double distance = light.atInfinity() ? 1 : (light.position() - p.position).norm();
-      result.pixels.push_back({s.alpha, above, p.normal, toLight, toCamera, distance});
+      const LobePixel place{s.alpha, above, p.normal, toLight, toCamera, distance};
+      result.grid.places[std::size_t(y / step) * std::size_t(result.grid.width) + std::size_t(x / step)] = place;
+      if (clipped) continue;
+      result.pixels.push_back(place);
       if (!(above > 0)) continue;
       s.logI = std::log(above);
       s.direction = std::atan2(ideal.y() - middle.y(), ideal.x() - middle.x());

@@ -39,13 +39,21 @@ struct LobePixel {
   double distance = 1;                        ///< m, to the light; 1 for one at infinity
 };
 
+/// The lit surface around a highlight on a grid of stored pixels, clipped ones among them: where a lobe can be drawn.
+struct LobeGrid {
+  Pixel first{0, 0};                             ///< stored px of cell (0, 0)
+  int step = 1, width = 0, height = 0;           ///< px between cells; cells
+  std::vector<std::optional<LobePixel>> places;  ///< row by row; none off the lit surface and beyond the reach
+};
+
 struct LobeSamples {
   std::vector<LobePixel> pixels;  ///< also what lies at or below the background
   std::vector<LobeSample> samples;
   std::optional<LobeFit> fit;
   std::optional<Failure> fitFailure;  ///< TooFewPoints; NotConverged when the radiance does not fall with alpha
-  double background = 0;              ///< at the peak, what was taken off
-  int clipped = 0;                    ///< pixels left out because they are saturated
+  LobeGrid grid;
+  double background = 0;  ///< at the peak, what was taken off
+  int clipped = 0;        ///< pixels left out because they are saturated
 };
 
 struct LobeOptions {

@@ -9,6 +9,8 @@
 #include "core/base/error_text.h"
 #include "core/base/number_text.h"
 #include "core/draw/frame_details.h"
+#include "core/draw/lobe_overlay.h"
+#include "core/draw/plots.h"
 #include "core/draw/unmatched.h"
 #include "core/scene/scene_files.h"
 
@@ -87,6 +89,8 @@ class FrameLayers {
     addObservedCanonical();
     if (shown_(OverlayRole::LimitDirections)) addLimitDirections(inspection_, frame_, drawn_, selected_, overlay_.lines);
     for (const std::string& model : modelsInOrder(inspection_, options_.models)) addModel(model);
+    if (options_.samples && options_.samples->frame == frame_ && shown_(OverlayRole::Lobes))
+      addLobes(*options_.samples, selected_ ? selected_->highlight : -1, overlay_);
     raiseSelected();
     if (selected_ && selected_->direction && shown_(OverlayRole::SelectedPoint))
       addSelectedPoint(inspection_, *selected_, shown_, drawn_, overlay_.marks);
@@ -357,6 +361,10 @@ const std::vector<OverlayLayer>& overlayLayers() {
        "Arrows from the observed to the predicted contour, every 10 degrees", false},
       {OverlayRole::LimitDirections, "frame/directions", "Directions",
        "Walks from the brightest point: to the limit angle on the surface; dotted: on to the same angle on the tangent plane",
+       false},
+      {OverlayRole::Lobes, "frame/lobes", "Lobes",
+       "The selected highlight under every lobe: where each has the contour level of the peak, and in thin lines 0.3 of it. "
+       "Colours as in the plot Every lobe",
        false}};
   return layers;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -29,8 +30,11 @@ enum class OverlayRole {
   ResidualArrows,
   SelectedPoint,
   Unmatched,
-  EpipolarLine
+  EpipolarLine,
+  Lobes
 };
+
+struct FrameSamples;
 
 /// What can be shown and hidden in the frame view, in the order of its legend.
 struct OverlayLayer {
@@ -91,13 +95,14 @@ struct FrameOverlay {
 };
 
 struct OverlayOptions {
-  std::set<std::string> models;          ///< models to draw; empty = all
-  std::set<std::string> hiddenModels;    ///< of these only the caption
-  std::set<OverlayRole> hidden;          ///< roles left out
-  int ellipseSegments = 96;              ///< samples per ellipse, >= 8
-  bool colourByRole = false;             ///< predictions in the colour of the frame's role instead of the model's
-  double residualScale = 1;              ///< residual arrows are drawn so many times their length
-  std::optional<Selection> selection{};  ///< drawn thicker, its contour point marked, when it is of this frame
+  std::set<std::string> models;                   ///< models to draw; empty = all
+  std::set<std::string> hiddenModels;             ///< of these only the caption
+  std::set<OverlayRole> hidden;                   ///< roles left out
+  int ellipseSegments = 96;                       ///< samples per ellipse, >= 8
+  bool colourByRole = false;                      ///< predictions in the colour of the frame's role instead of the model's
+  double residualScale = 1;                       ///< residual arrows are drawn so many times their length
+  std::optional<Selection> selection{};           ///< drawn thicker, its contour point marked, when it is of this frame
+  std::shared_ptr<const FrameSamples> samples{};  ///< of the layer of lobes, which is empty without them; ignored in other frames
 };
 
 /// Overlay of one frame: observed contours (white with halo), their least-squares ellipses (thin, dashed) and peaks

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "core/base/angle.h"
 #include "core/base/number_text.h"
+#include "core/draw/lobe_style.h"
 #include "core/draw/plot_text.h"
 #include "core/draw/plots.h"
 
@@ -12,16 +12,6 @@ namespace glint::draw {
 namespace {
 
 constexpr double kFloor = 2e-3;  // of the peak: below, 8 bits show nothing
-
-/// Of the lobes in their order; no model's, and told apart by their dashes as well.
-struct LobeStyle {
-  Colour colour;
-  Dash dash;
-};
-constexpr std::array<LobeStyle, 4> kLobeStyles{{{{0.55, 0.42, 0.85}, Dash::Dotted},
-                                                {{0.80, 0.55, 0.10}, Dash::Dashed},
-                                                {{0.25, 0.56, 0.86}, Dash::Solid},
-                                                {{0.20, 0.62, 0.35}, Dash::Solid}}};
 
 PlotSeries measuredSeries(const LobeComparison& comparison) {
   PlotSeries measured;
@@ -42,16 +32,13 @@ PlotSeries measuredSeries(const LobeComparison& comparison) {
   return measured;
 }
 
-PlotSeries curveOf(const LobeMatch& match, const LobeComparison& comparison, const LobeStyle& style, bool best) {
+PlotSeries curveOf(const LobeComparison& comparison, std::size_t place) {
+  const LobeMatch& match = comparison.matches[place];
   PlotSeries curve;
-  curve.name = std::string(nameOf(match.lobe)) +
-               (match.failure ? ": " + match.failure->message()
-                              : formatted(", m = %.4g, rms %.2g %%", match.m, match.rmsPct) + (best           ? ", best"
-                                                                                               : match.asGood ? ", as good"
-                                                                                                              : ""));
-  curve.colour = style.colour;
-  curve.dash = style.dash;
-  curve.width = best ? 2.2 : 1.5;
+  curve.name = lobeText(comparison, place);
+  curve.colour = lobeStyle(place).colour;
+  curve.dash = lobeStyle(place).dash;
+  curve.width = int(place) == comparison.best ? 2.2 : 1.5;
   for (std::size_t i = 0; i < match.profile.size(); ++i) {
     PlotPoint p;
     p.x = degrees(comparison.measured[i].alpha);
@@ -63,6 +50,14 @@ PlotSeries curveOf(const LobeMatch& match, const LobeComparison& comparison, con
 }
 
 }  // namespace
+
+std::string lobeText(const LobeComparison& comparison, std::size_t place) {
+  const LobeMatch& match = comparison.matches[place];
+  const std::string name(nameOf(match.lobe));
+  if (match.failure) return name + ": " + match.failure->message();
+  const char* const rank = int(place) == comparison.best ? ", best" : match.asGood ? ", as good" : "";
+  return name + formatted(", m = %.4g, rms %.2g %%%s", match.m, match.rmsPct, rank);
+}
 
 PlotData lobesPlot(const FrameSamples& samples, int highlight) {
   PlotData plot;
@@ -82,10 +77,7 @@ PlotData lobesPlot(const FrameSamples& samples, int highlight) {
   plot.y.log = true;
   plot.y.floor = kFloor;
   plot.series.push_back(measuredSeries(comparison));  // below the curves, which it would hide
-  std::size_t style = 0;
-  for (std::size_t k = 0; k < comparison.matches.size(); ++k, ++style)
-    plot.series.push_back(
-        curveOf(comparison.matches[k], comparison, kLobeStyles[style % kLobeStyles.size()], int(k) == comparison.best));
+  for (std::size_t k = 0; k < comparison.matches.size(); ++k) plot.series.push_back(curveOf(comparison, k));
   if (lobe->level > 0 && lobe->level < 1 && !comparison.measured.empty()) {
     PlotSeries level;
     level.name = formatted("level %.3g", lobe->level);

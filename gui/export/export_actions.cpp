@@ -99,19 +99,19 @@ void ExportActions::addActions(Actions& actions, QMenu* menu) {
       };
     });
   };
-  actions.add("export.frame", menu, tr("&Frame with errors…"), [=, this] {
+  actions.add("export.frame", menu, tr("&Frame with errors…"), [=] {
     picture(tr("Frame as picture"), QStringLiteral("frame.png"),
             [](const Inspection& i, int frame, const viz::PictureOptions& o) {
               return viz::framePicture(i, frame, photographOf(i, frame), kFigureWidth, kFigureHeight, o);
             });
   });
-  actions.add("export.ladder", menu, tr("Model &ladder…"), [=, this] {
+  actions.add("export.ladder", menu, tr("Model &ladder…"), [=] {
     picture(tr("Model ladder as picture"), QStringLiteral("ladder.png"),
             [](const Inspection& i, int frame, const viz::PictureOptions& o) {
               return viz::ladderPicture(i, frame, photographOf(i, frame), kFigureWidth, kFigureHeight, o);
             });
   });
-  actions.add("export.plots", menu, tr("Error &plot…"), [=, this] {
+  actions.add("export.plots", menu, tr("Error &plot…"), [=] {
     picture(tr("Error plot"), QStringLiteral("errors.png"), [](const Inspection& i, int, const viz::PictureOptions& o) {
       return viz::plotsPicture(i, kFigureWidth, kFigureHeight, o);
     });

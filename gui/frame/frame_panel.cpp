@@ -13,7 +13,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/base/error_text.h"
 #include "core/draw/unmatched.h"
 #include "core/geometry/polyline.h"
 #include "core/scene/scene_files.h"
@@ -25,8 +24,10 @@
 #include "gui/document/frame_roles.h"
 #include "gui/frame/develop_bar.h"
 #include "gui/frame/frame_canvas.h"
+#include "gui/frame/frame_captions.h"
 #include "gui/frame/hand_tool.h"
 #include "gui/frame/highlight_edits.h"
+#include "gui/frame/lobe_layer.h"
 #include "gui/frame/pair_bar.h"
 #include "gui/frame/retexture_bar.h"
 #include "viz/frame_pick.h"
@@ -35,7 +36,6 @@
 namespace glint::gui {
 
 namespace {
-const char* const kModelLayer = "frame/model/";
 // px of height: below, the switches of the overlays are behind one button, so that the photograph keeps its room.
 constexpr int kRoomForOverlays = 440, kRoomBesidePair = 560;
 }  // namespace
@@ -97,6 +97,8 @@ FramePanel::FramePanel(Document& document, QWidget* parent) : QWidget(parent), d
     emit photographFailed(frame, reason);
     if (frame == pair_->secondFrame()) second_->setMessage(problemText(frame, reason)), pictured_[1] = -1;
   });
+  lobes_ = new LobeLayer(document_, this);
+  connect(lobes_, &LobeLayer::changed, &refresh_, QOverload<>::of(&QTimer::start));
   connectDocument();
   showScene();
 }
@@ -274,7 +276,7 @@ QString FramePanel::problemText(int frame, const QString& reason) const {
 }
 
 bool FramePanel::busy() const {
-  return refresh_.isActive() || loader_.busy() || secondLoader_.busy() || retexture_->busy() || edits_->busy();
+  return refresh_.isActive() || loader_.busy() || secondLoader_.busy() || retexture_->busy() || edits_->busy() || lobes_->busy();
 }
 
 void FramePanel::showScene() {
@@ -347,6 +349,7 @@ draw::OverlayOptions FramePanel::overlayOptions() const {
   options.colourByRole = document_.option("frame/colour-by", std::string("model")) == "role";
   options.residualScale = std::clamp(document_.option("frame/residual-scale", 1.0), 1.0, 1000.0);
   options.selection = document_.selection();
+  options.samples = lobes_->samples();
   return options;
 }
 
@@ -391,69 +394,18 @@ void FramePanel::showOverlay() {
 }
 
 void FramePanel::showCaptions(const draw::FrameOverlay& overlay) {
-  const QString faded = palette().color(QPalette::PlaceholderText).name(), warning = warningColour().name();
-  const QString plain = palette().color(QPalette::Text).name();
-  const auto cell = [](const QString& text, const char* align = "right") {
-    return QStringLiteral("<td align='%1' style='padding-right:16px; white-space:nowrap'>%2</td>")
-        .arg(QLatin1String(align), text);
-  };
-  const auto error = [&](const std::optional<double>& value) {
-    return cell(value ? toQString(errorText(*value)) : QStringLiteral("–"));
-  };
-  const auto share = [&](const std::optional<double>& value) {
-    return cell(value ? QString::number(*value, 'f', 3) : QStringLiteral("–"));
-  };
-  const auto link = [](const QString& target, const QString& colour, const QString& text) {
-    return QStringLiteral("<a href='%1' style='color:%2; text-decoration:none'>%3</a>").arg(target, colour, text);
-  };
-  QString rows, reasons;
-  QStringList notes;
-  for (const draw::OverlayCaption& c : overlay.captions) {
-    if (c.model.empty()) {
-      notes << toQString(c.text).toHtmlEscaped();
-      continue;
-    }
-    QStringList said;
-    if (const QString reason = toQString(c.score.reason); !reason.isEmpty()) {
-      // A sentence would wrap in its narrow column and push the next models out of sight: it stands below them.
-      said << reason.section(QStringLiteral(": "), 0, 0);
-      if (reason.contains(QStringLiteral(": ")))
-        reasons += QStringLiteral("<div style='color:%1'>%2</div>")
-                       .arg(warning, (toQString(c.model) + QStringLiteral(": ") + reason).toHtmlEscaped());
-    }
-    if (c.score.missed > 0 && c.score.reason.empty()) said << tr("%1 missed").arg(c.score.missed);
-    if (c.score.spurious > 0) said << tr("%1 spurious").arg(c.score.spurious);
-    const bool any = c.score.matched > 0, selected = document_.selection().model == c.model;
-    const QString model = toQString(c.model).toHtmlEscaped();
-    const bool shown = document_.layerVisible(kModelLayer + c.model);
-    rows +=
-        QStringLiteral("<tr>") +
-        cell(link(QStringLiteral("show:") + model, toQColor(c.colour).name(), shown ? QStringLiteral("■") : QStringLiteral("□")) +
-                 QStringLiteral("&nbsp;") +
-                 link(QStringLiteral("select:") + model, shown ? plain : faded,
-                      selected ? QStringLiteral("<b>%1</b>").arg(model) : model),
-             "left") +
-        error(c.score.errorPct) + error(c.score.errorPx) + share(any ? c.score.iou : std::nullopt) +
-        QStringLiteral("<td style='color:%1; white-space:nowrap'>%2</td></tr>")
-            .arg(warning, said.join(QStringLiteral(", ")).toHtmlEscaped());
-  }
-  QString html;
-  for (const QString& note : notes) html += QStringLiteral("<div style='color:%1'>%2</div>").arg(warning, note);
-  if (!rows.isEmpty())
-    html += QStringLiteral("<table cellspacing='0' cellpadding='0'><tr style='color:%1'>").arg(faded) +
-            cell(tr("this frame"), "left") + cell(tr("error %")) + cell(tr("px")) + cell(tr("IoU")) +
-            QStringLiteral("<td></td></tr>") + rows + QStringLiteral("</table>") + reasons;
+  const FrameCaptions captions = frameCaptions(document_, overlay, palette());
   // A reason that has gone leaves no empty lines behind.
-  const bool noLonger = failureShown_ && reasons.isEmpty();
+  const bool noLonger = failureShown_ && !captions.failure;
   if (overlay.captions.size() != captionCount_ || noLonger || fewerLines_) captions_->setMinimumHeight(0);
   if (!document_.stale()) fewerLines_ = false;  // until then these are still the lines of the what-if
   captionCount_ = overlay.captions.size();
-  failureShown_ = !reasons.isEmpty();
-  captions_->setText(html);
+  failureShown_ = captions.failure;
+  captions_->setText(captions.html);
   // It may grow but not shrink: the pictures above it would jump with every result.
   if (captions_->isVisible())  // else its width is not yet what it will be
     captions_->setMinimumHeight(std::max(captions_->minimumHeight(), captions_->heightForWidth(captions_->width())));
-  captions_->setVisible(!html.isEmpty());
+  captions_->setVisible(!captions.html.isEmpty());
 }
 
 void FramePanel::followLink(const QString& target) {

@@ -30,6 +30,7 @@ class DevelopBar;
 class FrameCanvas;
 class HandTool;
 class HighlightEdits;
+class LobeLayer;
 class PairBar;
 class PanelScroll;
 class RetextureBar;
@@ -93,6 +94,7 @@ class FramePanel : public QWidget {
   FrameCanvas *canvas_, *second_;
   HandTool* hand_;
   HighlightEdits* edits_;
+  LobeLayer* lobes_;
   DevelopBar* develop_;
   PairBar* pair_;
   QLabel *title_, *role_, *zoom_, *captions_;

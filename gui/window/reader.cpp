@@ -91,7 +91,7 @@ Reader::Reader(QWidget* parent) : QDialog(parent), pages_(new QComboBox), search
   connect(text_, &QTextBrowser::anchorClicked, this, &Reader::follow);
 }
 
-void Reader::open(const QString& page, const QString& place) {
+void Reader::openPage(const QString& page, const QString& place) {
   show(page, place);
   QDialog::show();
   raise();

@@ -22,7 +22,7 @@ class Reader : public QDialog {
   /// @param page   "manual", "method", "notation" or "glossary"; another one leaves the page as it is.
   /// @param place  of the method: a section's number ("8a"); of the glossary: a word; of the others: how a heading begins. "" or what is
   ///               not there = the beginning.
-  void open(const QString& page, const QString& place = {});
+  void openPage(const QString& page, const QString& place = {});
 
  private:
   void show(const QString& page, const QString& place);

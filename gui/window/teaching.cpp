@@ -87,7 +87,7 @@ void Teaching::putBack() {
 
 void Teaching::read(const QString& page, const QString& place) {
   if (!reader_) reader_ = new Reader(parts_.window);
-  reader_->open(page, place);
+  reader_->openPage(page, place);
 }
 
 void Teaching::addActions(Actions& actions, QMenu* help, QMenu* view) {

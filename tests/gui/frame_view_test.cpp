@@ -9,6 +9,8 @@
 #include <QTextDocument>
 #include <QToolButton>
 
+#include "core/draw/plots.h"
+#include "core/inspect/inspect.h"
 #include "gui/frame/frame_canvas.h"
 #include "gui/frame/frame_panel.h"
 #include "gui/frame/hand_tool.h"
@@ -95,6 +97,36 @@ class FrameViewTest : public QObject {
     document_->selectFrame(9);
     settle();
     QVERIFY((canvas->centre() - moved).norm() < 1e-9);
+  }
+
+  /// The pixels of a session under every lobe: drawn and named, of the frame that is shown, and gone with their layer.
+  void everyLobeOverThePhotograph() {
+    Opened opened = coreEngine().open(GLINT_SOURCE_DIR "/sessions/plane/plane.glint", {});
+    opened.request.models = {"canonical"};
+    document_->open(opened);
+    document_->setInspection(std::make_shared<const Inspection>(inspect(opened.scene, opened.request)), opened.request);
+    document_->selectFrame(3);
+    settle();
+    frame_->goToHighlight();
+    const auto* captions = frame_->findChild<QLabel*>(QStringLiteral("frameCaptions"));
+    const QImage without = frame_->canvas()->grab().toImage();
+    QVERIFY(!frame_->overlayOptions().samples && !captions->text().contains(QStringLiteral("ggx, m =")));
+    auto* toggle = frame_->findChild<QToolButton*>(QStringLiteral("frame/lobes"));
+    QTest::mouseClick(toggle, Qt::LeftButton);
+    settle();
+    QTRY_VERIFY(frame_->overlayOptions().samples);
+    QCOMPARE(frame_->overlayOptions().samples->frame, 3);
+    for (const char* lobe : {"phong, m =", "blinn-phong, m =", "torrance-sparrow, m =", "ggx, m ="})
+      QTRY_VERIFY2(captions->text().contains(QLatin1String(lobe)), lobe);
+    settle();
+    QVERIFY(frame_->canvas()->grab().toImage() != without);
+    document_->selectFrame(5);
+    QVERIFY(!frame_->overlayOptions().samples);  // rather none than another frame's
+    QTRY_VERIFY(frame_->overlayOptions().samples);
+    QCOMPARE(frame_->overlayOptions().samples->frame, 5);
+    QTest::mouseClick(toggle, Qt::LeftButton);
+    settle();
+    QVERIFY(!frame_->overlayOptions().samples && !captions->text().contains(QStringLiteral("ggx, m =")));
   }
 
   /// In a low panel one button holds the switches of the overlays; the photograph keeps its room.

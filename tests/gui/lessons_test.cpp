@@ -184,14 +184,14 @@ class LessonsTest : public QObject {
     for (const ExplainText& step : explainTexts().steps)  // every section that is named is there
       for (const QString& part : step.section.split(' '))
         if (bool number = false; part.toInt(&number), number) {
-          reader->open("method", part);
+          reader->openPage("method", part);
           QVERIFY2(page->textCursor().block().text().startsWith(part + '.'), qPrintable(step.section));
         }
-    reader->open("glossary", "limit angle");
+    reader->openPage("glossary", "limit angle");
     for (const GlossaryWord& word : glossary()) QVERIFY2(page->toPlainText().contains(word.text), qPrintable(word.word));
-    reader->open("manual");
+    reader->openPage("manual");
     QVERIFY(page->toPlainText().contains("What-if") && !page->toPlainText().contains("<!--"));
-    reader->open("notation");
+    reader->openPage("notation");
     QVERIFY(page->toPlainText().contains("virtual camera"));
     reader->close();
   }

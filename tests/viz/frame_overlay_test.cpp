@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
+#include "core/draw/plots.h"
 #include "core/model/palette.h"
 #include "tests/tolerances.h"
 #include "tests/viz/small_inspection.h"
@@ -41,6 +43,71 @@ TEST(FrameOverlay, ContoursAndPeaksLieExactlyWhereTheInspectionHasThem) {
   ASSERT_FALSE(overlay.marks.empty());
   EXPECT_EQ(overlay.marks[0].role, OverlayRole::ObservedPeak);
   EXPECT_EQ(overlay.marks[0].at, observed.peak);
+}
+
+/// A highlight of Blinn-Phong's lobe, written out here: the camera above a plane, the light turned by 0.025 rad per pixel about it.
+std::shared_ptr<FrameSamples> blinnPhongSamples(int frame, double m) {
+  auto samples = std::make_shared<FrameSamples>();
+  samples->frame = frame;
+  FrameSamples::Lobe lobe;
+  lobe.observed = 0;
+  lobe.level = 0.5;
+  LobeSamples s;
+  s.grid = {Pixel(20, 30), 1, 41, 41, std::vector<std::optional<LobePixel>>(41 * 41)};
+  for (int y = 0; y < 41; ++y)
+    for (int x = 0; x < 41; ++x) {
+      const Eigen::Vector2d turn = 0.025 * Eigen::Vector2d(x - 20, y - 20);
+      LobePixel p;
+      p.alpha = turn.norm() / 2;
+      p.normal = p.toCamera = Eigen::Vector3d::UnitZ();
+      p.toLight << (turn.norm() > 0 ? (std::sin(turn.norm()) * turn.normalized()).eval() : turn), std::cos(turn.norm());
+      p.radiance = std::pow(std::cos(p.alpha), 2 / (m * m));
+      s.pixels.push_back(p);
+      s.grid.places[std::size_t(41 * y + x)] = p;
+    }
+  lobe.comparison = *compareLobes(s);
+  lobe.samples = s;
+  samples->lobes = {lobe};
+  return samples;
+}
+
+TEST(FrameOverlay, EveryLobeHasItsContoursAndItsCaption) {
+  constexpr double kRoughness = 0.1, kLinearPx = 0.05;  // linear between pixels
+  const TemporaryFolder folder;
+  const auto inspection = smallInspection(folder.path());
+  OverlayOptions options;
+  EXPECT_TRUE(ofRole(frameOverlay(*inspection, 2, options), OverlayRole::Lobes).empty());
+  options.samples = blinnPhongSamples(2, kRoughness);
+  EXPECT_TRUE(ofRole(frameOverlay(*inspection, 1, options), OverlayRole::Lobes).empty()) << "samples of another frame";
+  const FrameOverlay overlay = frameOverlay(*inspection, 2, options);
+  const auto lines = ofRole(overlay, OverlayRole::Lobes);
+  ASSERT_EQ(lines.size(), 8u);  // four lobes at two levels
+  int own = 0;
+  for (const OverlayLine& line : lines) {
+    EXPECT_TRUE(line.closed);
+    if (line.label.rfind("blinn-phong", 0) != 0) continue;
+    const double level = own++ == 0 ? 0.5 : 0.15;
+    // cos^(2 / m^2) alpha = level, and alpha is half of the 0.025 rad a pixel.
+    const double radius = std::acos(std::pow(level, kRoughness * kRoughness / 2)) / 0.0125;
+    for (const Pixel& p : line.points) EXPECT_NEAR((p - Pixel(40, 50)).norm(), radius, kLinearPx);
+    EXPECT_NE(line.label.find("best"), std::string::npos) << line.label;
+  }
+  EXPECT_EQ(own, 2);
+  int captions = 0;
+  for (const OverlayCaption& c : overlay.captions) captions += c.model.empty() && !c.problem;
+  EXPECT_EQ(captions, 4);
+  options.hidden.insert(OverlayRole::Lobes);
+  EXPECT_TRUE(ofRole(frameOverlay(*inspection, 2, options), OverlayRole::Lobes).empty());
+
+  auto none = std::make_shared<FrameSamples>();
+  none->frame = 2;
+  none->failure = "Frame 0002 shows no highlight.";
+  options.hidden.clear();
+  options.samples = none;
+  const auto said = frameOverlay(*inspection, 2, options).captions;
+  EXPECT_TRUE(std::any_of(said.begin(), said.end(), [](const OverlayCaption& c) {
+    return c.problem && c.text == "every lobe: Frame 0002 shows no highlight.";
+  }));
 }
 
 TEST(FrameOverlay, EllipsesAreSampledOnTheirCurve) {

@@ -107,6 +107,19 @@ TEST(SharedCauses, ThingsThatAreThereOrNot) {
   EXPECT_NEAR(causes[0].chance, 1.0 / 53130, 1e-12);  // 1 / C(25, 5)
 }
 
+/// Ten wrong ones that all are cut by the border, and sixty right ones: the chance is below 1e-6 with six of them and with seven.
+TEST(SharedCauses, WhatMoreThanATenthOfTheOthersHaveTooIsNotSaid) {
+  for (const int others : {6, 7}) {
+    Inspection in = sequence(70);
+    std::vector<HighlightRow> rows;
+    for (int i = 0; i < 70; ++i) {
+      rows.push_back(row(i, i < 10, std::nan("")));
+      in.evidence[std::size_t(i)].highlights[0].touchesBorder = i < 10 + others;
+    }
+    EXPECT_EQ(sharedCauses(in, rows, "dual").size(), others == 6 ? 1u : 0u) << others;
+  }
+}
+
 /// Numbers that have nothing to do with what is wrong seldom look as if they had.
 TEST(SharedCauses, ChanceSeldomLooksLikeACause) {
   std::mt19937 random(7);

@@ -123,6 +123,57 @@ TEST(LobeComparison, SaysWhatTheNoiseHides) {
     }
 }
 
+/// The pixels of pixels() as a grid: 29 x 29 cells, 2 px apart.
+LobeGrid gridOf(const std::vector<LobePixel>& of) {
+  LobeGrid grid{Pixel(100, 50), 2, 29, 29, {}};
+  grid.places.resize(29 * 29);
+  std::size_t next = 0;
+  for (int i = -14; i <= 14; ++i)
+    for (int j = -14; j <= 14; ++j)
+      if (i * i + j * j <= 14 * 14) grid.places[std::size_t((j + 14) * 29 + i + 14)] = of[next++];
+  return grid;
+}
+
+TEST(LobeComparison, ItsContoursLieWhereTheRadianceHasTheLevel) {
+  constexpr double kLevel = 0.5;
+  constexpr double kLinearPct = 3;  // of the peak: linear between cells, across which the radiance falls by up to a fifth of it
+  for (const Lobe lobe : kAll) {
+    const std::vector<LobePixel> of = pixels(lobe, kTypical);
+    const LobeComparison c = compared(of);
+    const LobeGrid grid = gridOf(of);
+    const std::vector<Polyline> lines = lobeContours(grid, matchOf(c, lobe), kLevel);
+    ASSERT_EQ(lines.size(), 1u) << nameOf(lobe);
+    EXPECT_TRUE(lines[0].closed);
+    for (const Pixel& p : lines[0].points) {
+      // Stored pixels, back to cells; the radiance written out above, linear between the two cells that the point lies between.
+      const Eigen::Vector2d cell = (p - grid.first) / grid.step;
+      const int x0 = int(std::floor(cell.x())), y0 = int(std::floor(cell.y()));
+      const int x1 = int(std::ceil(cell.x())), y1 = int(std::ceil(cell.y()));
+      const auto radiance = [&](int x, int y) { return grid.places.at(std::size_t(y * 29 + x)).value().radiance / kHeight; };
+      const double t = (cell - Eigen::Vector2d(x0, y0)).sum();
+      EXPECT_NEAR((1 - t) * radiance(x0, y0) + t * radiance(x1, y1), kLevel, kLinearPct / 100) << nameOf(lobe);
+    }
+  }
+}
+
+TEST(LobeComparison, ItsContoursEndWhereTheSamplesDo) {
+  const std::vector<LobePixel> of = pixels(Lobe::Ggx, kTypical);
+  const LobeComparison c = compared(of);
+  const LobeMatch& ggx = matchOf(c, Lobe::Ggx);
+  LobeGrid grid = gridOf(of);
+  for (int y = 0; y < 29; ++y)
+    for (int x = 0; x <= 14; ++x) grid.places[std::size_t(y * 29 + x)].reset();  // half of the highlight lies beside the surface
+  const std::vector<Polyline> lines = lobeContours(grid, ggx, 0.5);
+  ASSERT_EQ(lines.size(), 1u);
+  EXPECT_FALSE(lines[0].closed);
+  for (const Pixel& p : lines[0].points) EXPECT_GE(p.x(), grid.first.x() + 15 * grid.step);
+  EXPECT_TRUE(lobeContours(grid, ggx, 2).empty());  // above the peak
+  LobeMatch failed = ggx;
+  failed.failure = Failure{Reason::NotConverged, ""};
+  EXPECT_TRUE(lobeContours(grid, failed, 0.5).empty());
+  EXPECT_TRUE(lobeContours({}, ggx, 0.5).empty());
+}
+
 TEST(LobeComparison, SaysWhyThereIsNone) {
   LobeSamples few;
   few.pixels = pixels(Lobe::Ggx, kTypical);

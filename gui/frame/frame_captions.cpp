@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gui/frame/frame_captions.h"
+
+#include <QColor>
+#include <QObject>
+#include <QStringList>
+
+#include "core/base/error_text.h"
+#include "gui/base/text.h"
+#include "gui/base/theme.h"
+
+namespace glint::gui {
+
+FrameCaptions frameCaptions(const Document& document, const draw::FrameOverlay& overlay, const QPalette& palette) {
+  const QString faded = palette.color(QPalette::PlaceholderText).name(), warning = warningColour().name();
+  const QString plain = palette.color(QPalette::Text).name();
+  const auto cell = [](const QString& text, const char* align = "right") {
+    return QStringLiteral("<td align='%1' style='padding-right:16px; white-space:nowrap'>%2</td>")
+        .arg(QLatin1String(align), text);
+  };
+  const auto error = [&](const std::optional<double>& value) {
+    return cell(value ? toQString(errorText(*value)) : QStringLiteral("–"));
+  };
+  const auto share = [&](const std::optional<double>& value) {
+    return cell(value ? QString::number(*value, 'f', 3) : QStringLiteral("–"));
+  };
+  const auto link = [](const QString& target, const QString& colour, const QString& text) {
+    return QStringLiteral("<a href='%1' style='color:%2; text-decoration:none'>%3</a>").arg(target, colour, text);
+  };
+  QString rows, reasons;
+  QString problems, lobes;
+  for (const draw::OverlayCaption& c : overlay.captions) {
+    if (c.model.empty()) {
+      const QString text = toQString(c.text).toHtmlEscaped();
+      if (c.problem)
+        problems += QStringLiteral("<div style='color:%1'>%2</div>").arg(warning, text);
+      else
+        lobes += QStringLiteral("<div><span style='color:%1'>■</span>&nbsp;%2</div>").arg(toQColor(c.colour).name(), text);
+      continue;
+    }
+    QStringList said;
+    if (const QString reason = toQString(c.score.reason); !reason.isEmpty()) {
+      // A sentence would wrap in its narrow column and push the next models out of sight: it stands below them.
+      said << reason.section(QStringLiteral(": "), 0, 0);
+      if (reason.contains(QStringLiteral(": ")))
+        reasons += QStringLiteral("<div style='color:%1'>%2</div>")
+                       .arg(warning, (toQString(c.model) + QStringLiteral(": ") + reason).toHtmlEscaped());
+    }
+    if (c.score.missed > 0 && c.score.reason.empty()) said << QObject::tr("%1 missed").arg(c.score.missed);
+    if (c.score.spurious > 0) said << QObject::tr("%1 spurious").arg(c.score.spurious);
+    const bool any = c.score.matched > 0, selected = document.selection().model == c.model;
+    const QString model = toQString(c.model).toHtmlEscaped();
+    const bool shown = document.layerVisible(kModelLayer + c.model);
+    rows +=
+        QStringLiteral("<tr>") +
+        cell(link(QStringLiteral("show:") + model, toQColor(c.colour).name(), shown ? QStringLiteral("■") : QStringLiteral("□")) +
+                 QStringLiteral("&nbsp;") +
+                 link(QStringLiteral("select:") + model, shown ? plain : faded,
+                      selected ? QStringLiteral("<b>%1</b>").arg(model) : model),
+             "left") +
+        error(c.score.errorPct) + error(c.score.errorPx) + share(any ? c.score.iou : std::nullopt) +
+        QStringLiteral("<td style='color:%1; white-space:nowrap'>%2</td></tr>")
+            .arg(warning, said.join(QStringLiteral(", ")).toHtmlEscaped());
+  }
+  QString html = problems;
+  if (!rows.isEmpty())
+    html += QStringLiteral("<table cellspacing='0' cellpadding='0'><tr style='color:%1'>").arg(faded) +
+            cell(QObject::tr("this frame"), "left") + cell(QObject::tr("error %")) + cell(QObject::tr("px")) +
+            cell(QObject::tr("IoU")) + QStringLiteral("<td></td></tr>") + rows + QStringLiteral("</table>") + reasons;
+  return {html + lobes, !reasons.isEmpty()};
+}
+
+}  // namespace glint::gui

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <QPalette>
+#include <QString>
+
+#include "core/draw/frame_overlay.h"
+#include "gui/document/document.h"
+
+namespace glint::gui {
+
+inline constexpr char kModelLayer[] = "frame/model/";  ///< and the model: the layer of its lines
+
+/// What stands below the photograph, as rich text: notes, a table with one row per model ("show:MODEL" and "select:MODEL" are its links),
+/// and the reasons of failures.
+struct FrameCaptions {
+  QString html;          ///< "" for none
+  bool failure = false;  ///< it holds the reason of one
+};
+FrameCaptions frameCaptions(const Document& document, const draw::FrameOverlay& overlay, const QPalette& palette);
+
+}  // namespace glint::gui
