@@ -10,7 +10,6 @@
 #include <QToolButton>
 
 #include "core/draw/plots.h"
-#include "core/inspect/inspect.h"
 #include "gui/frame/frame_canvas.h"
 #include "gui/frame/frame_panel.h"
 #include "gui/frame/hand_tool.h"

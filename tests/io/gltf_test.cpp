@@ -348,7 +348,7 @@ TEST(Gltf, BuffersLieInTheFolderOfTheFile) {
            {"data:text/plain,abc", "only those in base64"},
            {"data:base64", "only those in base64"},
            {"data:;base64,A*==", "is not valid base64"}}) {
-    const std::string message = inputErrorOf([&] { readMeshContent(folder.write("in/m.gltf", naming(uri))); });
+    const std::string message = inputErrorOf([&, uri = uri] { readMeshContent(folder.write("in/m.gltf", naming(uri))); });
     EXPECT_THAT(message, HasSubstr("m.gltf: buffers[0].uri: ")) << uri;
     EXPECT_THAT(message, HasSubstr(reason));
   }

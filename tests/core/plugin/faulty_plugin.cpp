@@ -62,24 +62,24 @@ class Taken : public glint::CaptureReader {
 }
 
 #if defined(FAULT_INTERFACE)
-constexpr int kInterface = GLINT_INTERFACE_VERSION - 1;
+[[maybe_unused]] constexpr int kInterface = GLINT_INTERFACE_VERSION - 1;
 #else
-constexpr int kInterface = GLINT_INTERFACE_VERSION;
+[[maybe_unused]] constexpr int kInterface = GLINT_INTERFACE_VERSION;
 #endif
 #if defined(FAULT_HEADERS)
-constexpr const char* kHeaders = "0.0.9";
+[[maybe_unused]] constexpr const char* kHeaders = "0.0.9";
 #else
-constexpr const char* kHeaders = GLINT_VERSION;
+[[maybe_unused]] constexpr const char* kHeaders = GLINT_VERSION;
 #endif
 #if defined(FAULT_ALIGNMENT)
-constexpr int kAlignment = 2 * EIGEN_MAX_ALIGN_BYTES;
+[[maybe_unused]] constexpr int kAlignment = 2 * EIGEN_MAX_ALIGN_BYTES;
 #else
-constexpr int kAlignment = EIGEN_MAX_ALIGN_BYTES;
+[[maybe_unused]] constexpr int kAlignment = EIGEN_MAX_ALIGN_BYTES;
 #endif
 #if defined(FAULT_NAMELESS)
-constexpr const char* kName = "";
+[[maybe_unused]] constexpr const char* kName = "";
 #else
-constexpr const char* kName = "tried";
+[[maybe_unused]] constexpr const char* kName = "tried";
 #endif
 
 }  // namespace
