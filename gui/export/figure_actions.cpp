@@ -117,7 +117,7 @@ void FigureActions::addActions(Actions& actions, QMenu* menu) {
               [this] {
                 if (!document_.inspection()) return;
                 FigureDialog dialog(tr("3D view as picture"), QStringLiteral("scene"), shownSize(*scene_.views().widget()),
-                                    currentTheme() == Theme::Dark, window_);
+                                    window_);
                 dialog.proposeCaption(proposedCaption(document_, tr("3D view")));
                 if (dialog.exec() != QDialog::Accepted) return;
                 const QString file = askForFile(window_, document_, dialog.windowTitle(), suggestedFile(document_, "3d", ".png"),
@@ -125,23 +125,22 @@ void FigureActions::addActions(Actions& actions, QMenu* menu) {
                 if (!file.isEmpty()) writeScene(dialog.look(), file);
               },
               {{}, {}, tr("As on screen, at any size, optionally with a transparent background")});
-  actions.add(
-      "export.frame-view", menu, tr("Frame &view…"),
-      [this] {
-        if (document_.frameCount() == 0) return;
-        QSize shown = shownSize(*frame_.canvas());
-        if (frame_.secondCanvas()->isVisible()) shown.rwidth() *= 2;
-        FigureDialog dialog(tr("Frame view as picture"), QStringLiteral("frame"), shown, currentTheme() == Theme::Dark, window_);
-        const int frame = document_.selection().frame;
-        dialog.proposeCaption(proposedCaption(
-            document_, tr("Highlights in frame %1").arg(nameText(document_.scene()->frames[std::size_t(frame)].id))));
-        if (dialog.exec() != QDialog::Accepted) return;
-        const QString file =
-            askForFile(window_, document_, dialog.windowTitle(), suggestedFile(document_, "frame", ".png"),
-                       tr("Pictures with embedded session (*.png);;Vector overlays, SVG (*.svg);;Vector overlays, PDF (*.pdf)"));
-        if (!file.isEmpty()) writeFrame(dialog.look(), file);
-      },
-      {{}, {}, tr("As on screen, at any size; SVG and PDF keep the contours as vector strokes over the photograph")});
+  actions.add("export.frame-view", menu, tr("Frame &view…"),
+              [this] {
+                if (document_.frameCount() == 0) return;
+                QSize shown = shownSize(*frame_.canvas());
+                if (frame_.secondCanvas()->isVisible()) shown.rwidth() *= 2;
+                FigureDialog dialog(tr("Frame view as picture"), QStringLiteral("frame"), shown, window_);
+                const int frame = document_.selection().frame;
+                dialog.proposeCaption(proposedCaption(
+                    document_, tr("Highlights in frame %1").arg(nameText(document_.scene()->frames[std::size_t(frame)].id))));
+                if (dialog.exec() != QDialog::Accepted) return;
+                const QString file = askForFile(
+                    window_, document_, dialog.windowTitle(), suggestedFile(document_, "frame", ".png"),
+                    tr("Pictures with embedded session (*.png);;Vector overlays, SVG (*.svg);;Vector overlays, PDF (*.pdf)"));
+                if (!file.isEmpty()) writeFrame(dialog.look(), file);
+              },
+              {{}, {}, tr("As on screen, at any size; SVG and PDF keep the contours as vector strokes over the photograph")});
 }
 
 void FigureActions::write(const QString& file, std::function<void()> work) {

@@ -39,8 +39,8 @@ const Preset kPresets[] = {{QT_TRANSLATE_NOOP("glint::gui::FigureDialog", "As on
 constexpr int kOther = 5;
 }  // namespace
 
-FigureDialog::FigureDialog(const QString& title, const QString& kind, const QSize& onScreen, bool dark, QWidget* parent)
-    : QDialog(parent), kind_(QStringLiteral("export/%1/").arg(kind)), onScreen_(onScreen), dark_(dark) {
+FigureDialog::FigureDialog(const QString& title, const QString& kind, const QSize& onScreen, QWidget* parent)
+    : QDialog(parent), kind_(QStringLiteral("export/%1/").arg(kind)), onScreen_(onScreen) {
   setWindowTitle(title);
   setObjectName(QStringLiteral("figureDialog"));
   auto* form = new QFormLayout(this);
@@ -66,6 +66,7 @@ FigureDialog::FigureDialog(const QString& title, const QString& kind, const QSiz
   colours_ = new QComboBox;
   colours_->setObjectName(QStringLiteral("figureColours"));
   colours_->addItems({QString(), QString()});
+  colours_->setCurrentIndex(QSettings().value(kind_ + QStringLiteral("dark"), false).toBool() ? 0 : 1);
   form->addRow(tr("&Colours"), colours_);
   transparent_ = new QCheckBox(tr("&Transparent background"));
   transparent_->setObjectName(QStringLiteral("figureTransparent"));
@@ -190,15 +191,13 @@ void FigureDialog::followHeight() {
   showPrinted();
 }
 
-/// What is transparent stands on a page that the program does not see: lines and texts are for that, not for the window's theme.
+/// What is transparent stands on a page that the program does not see.
 void FigureDialog::followBackground() {
   const bool page = transparent_->isChecked();
   colours_->setItemText(0, page ? tr("For a dark page") : tr("Dark"));
   colours_->setItemText(1, page ? tr("For a light page") : tr("Light"));
   colours_->setToolTip(page ? tr("Lines and text are drawn to be legible on such a page; bright ones vanish on white paper")
                             : QString());
-  const bool dark = page ? QSettings().value(kind_ + QStringLiteral("page-dark"), false).toBool() : dark_;
-  colours_->setCurrentIndex(dark ? 0 : 1);
 }
 
 FigureLook FigureDialog::look() const {
@@ -212,7 +211,7 @@ FigureLook FigureDialog::look() const {
 void FigureDialog::accept() {
   QSettings settings;
   settings.setValue(kind_ + QStringLiteral("transparent"), look().transparent);
-  if (look().transparent) settings.setValue(kind_ + QStringLiteral("page-dark"), look().dark);
+  settings.setValue(kind_ + QStringLiteral("dark"), look().dark);
   settings.setValue(kind_ + QStringLiteral("preset"), preset_->currentIndex());
   settings.setValue(kind_ + QStringLiteral("size"), look().size);
   settings.setValue(kind_ + QStringLiteral("size-of"), onScreen_);

@@ -25,14 +25,13 @@ struct FigureLook {
 };
 
 /// Asks for the size, in px or in mm at a resolution, and the background of a picture or plot. Remembers the last answer of each kind, a typed size in the shape of what
-/// is shown now; colours start as the window's, or,
-/// where the background is transparent, for the page that was chosen last (at first a light one).
+/// is shown now. Colours are at first those for a light page, whatever the window's are: figures are mostly printed.
 class FigureDialog : public QDialog {
   Q_OBJECT
  public:
   /// @param kind      "scene": under this name the answer is remembered.
   /// @param onScreen  device px of what is shown.
-  FigureDialog(const QString& title, const QString& kind, const QSize& onScreen, bool dark, QWidget* parent);
+  FigureDialog(const QString& title, const QString& kind, const QSize& onScreen, QWidget* parent);
   FigureLook look() const;
   /// For what cannot have a transparent background.
   void setOpaque();
@@ -53,7 +52,6 @@ class FigureDialog : public QDialog {
 
   QString kind_;
   QSize onScreen_;
-  bool dark_;  ///< the window
   double aspect_ = 1.6;
   QComboBox *preset_, *colours_;
   NumberBox *width_, *height_, *printed_, *dpi_;

@@ -97,13 +97,13 @@ FramePanel::FramePanel(Document& document, QWidget* parent) : QWidget(parent), d
     emit photographFailed(frame, reason);
     if (frame == pair_->secondFrame()) second_->setMessage(problemText(frame, reason)), pictured_[1] = -1;
   });
-  lobes_ = new LobeLayer(document_, this);
-  connect(lobes_, &LobeLayer::changed, &refresh_, QOverload<>::of(&QTimer::start));
   connectDocument();
   showScene();
 }
 
 void FramePanel::connectDocument() {
+  lobes_ = new LobeLayer(document_, this);
+  connect(lobes_, &LobeLayer::changed, &refresh_, QOverload<>::of(&QTimer::start));
   refresh_.setSingleShot(true);
   refresh_.setInterval(0);
   connect(&refresh_, &QTimer::timeout, this, &FramePanel::showFrame);

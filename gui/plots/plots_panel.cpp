@@ -350,7 +350,7 @@ void PlotsPanel::saveAs(const char* ending) {
   if (type != QLatin1String("csv")) {  // numbers have no size; pictures go to light pages unless somebody asks for something else
     const PlotCanvas* canvas = panes_[std::size_t(current_)].canvas;
     const QSize shown = QSize(std::max(320, canvas->width()), std::max(200, canvas->height())) * devicePixelRatioF();
-    FigureDialog dialog(tr("Plot as picture"), QStringLiteral("plot"), shown, false, this);
+    FigureDialog dialog(tr("Plot as picture"), QStringLiteral("plot"), shown, this);
     dialog.setOpaque();
     dialog.proposeCaption(proposedCaption(document_, toQString(canvas->plot().title)));
     if (dialog.exec() != QDialog::Accepted) return;

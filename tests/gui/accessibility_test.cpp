@@ -174,7 +174,7 @@ class AccessibilityTest : public QObject {
   void everyControlOfADialogHasAName() {
     std::vector<std::unique_ptr<QWidget>> dialogs;
     dialogs.push_back(
-        std::make_unique<FigureDialog>(QStringLiteral("Figure"), QStringLiteral("figure"), QSize(640, 480), true, nullptr));
+        std::make_unique<FigureDialog>(QStringLiteral("Figure"), QStringLiteral("figure"), QSize(640, 480), nullptr));
     dialogs.push_back(std::make_unique<MovieDialog>(MovieOf::Turntable, 12, true, nullptr));
     dialogs.push_back(std::make_unique<FolderDialog>(QStringLiteral("Folder"), QStringLiteral("What"), QStringLiteral("f"),
                                                      QStringLiteral("Write"), nullptr));

@@ -342,7 +342,7 @@ class ExportTest : public QObject {
   }
 
   void theDialogProposesACaptionAndStartsWithoutOne() {
-    FigureDialog dialog("figure", "caption", QSize(400, 300), false, nullptr);
+    FigureDialog dialog("figure", "caption", QSize(400, 300), nullptr);
     window_->document().select({0, "canonical"});
     const QString proposed = proposedCaption(window_->document(), QStringLiteral("3D view"));
     QVERIFY2(proposed.startsWith(QStringLiteral("3D view of the scene ")) && proposed.contains(QStringLiteral("canonical")),
@@ -354,8 +354,7 @@ class ExportTest : public QObject {
     dialog.findChild<QPushButton*>("figureProposeCaption")->click();
     QCOMPARE(dialog.look().caption, proposed);
     dialog.accept();
-    QVERIFY(
-        FigureDialog("figure", "caption", QSize(400, 300), false, nullptr).look().caption.isEmpty());  // it was of that figure
+    QVERIFY(FigureDialog("figure", "caption", QSize(400, 300), nullptr).look().caption.isEmpty());  // it was of that figure
   }
 
  private:

@@ -294,9 +294,7 @@ class FigureTest : public QObject {
 
   /// A typed size is that of the picture it was typed for.
   void aTypedSizeTakesTheShapeOfWhatIsShown() {
-    const auto dialog = [](const QSize& shown) {
-      return std::make_unique<FigureDialog>("figure", "shape", shown, true, nullptr);
-    };
+    const auto dialog = [](const QSize& shown) { return std::make_unique<FigureDialog>("figure", "shape", shown, nullptr); };
     auto asked = dialog({400, 300});
     asked->findChild<NumberBox*>("figureWidth")->setValue(1200);
     asked->accept();
@@ -394,32 +392,28 @@ class FigureTest : public QObject {
   }
 
   /// Bright lines of a dark window would vanish on white paper.
-  void aTransparentFigureIsForALightPageUnlessADarkOneIsChosen() {
-    const auto dialog = [](bool darkWindow) {
-      return std::make_unique<FigureDialog>("figure", "test", QSize(400, 300), darkWindow, nullptr);
-    };
-    auto asked = dialog(true);
+  void aFigureIsForALightPageUnlessADarkOneIsChosen() {
+    const auto dialog = [] { return std::make_unique<FigureDialog>("figure", "test", QSize(400, 300), nullptr); };
+    auto asked = dialog();
     auto* colours = asked->findChild<QComboBox*>("figureColours");
     auto* transparent = asked->findChild<QCheckBox*>("figureTransparent");
-    QVERIFY(asked->look().dark && !asked->look().transparent);
-    QCOMPARE(colours->currentText(), QStringLiteral("Dark"));
+    QVERIFY(!asked->look().dark && !asked->look().transparent);
+    QCOMPARE(colours->currentText(), QStringLiteral("Light"));
     transparent->setChecked(true);
     QVERIFY(!asked->look().dark);
     QCOMPARE(colours->currentText(), QStringLiteral("For a light page"));
-    transparent->setChecked(false);
-    QVERIFY(asked->look().dark);
-    transparent->setChecked(true);
     colours->setCurrentIndex(0);
     asked->accept();
-    asked = dialog(false);  // the page does not follow the window
+    asked = dialog();  // the choice is remembered
     QVERIFY(asked->look().dark && asked->look().transparent);
     asked->findChild<QCheckBox*>("figureTransparent")->setChecked(false);
-    QVERIFY(!asked->look().dark);
+    QVERIFY(asked->look().dark);
+    QCOMPARE(asked->findChild<QComboBox*>("figureColours")->currentText(), QStringLiteral("Dark"));
   }
 
   /// 25.4 mm are an inch.
   void aFigureIsAskedForInMillimetres() {
-    FigureDialog dialog("figure", "printed", QSize(800, 600), true, nullptr);
+    FigureDialog dialog("figure", "printed", QSize(800, 600), nullptr);
     auto* mm = dialog.findChild<NumberBox*>("figurePrinted");
     auto* dpi = dialog.findChild<NumberBox*>("figureDpi");
     QVERIFY(mm && dpi);
