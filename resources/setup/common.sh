@@ -58,7 +58,7 @@ build_jobs() {
   if [ "$cores" -le "$gigabytes" ]; then echo "$cores"; else echo "$gigabytes"; fi
 }
 
-# The compiler of the builds that scripts make, as options of CMake: clang, which compiles Eigen's templates in about half of gcc's time, unless the
+# The compiler of the builds that scripts make, as options of CMake: clang, which takes about two thirds of gcc's time, unless the
 # user names one (CC, CXX) or clang is not there.
 compiler_options() {
   if [ -z "${CC:-}${CXX:-}" ] && command -v clang >/dev/null && command -v clang++ >/dev/null; then
