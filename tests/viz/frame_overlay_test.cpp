@@ -93,6 +93,20 @@ TEST(FrameOverlay, EveryLobeHasItsContoursAndItsCaption) {
     EXPECT_NE(line.label.find("best"), std::string::npos) << line.label;
   }
   EXPECT_EQ(own, 2);
+  // Each lobe's contour lies where its curve in the plot has the level; the angle alone tells a lobe's radiance here.
+  constexpr double kBetweenBins = 0.02;  // of the angle: the curve is linear between its bins
+  const LobeComparison& comparison = *options.samples->lobes[0].comparison;
+  for (std::size_t k = 0; k < comparison.matches.size(); ++k) {
+    const std::vector<double>& profile = comparison.matches[k].profile;
+    std::size_t i = 0;
+    while (i + 2 < profile.size() && profile[i + 1] >= 0.5) ++i;
+    const double t = (profile[i] - 0.5) / (profile[i] - profile[i + 1]);
+    const double alpha = (1 - t) * comparison.measured[i].alpha + t * comparison.measured[i + 1].alpha;
+    const OverlayLine& line = lines[2 * k];
+    double radius = 0;
+    for (const Pixel& p : line.points) radius += (p - Pixel(40, 50)).norm() / double(line.points.size());
+    EXPECT_NEAR(0.0125 * radius / alpha, 1, kBetweenBins) << line.label;
+  }
   int captions = 0;
   for (const OverlayCaption& c : overlay.captions) captions += c.model.empty() && !c.problem;
   EXPECT_EQ(captions, 4);
