@@ -363,7 +363,7 @@ const std::vector<OverlayLayer>& overlayLayers() {
        "Walks from the brightest point: to the limit angle on the surface; dotted: on to the same angle on the tangent plane",
        false},
       {OverlayRole::Lobes, "frame/lobes", "Lobes",
-       "The selected highlight under every lobe: where each has the contour level of the peak, and in thin lines 0.3 of it. "
+       "Contours of the selected highlight under every lobe: at the contour level, and at 0.3 of it in thin lines. "
        "Colours as in the plot Every lobe",
        false}};
   return layers;

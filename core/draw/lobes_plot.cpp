@@ -51,14 +51,6 @@ PlotSeries curveOf(const LobeComparison& comparison, std::size_t place) {
 
 }  // namespace
 
-std::string lobeText(const LobeComparison& comparison, std::size_t place) {
-  const LobeMatch& match = comparison.matches[place];
-  const std::string name(nameOf(match.lobe));
-  if (match.failure) return name + ": " + match.failure->message();
-  const char* const rank = int(place) == comparison.best ? ", best" : match.asGood ? ", as good" : "";
-  return name + formatted(", m = %.4g, rms %.2g %%%s", match.m, match.rmsPct, rank);
-}
-
 PlotData lobesPlot(const FrameSamples& samples, int highlight) {
   PlotData plot;
   plot.id = "lobes";
