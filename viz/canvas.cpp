@@ -13,11 +13,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "core/base/atomic_file.h"
 #include "core/base/outcome.h"
+#include "core/codecs/codecs.h"
 #include "viz/text_lock.h"
 
 namespace glint::viz {
@@ -287,7 +287,7 @@ void writePng(const Image& image, const std::string& file) {
     }
   }
   std::vector<unsigned char> bytes;
-  if (!cv::imencode(".png", pixels, bytes)) throw InputError(file, "", "cannot encode the picture as PNG");
+  if (!encodeWithOpenCv(".png", pixels, bytes)) throw InputError(file, "", "cannot encode the picture as PNG");
   atomicWrite(file, std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
 }
 

@@ -9,13 +9,13 @@
 #include <filesystem>
 #include <numbers>
 #include <opencv2/core.hpp>
-#include <opencv2/videoio.hpp>
 
 #include "core/base/atomic_file.h"
 #include "core/base/atomic_folder.h"
 #include "core/base/number_text.h"
 #include "core/base/outcome.h"
 #include "core/base/quiet_libraries.h"
+#include "core/codecs/codecs.h"
 #include "viz/canvas.h"
 
 namespace glint::viz {
@@ -83,38 +83,37 @@ auto quietly(const Call& call) {
 }
 
 /// A writer that ends in silence too, also when a picture could not be drawn.
-struct Writer : cv::VideoWriter {
-  ~Writer() override {
-    quietly([&] { release(); });
+struct Writer {
+  const std::unique_ptr<VideoWriter> video = newVideoWriter();
+  ~Writer() {
+    quietly([&] { video->close(); });
   }
 };
 
 void encode(const std::string& file, const fs::path& temporary, const MovieFormat& format, int frames,
             const std::function<Image(int)>& picture, const ProgressFn& progress) {
-  Writer writer;
-  for (const char* c : containerOf(file)->codecs)
-    if (quietly([&] {
-          return writer.open(temporary.string(), cv::VideoWriter::fourcc(c[0], c[1], c[2], c[3]), format.framesPerSecond,
-                             cv::Size(format.width, format.height));
-        }))
+  const Writer writer;
+  for (const char* codec : containerOf(file)->codecs)
+    if (quietly(
+            [&] { return writer.video->open(temporary.string(), codec, format.framesPerSecond, format.width, format.height); }))
       break;
-  if (!writer.isOpened())
+  if (!writer.video->isOpen())
     throw InputError(file, "", "cannot be written: no access, or no encoder on this computer for " + endingOf(file));
   for (int i = 0; i < frames; ++i) {
     if (!report(progress, {"frame", i, frames})) throw Stopped{};
     const cv::Mat pixels = toBgr(checked(picture(i), format));
-    quietly([&] { writer.write(pixels); });
+    quietly([&] { writer.video->write(pixels); });
   }
-  quietly([&] { writer.release(); });
+  quietly([&] { writer.video->close(); });
   // The writer tells of no failure: a full disk shows only here.
-  cv::VideoCapture back;
-  quietly([&] { return back.open(temporary.string()); });
+  const std::unique_ptr<VideoReader> back = newVideoReader();
+  quietly([&] { return back->open(temporary.string()); });
   int found = 0;
-  while (quietly([&] { return back.grab(); })) {
+  while (quietly([&] { return back->grab(); })) {
     if (!report(progress, {"reading back", found, frames})) throw Stopped{};
     ++found;
   }
-  quietly([&] { back.release(); });
+  quietly([&] { back->close(); });
   if (found != frames)
     throw InputError(
         file, "",

@@ -10,20 +10,19 @@
 #include <memory>
 #include <mutex>
 #include <opencv2/imgproc.hpp>
-#include <opencv2/videoio.hpp>
 #include <string_view>
 
 #include "core/base/limits.h"
 #include "core/base/number_text.h"
 #include "core/base/quiet_libraries.h"
+#include "core/codecs/codecs.h"
 
 namespace glint {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr double kMillisecond = 1e-3;  // s: OpenCV counts milliseconds
-constexpr double kSameTime = 0.5e-3;   // s: half of the coarsest clock (Matroska counts milliseconds)
-constexpr int kMostSide = 65536;       // px, as of images
+constexpr double kSameTime = 0.5e-3;  // s: half of the coarsest clock (Matroska counts milliseconds)
+constexpr int kMostSide = 65536;      // px, as of images
 constexpr double kMegaPixel = 1e6;
 constexpr int kSeekAhead = 64;   // pictures: a decoder is sooner there by going on than by a seek to the key frame before
 constexpr int kKeptBefore = 16;  // pictures before the one that is asked for that are kept, for threads that run ahead of others
@@ -33,16 +32,6 @@ constexpr double kBytesPerMegabyte = 1e6;
 Failure videoUnreadable(const fs::path& file, const std::string& reason) {
   return Failure{Reason::FrameUnreadable, file.string() + ": " + reason};
 }
-
-/// Only FFmpeg, and a file by its absolute path: other back ends take addresses and patterns of file names.
-bool openCapture(cv::VideoCapture& capture, const fs::path& file) {
-  const std::vector<int> options{cv::CAP_PROP_HW_ACCELERATION, cv::VIDEO_ACCELERATION_NONE};
-  if (!capture.open(fs::absolute(file).lexically_normal().string(), cv::CAP_FFMPEG, options)) return false;
-  capture.set(cv::CAP_PROP_ORIENTATION_AUTO, 1);
-  return true;
-}
-
-double secondsOf(const cv::VideoCapture& capture) { return capture.get(cv::CAP_PROP_POS_MSEC) * kMillisecond; }
 
 /// The times of a video in the order of its pictures. FFmpeg has none for the last pictures of some encoders; OpenCV says 0 then.
 class VideoClock {
@@ -84,7 +73,7 @@ class OpenVideo {
     try {
       return decode(p);
     } catch (const cv::Exception&) {
-      capture_.release();
+      video_->close();
       return videoUnreadable(file_, "picture " + std::to_string(p.index) + " is damaged");
     }
   }
@@ -104,37 +93,37 @@ class OpenVideo {
   Outcome<cv::Mat> decode(const VideoPicture& p) {
     const auto damaged = [&] { return videoUnreadable(file_, "picture " + std::to_string(p.index) + " does not decode"); };
     bool sought = false;
-    if (!capture_.isOpened() || p.index < next_ || p.index - next_ > kSeekAhead) {
+    if (!video_->isOpen() || p.index < next_ || p.index - next_ > kSeekAhead) {
       if (!start()) return videoUnreadable(file_, "is no video that can be decoded");
-      sought = p.index > kSeekAhead && capture_.set(cv::CAP_PROP_POS_FRAMES, p.index);
+      sought = p.index > kSeekAhead && video_->seek(p.index);
       if (sought) next_ = p.index;
     }
     cv::Mat pixels;
     // A seek counts by a constant rate, which telephones do not keep.
-    const bool there = advance(p.index, pixels) && (!sought || std::abs(secondsOf(capture_) - p.seconds) < kSameTime);
+    const bool there = advance(p.index, pixels) && (!sought || std::abs(video_->seconds() - p.seconds) < kSameTime);
     if (!there && !(sought && start() && advance(p.index, pixels))) return damaged();
-    if (!sameTime(secondsOf(capture_), p))
-      return videoUnreadable(file_, formatted("picture %d is of %.3f s, not of %.3f s", p.index, secondsOf(capture_), p.seconds));
+    if (!sameTime(video_->seconds(), p))
+      return videoUnreadable(file_, formatted("picture %d is of %.3f s, not of %.3f s", p.index, video_->seconds(), p.seconds));
     return pixels;
   }
 
   bool start() {
-    capture_.release();
+    video_->close();
     kept_.clear();  // what a seek gave may have been another picture
     next_ = 0;
-    return openCapture(capture_, file_);
+    return video_->open(file_.string());
   }
 
   /// Decodes up to this picture and keeps it and the last ones before it.
   bool advance(int index, cv::Mat& pixels) {
     for (; next_ <= index; ++next_) {
-      if (!capture_.grab()) {
-        capture_.release();
+      if (!video_->grab()) {
+        video_->close();
         return false;
       }
       if (index - next_ > kKeptBefore) continue;
       cv::Mat decoded;
-      if (!capture_.retrieve(decoded) || decoded.empty() || decoded.depth() != CV_8U) return false;
+      if (!video_->retrieve(decoded) || decoded.empty() || decoded.depth() != CV_8U) return false;
       cv::Mat rgb;
       if (decoded.channels() == 3) cv::cvtColor(decoded, rgb, cv::COLOR_BGR2RGB);
       if (decoded.channels() == 1) cv::cvtColor(decoded, rgb, cv::COLOR_GRAY2RGB);
@@ -146,7 +135,7 @@ class OpenVideo {
   }
 
   void keep(int index, const cv::Mat& pixels) {
-    kept_.push_back({index, secondsOf(capture_), pixels});
+    kept_.push_back({index, video_->seconds(), pixels});
     const double each = double(pixels.total()) * double(pixels.elemSize()) / kBytesPerMegabyte;
     const auto most = static_cast<std::size_t>(std::max(1.0, kVideoMegabytes / each));
     while (kept_.size() > most) kept_.pop_front();
@@ -156,7 +145,7 @@ class OpenVideo {
   std::uintmax_t bytes_;
   fs::file_time_type changed_;
   std::mutex mutex_;
-  cv::VideoCapture capture_;
+  const std::unique_ptr<VideoReader> video_ = newVideoReader();
   int next_ = 0;  ///< the picture that `grab` gives next
   std::deque<Kept> kept_;
 };
@@ -208,17 +197,16 @@ VideoContent readVideoContent(const fs::path& file) {
   VideoContent content;
   try {
     const QuietLibraries quiet;
-    cv::VideoCapture capture;
-    if (!openCapture(capture, file))
-      throw InputError(name, "", "is no video that can be decoded: damaged, or of an unknown codec");
-    requireVideoSize(capture.get(cv::CAP_PROP_FRAME_WIDTH), capture.get(cv::CAP_PROP_FRAME_HEIGHT), name);
-    VideoClock clock(file, capture.get(cv::CAP_PROP_FPS));
-    while (capture.grab()) {
-      const int width = static_cast<int>(capture.get(cv::CAP_PROP_FRAME_WIDTH));
-      const int height = static_cast<int>(capture.get(cv::CAP_PROP_FRAME_HEIGHT));
+    const std::unique_ptr<VideoReader> video = newVideoReader();
+    if (!video->open(name)) throw InputError(name, "", "is no video that can be decoded: damaged, or of an unknown codec");
+    requireVideoSize(video->width(), video->height(), name);
+    VideoClock clock(file, video->picturesPerSecond());
+    while (video->grab()) {
+      const int width = static_cast<int>(video->width());
+      const int height = static_cast<int>(video->height());
       if (content.seconds.empty()) {
         cv::Mat first;
-        if (!capture.retrieve(first) || first.empty()) throw InputError(name, "picture 0", "does not decode");
+        if (!video->retrieve(first) || first.empty()) throw InputError(name, "picture 0", "does not decode");
         content.width = first.cols;
         content.height = first.rows;
       } else if (width != content.width || height != content.height) {
@@ -226,7 +214,7 @@ VideoContent readVideoContent(const fs::path& file) {
       }
       if (content.seconds.size() >= static_cast<std::size_t>(kMostPictures))
         throw InputError(name, "", formatted("has more than %d pictures; cut out the part that is needed", kMostPictures));
-      clock.add(secondsOf(capture), content);
+      clock.add(video->seconds(), content);
     }
   } catch (const cv::Exception&) {
     throw InputError(name, "picture " + std::to_string(content.seconds.size()), "is damaged");

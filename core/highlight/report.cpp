@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "core/base/atomic_file.h"
 #include "core/base/json_text.h"
+#include "core/codecs/codecs.h"
 #include "core/highlight/clipped_skirt.h"
 
 namespace glint {
@@ -173,7 +173,7 @@ void writePng(const std::filesystem::path& file, const Image& image) {
   std::vector<unsigned char> encoded;
   bool done = false;
   try {
-    done = cv::imencode(".png", bytes, encoded);
+    done = encodeWithOpenCv(".png", bytes, encoded);
   } catch (const cv::Exception&) {
   }
   if (!done) throw InputError(file.string(), "", "cannot be written: the image cannot be encoded");

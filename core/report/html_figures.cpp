@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <set>
 
 #include "core/base/html_text.h"
+#include "core/codecs/codecs.h"
 #include "core/draw/overlay_painter.h"
 #include "core/draw/plot_painter.h"
 #include "core/draw/plots.h"
@@ -45,7 +45,7 @@ std::vector<unsigned char> pngOf(const Image& photo, const draw::Crop& crop) {
         part.at<cv::Vec3b>(y, x)[2 - k] =
             cv::saturate_cast<unsigned char>(255 * photo.at(x0 + x, y0 + y, std::min(k, photo.channels - 1)));
   std::vector<unsigned char> png;
-  cv::imencode(".png", part, png);
+  encodeWithOpenCv(".png", part, png);
   return png;
 }
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
+#include <opencv2/core.hpp>
 #include <set>
 #include <sstream>
 
@@ -14,6 +14,7 @@
 #include "core/base/atomic_folder.h"
 #include "core/base/number_text.h"
 #include "core/base/parallel.h"
+#include "core/codecs/codecs.h"
 #include "core/geometry/polyline.h"
 #include "core/report/labels.h"
 #include "core/report/yolo.h"
@@ -98,7 +99,7 @@ void writeMask(const Image& mask, const fs::path& file) {
   for (int y = 0; y < mask.height; ++y)
     for (int x = 0; x < mask.width; ++x) pixels.at<unsigned char>(y, x) = static_cast<unsigned char>(mask.at(x, y));
   std::vector<unsigned char> bytes;
-  if (!cv::imencode(".png", pixels, bytes)) throw InputError(file.string(), "", "cannot encode the mask as PNG");
+  if (!encodeWithOpenCv(".png", pixels, bytes)) throw InputError(file.string(), "", "cannot encode the mask as PNG");
   atomicWrite(file, std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
 }
 

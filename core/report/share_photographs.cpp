@@ -5,6 +5,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "core/base/base64.h"
+#include "core/codecs/codecs.h"
 #include "core/inspect/photograph.h"
 #include "core/report/share_parts.h"
 
@@ -36,7 +37,7 @@ std::vector<unsigned char> jpegOf(const cv::Mat& picture, std::size_t most) {
     const int rows = std::max(1, static_cast<int>(std::lround(static_cast<double>(picture.rows) * columns / picture.cols)));
     if (columns < picture.cols) cv::resize(picture, scaled, {columns, rows}, 0, 0, cv::INTER_AREA);
     std::vector<unsigned char> bytes;
-    cv::imencode(".jpg", scaled, bytes, {cv::IMWRITE_JPEG_QUALITY, kQuality});
+    encodeWithOpenCv(".jpg", scaled, bytes, {cv::IMWRITE_JPEG_QUALITY, kQuality});
     if (bytes.size() <= most || width <= kNarrowest) return bytes;
     width = std::max<double>(kNarrowest,
                              width * std::min(0.9, std::sqrt(static_cast<double>(most) / static_cast<double>(bytes.size()))));

@@ -10,10 +10,12 @@
 #include <cstring>
 #include <iostream>
 #include <mutex>
+#include <opencv2/core.hpp>
 #include <opencv2/core/utils/logger.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <streambuf>
 #include <vector>
+
+#include "core/codecs/codecs.h"
 
 namespace glint {
 namespace {
@@ -229,11 +231,11 @@ Outcome<cv::Mat> decodeOther(const std::string& bytes) {
     return true;
   }();
   (void)quiet;
+  loadCodecs();
   cv::Mat m;
   try {
     const QuietCerr guard;
-    const cv::Mat view(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data()));
-    m = cv::imdecode(view, cv::IMREAD_UNCHANGED);
+    m = decodeWithOpenCv(bytes);
   } catch (const std::exception&) {
     return undecodable("truncated or damaged");
   }

@@ -15,6 +15,7 @@
 #include "core/base/light_name.h"
 #include "core/base/parallel.h"
 #include "core/base/safe_text.h"
+#include "core/codecs/codecs.h"
 #include "core/scene/scene_json.h"
 #include "core/synth/output_folder.h"
 #include "core/synth/part.h"
@@ -41,7 +42,7 @@ void writeImage(const fs::path& file, const cv::Mat& mat, int jpegQuality = 0) {
   if (jpegQuality > 0) parameters = {cv::IMWRITE_JPEG_QUALITY, jpegQuality};
   bool encoded = false;
   try {
-    encoded = cv::imencode(file.extension().string(), mat, bytes, parameters);
+    encoded = encodeWithOpenCv(file.extension().string(), mat, bytes, parameters);
   } catch (const cv::Exception&) {
   }
   if (!encoded) throw InputError(file.string(), "", "cannot be written: the image cannot be encoded");

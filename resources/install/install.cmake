@@ -11,6 +11,7 @@ foreach(library io core)
   install(TARGETS glint_shared_${library} EXPORT GlintTargets
     LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT libraries NAMELINK_COMPONENT development)
 endforeach()
+install(TARGETS glint_shared_codecs LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT libraries NAMELINK_SKIP)  # libglint-core loads it from there
 set_target_properties(glint_viz PROPERTIES EXPORT_NAME viz OUTPUT_NAME glint-viz)
 # Static: a program that draws carries it, and the shared libraries stay free of VTK.
 install(TARGETS glint_viz EXPORT GlintVizTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)

@@ -85,7 +85,8 @@ file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/package/changelog CONTENT
 ")
 file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/package/triggers CONTENT "activate-noawait ldconfig\n")
 file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/package/shlibs CONTENT
-"libglint-core @GLINT_SOVERSION@ libglint@GLINT_SOVERSION@ (= @PROJECT_VERSION@)
+"libglint-codecs @GLINT_SOVERSION@ libglint@GLINT_SOVERSION@ (= @PROJECT_VERSION@)
+libglint-core @GLINT_SOVERSION@ libglint@GLINT_SOVERSION@ (= @PROJECT_VERSION@)
 libglint-io @GLINT_SOVERSION@ libglint@GLINT_SOVERSION@ (= @PROJECT_VERSION@)
 ")
 execute_process(COMMAND gzip -9nc ${PROJECT_BINARY_DIR}/package/changelog OUTPUT_FILE ${PROJECT_BINARY_DIR}/package/changelog.gz COMMAND_ERROR_IS_FATAL ANY)

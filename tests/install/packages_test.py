@@ -13,7 +13,7 @@ import tempfile
 
 SKIPPED = 77
 HOLDS = {  # package -> patterns of files that it must contain
-    "libglint0": [r"lib/.*/libglint-core\.so\.0\.\d", r"lib/.*/libglint-io\.so\.0\.\d"],
+    "libglint0": [rf"lib/.*/libglint-{library}\.so\.0\.\d" for library in ("codecs", "core", "io")],
     "libglint-dev": [r"include/glint-[\d.]+/core/inspect/inspection\.h", r"cmake/Glint/GlintConfig\.cmake", r"libglint-core\.so$", r"libglint-viz\.a$",
                      r"share/glint/examples/cpp/session_errors\.cpp", r"share/glint/examples/plugins/example/example\.cpp"],
     "glint": [r"bin/glint$", r"man1/glint\.1\.gz", r"man1/glint-evaluate\.1\.gz", r"bash-completion/completions/glint$", r"zsh/vendor-completions/_glint$",
@@ -68,6 +68,10 @@ def check_use(packages, folder):
         sys.exit("the program does not use the package's library")
     told = run(root / "usr/bin/glint", "replay", root / "usr/share/glint/sessions/plane-to-cylinder/plane-to-cylinder.glint", env=environment)
     print(told.strip().splitlines()[-1])
+    # Pictures need the library that nothing links.
+    run(root / "usr/bin/glint", "detect", root / "usr/share/glint/sessions/plane/plane.glint", "--out", folder / "pictures", env=environment)
+    if not list((folder / "pictures").rglob("*.png")):
+        sys.exit("the program of the packages writes no pictures")
     if shutil.which("desktop-file-validate"):
         run("desktop-file-validate", root / "usr/share/applications/glint-inspector.desktop")
     if shutil.which("appstreamcli"):

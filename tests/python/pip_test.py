@@ -38,6 +38,7 @@ import glint, pathlib
 print(glint.__file__)
 inspection = glint.inspect(glint.open({str(source / 'sessions/plane/plane.glint')!r}), ["dual"])
 assert inspection.summary("dual")["predicted"] == 2
+glint.write_labels(inspection, {str(work / 'labels')!r}, "coco,masks")  # pictures need the library that nothing links
 print(*sorted({{line.split()[-1] for line in open("/proc/self/maps") if "libglint" in line}}))
 assert (pathlib.Path(glint.__file__).parent / "py.typed").exists()
 """, cwd="/", env=environment).split()

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace cv {
+class Mat;
+}
+
+/// Images and videos through OpenCV's modules imgcodecs and videoio. These bring two hundred libraries (GDAL's, FFmpeg's), which take more
+/// than half of the start of a program that may never need them. So they are linked by a library of their own, libglint-codecs, which the
+/// first call of a function below loads. Pixels of PNG and JPEG files are read without it (core/scene/image_decode.h).
+/// All functions may run on several threads at once.
+/// @throws InputError  libglint-codecs is missing or cannot be loaded
+namespace glint {
+
+/// Loads what the functions below need, unless that was done. Call it where an exception of theirs would be taken for a damaged file.
+void loadCodecs();
+
+/// All channels in OpenCV's order (blue first), in the file's own depth, as cv::imdecode with IMREAD_UNCHANGED gives them.
+/// @return empty: not an image
+/// @throws cv::Exception  damaged data
+cv::Mat decodeWithOpenCv(const std::string& bytes);
+
+/// The content of a file, as cv::imencode writes it.
+/// @param ending      with its dot: ".png"
+/// @param pixels      blue first
+/// @param parameters  pairs of cv::ImwriteFlags and values
+/// @return false: the encoder refuses these pixels
+/// @throws cv::Exception  no encoder for that ending
+bool encodeWithOpenCv(const std::string& ending, const cv::Mat& pixels, std::vector<unsigned char>& bytes,
+                      const std::vector<int>& parameters = {});
+
+/// A video that is being decoded, picture by picture, by FFmpeg alone: other back ends take addresses and patterns of file names.
+/// Functions throw cv::Exception for some damaged files.
+class VideoReader {
+ public:
+  virtual ~VideoReader() = default;
+  /// Pictures are turned as the file says. @return false: no video that can be decoded
+  virtual bool open(const std::string& file) = 0;
+  virtual bool isOpen() const = 0;
+  virtual void close() = 0;
+  /// @param picture  from 0, counted by a constant rate. @return false: this video cannot
+  virtual bool seek(int picture) = 0;
+  /// Goes on by one picture. @return false: there is none
+  virtual bool grab() = 0;
+  /// The pixels of the picture that was grabbed last, blue first.
+  virtual bool retrieve(cv::Mat& picture) = 0;
+  virtual double seconds() const = 0;            ///< s, of the picture that was grabbed last; 0 = unknown
+  virtual double width() const = 0;              ///< px
+  virtual double height() const = 0;             ///< px
+  virtual double picturesPerSecond() const = 0;  ///< 0 = unknown
+};
+std::unique_ptr<VideoReader> newVideoReader();
+
+/// A video that is being written. It tells of no failure after `open`: read it back.
+class VideoWriter {
+ public:
+  virtual ~VideoWriter() = default;
+  /// @param codec  four characters. @return false: no access or no such encoder
+  virtual bool open(const std::string& file, const char* codec, double picturesPerSecond, int width, int height) = 0;
+  virtual bool isOpen() const = 0;
+  /// @param picture  8 bits, blue first, of the size of `open`
+  virtual void write(const cv::Mat& picture) = 0;
+  virtual void close() = 0;
+};
+std::unique_ptr<VideoWriter> newVideoWriter();
+
+}  // namespace glint

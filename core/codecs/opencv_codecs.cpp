@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// libglint-codecs. The interfaces hold no type of the two modules, so that nothing else links them.
+#include <filesystem>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/videoio.hpp>
+
+#include "core/codecs/codec_table.h"
+
+namespace glint {
+namespace {
+
+cv::Mat decode(const std::string& bytes) {
+  const cv::Mat view(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data()));
+  return cv::imdecode(view, cv::IMREAD_UNCHANGED);
+}
+
+bool encode(const std::string& ending, const cv::Mat& pixels, std::vector<unsigned char>& bytes,
+            const std::vector<int>& parameters) {
+  return cv::imencode(ending, pixels, bytes, parameters);
+}
+
+class OpenCvReader : public VideoReader {
+ public:
+  bool open(const std::string& file) override {
+    const std::vector<int> options{cv::CAP_PROP_HW_ACCELERATION, cv::VIDEO_ACCELERATION_NONE};
+    // An absolute path is never taken for an address.
+    if (!capture_.open(std::filesystem::absolute(file).lexically_normal().string(), cv::CAP_FFMPEG, options)) return false;
+    capture_.set(cv::CAP_PROP_ORIENTATION_AUTO, 1);
+    return true;
+  }
+  bool isOpen() const override { return capture_.isOpened(); }
+  void close() override { capture_.release(); }
+  bool seek(int picture) override { return capture_.set(cv::CAP_PROP_POS_FRAMES, picture); }
+  bool grab() override { return capture_.grab(); }
+  bool retrieve(cv::Mat& picture) override { return capture_.retrieve(picture); }
+  double seconds() const override {
+    constexpr double kMillisecond = 1e-3;  // s: OpenCV counts milliseconds
+    return capture_.get(cv::CAP_PROP_POS_MSEC) * kMillisecond;
+  }
+  double width() const override { return capture_.get(cv::CAP_PROP_FRAME_WIDTH); }
+  double height() const override { return capture_.get(cv::CAP_PROP_FRAME_HEIGHT); }
+  double picturesPerSecond() const override { return capture_.get(cv::CAP_PROP_FPS); }
+
+ private:
+  cv::VideoCapture capture_;
+};
+
+class OpenCvWriter : public VideoWriter {
+ public:
+  bool open(const std::string& file, const char* codec, double picturesPerSecond, int width, int height) override {
+    return writer_.open(file, cv::VideoWriter::fourcc(codec[0], codec[1], codec[2], codec[3]), picturesPerSecond,
+                        cv::Size(width, height));
+  }
+  bool isOpen() const override { return writer_.isOpened(); }
+  void write(const cv::Mat& picture) override { writer_.write(picture); }
+  void close() override { writer_.release(); }
+
+ private:
+  cv::VideoWriter writer_;
+};
+
+std::unique_ptr<VideoReader> reader() { return std::make_unique<OpenCvReader>(); }
+std::unique_ptr<VideoWriter> writer() { return std::make_unique<OpenCvWriter>(); }
+
+}  // namespace
+}  // namespace glint
+
+extern "C" __attribute__((visibility("default"))) const glint::CodecTable* glint_codecs() {
+  static constexpr glint::CodecTable table{&glint::decode, &glint::encode, &glint::reader, &glint::writer};
+  return &table;
+}

@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Which libraries a start loads, and what the program says when the one of the codecs is missing.
+
+start_test.py GLINT LIBRARIES SESSIONS
+"""
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+
+def run(*command, **environment):
+    return subprocess.run([str(c) for c in command], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, check=False,
+                          env={**os.environ, **environment})
+
+
+def loaded(*command):
+    """Names of the libraries that the loader reads for it (ld.so(8), LD_DEBUG=files)."""
+    done = run(*command, LD_DEBUG="files")
+    assert done.returncode == 0, done.stderr[-2000:]
+    return set(re.findall(r"calling init: \S*/([^/\s]+)\n", done.stderr))
+
+
+def main():
+    glint, libraries, sessions = (pathlib.Path(word) for word in sys.argv[1:])
+    plane = sessions / "lessons/plane/plane.glint"
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        # Frames of this session are PNG files.
+        for command in ([glint, "--version"], [glint, "detect", plane], [glint, "evaluate", plane, "--models", "dual"]):
+            names = loaded(*command)
+            assert any(n.startswith("libglint-core") for n in names), names
+            assert not [n for n in names if re.match("libglint-codecs|libopencv_(imgcodecs|videoio)|libgdal|libavcodec", n)], (command, names)
+        names = loaded(glint, "detect", plane, "--out", folder / "written")
+        assert any(n.startswith("libglint-codecs") for n in names), names
+
+        for part in ("bin", "lib"):
+            (folder / part).mkdir()
+        shutil.copy2(glint, folder / "bin")
+        for library in libraries.glob("libglint-*.so.0"):
+            if "codecs" not in library.name:
+                shutil.copy2(library, folder / "lib")
+        alone, path = folder / "bin/glint", {"LD_LIBRARY_PATH": str(folder / "lib")}
+        assert run(alone, "detect", plane, **path).returncode == 0
+        refused = run(alone, "detect", plane, "--out", folder / "refused", **path)
+        line = f"glint: {folder}/lib/libglint-codecs.so.0: cannot be loaded, and without it Glint writes no images and reads only PNG and JPEG: "
+        assert refused.returncode == 2 and refused.stderr.startswith(line) and refused.stderr.count("\n") == 1, refused
+        assert not (folder / "refused").exists()
+
+
+main()
