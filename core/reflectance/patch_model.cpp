@@ -32,16 +32,16 @@ std::vector<double> kernelOf(double variance) {
 void blur(std::vector<double>& cells, int columns, int rows, double variance) {
   const std::vector<double> taps = kernelOf(variance);
   const int reach = static_cast<int>(taps.size()) / 2;
-  std::vector<double> line;
+  Eigen::ArrayXd line, sums;
   const auto along = [&](int start, int count, int stride) {
-    line.resize(static_cast<std::size_t>(count));
-    for (int i = 0; i < count; ++i) line[static_cast<std::size_t>(i)] = cells[static_cast<std::size_t>(start + i * stride)];
-    for (int i = 0; i < count; ++i) {
-      double sum = 0;
-      for (int k = -reach; k <= reach; ++k)
-        sum += taps[static_cast<std::size_t>(k + reach)] * line[static_cast<std::size_t>(std::clamp(i + k, 0, count - 1))];
-      cells[static_cast<std::size_t>(start + i * stride)] = sum;
-    }
+    const Eigen::Map<Eigen::ArrayXd, 0, Eigen::InnerStride<>> cell(cells.data() + start, count, Eigen::InnerStride<>(stride));
+    line.resize(count + 2 * reach);
+    line.head(reach).setConstant(cell(0));
+    line.segment(reach, count) = cell;
+    line.tail(reach).setConstant(cell(count - 1));
+    sums.setZero(count);
+    for (int k = 0; k <= 2 * reach; ++k) sums += taps[static_cast<std::size_t>(k)] * line.segment(k, count);
+    Eigen::Map<Eigen::ArrayXd, 0, Eigen::InnerStride<>>(cells.data() + start, count, Eigen::InnerStride<>(stride)) = sums;
   };
   for (int row = 0; row < rows; ++row) along(row * columns, columns, 1);
   for (int column = 0; column < columns; ++column) along(column, rows, columns);
@@ -168,7 +168,7 @@ PixelPatch coarsened(const PixelPatch& fine) {
   return p;
 }
 
-LobeImage lobeImage(Lobe lobe, const FramePatches& frame, const State& at, const lobe::LampRule& rule) {
+LobeImage sharpImage(Lobe lobe, const FramePatches& frame, const State& at, const lobe::LampRule& rule) {
   LobeImage image;
   image.logTop = -std::numeric_limits<double>::infinity();
   const double roughness = at.roughness();
@@ -190,17 +190,41 @@ LobeImage lobeImage(Lobe lobe, const FramePatches& frame, const State& at, const
     }
   }
   if (!image.lit) return image;
-  for (std::size_t k = 0; k < image.value.size(); ++k) {
-    const PixelPatch& p = frame.patches[k];
-    for (double& v : image.value[k]) v = std::exp(v - image.logTop);
-    blur(image.value[k], p.columns, p.rows, std::max(0.0, at.blurVariance / (p.cellPx * p.cellPx) + kPixelVariance));
-  }
+  for (std::vector<double>& values : image.value)
+    for (double& v : values) v = std::exp(v - image.logTop);
   return image;
 }
 
-LinearFit linearFit(const FramePatches& frame, const LobeImage& image, BackgroundKind kind, const State& at,
-                    const Weights& weights) {
-  const int each = coefficientsOf(kind);
+LobeImage blurredImage(LobeImage sharp, const FramePatches& frame, const State& at) {
+  if (!sharp.lit) return sharp;
+  for (std::size_t k = 0; k < sharp.value.size(); ++k) {
+    const PixelPatch& p = frame.patches[k];
+    blur(sharp.value[k], p.columns, p.rows, std::max(0.0, at.blurVariance / (p.cellPx * p.cellPx) + kPixelVariance));
+  }
+  return sharp;
+}
+
+bool dependsOnLight(BackgroundKind kind) { return kind == BackgroundKind::Cosine || kind == BackgroundKind::SlopedCosine; }
+
+BackgroundBasis backgroundBasis(const FramePatches& frame, BackgroundKind kind, const State& at) {
+  BackgroundBasis basis;
+  basis.each = coefficientsOf(kind);
+  basis.terms.reserve(frame.used * static_cast<std::size_t>(basis.each));
+  basis.spread.reserve(frame.used);
+  for (const PixelPatch& p : frame.patches)
+    for (std::size_t i = 0; i < p.size(); ++i) {
+      if (!p.used[i]) continue;
+      double row[6];
+      const int count = fillBasis(p, frame, i, kind, at, row);
+      basis.terms.insert(basis.terms.end(), row, row + count);
+      const double share = p.value[i] / frame.top;
+      basis.spread.push_back(frame.top * std::sqrt(std::max(share, kDarkest)));
+    }
+  return basis;
+}
+
+LinearFit linearFit(const FramePatches& frame, const LobeImage& image, const BackgroundBasis& basis, const Weights& weights) {
+  const int each = basis.each;
   const Eigen::Index unknowns = 1 + each * static_cast<Eigen::Index>(frame.patches.size());
   LinearFit fit;
   fit.residual.assign(frame.used, 0);
@@ -216,13 +240,11 @@ LinearFit linearFit(const FramePatches& frame, const LobeImage& image, Backgroun
     const PixelPatch& p = frame.patches[k];
     for (std::size_t i = 0; i < p.size(); ++i) {
       if (!p.used[i]) continue;
-      const double share = p.value[i] / frame.top;
       roots(n) = std::sqrt(weights[static_cast<std::size_t>(n)]);
-      const double weight = roots(n) / (frame.top * std::sqrt(std::max(share, kDarkest)));
-      double basis[6];
-      const int count = fillBasis(p, frame, i, kind, at, basis);
+      const double weight = roots(n) / basis.spread[static_cast<std::size_t>(n)];
       rows(n, 0) = weight * frame.top * image.value[k][i];
-      for (int b = 0; b < count; ++b) rows(n, 1 + each * static_cast<Eigen::Index>(k) + b) = weight * basis[b];
+      const double* const terms = basis.terms.data() + n * each;
+      for (int b = 0; b < each; ++b) rows(n, 1 + each * static_cast<Eigen::Index>(k) + b) = weight * terms[b];
       values(n) = weight * p.value[i];
       ++n;
     }
@@ -231,9 +253,10 @@ LinearFit linearFit(const FramePatches& frame, const LobeImage& image, Backgroun
   rows.array().rowwise() /= sizes.array();
   Eigen::MatrixXd normal = rows.transpose() * rows;
   normal.diagonal().array() += 1e-13;  // some hundred times round-off of columns of size one
-  Eigen::VectorXd scaled = normal.ldlt().solve(rows.transpose() * values);
+  const Eigen::LDLT<Eigen::MatrixXd> factors(normal);
+  Eigen::VectorXd scaled = factors.solve(rows.transpose() * values);
   // One step of refinement takes back most of what squaring the condition costs.
-  scaled += normal.ldlt().solve(rows.transpose() * (values - rows * scaled));
+  scaled += factors.solve(rows.transpose() * (values - rows * scaled));
   if (!scaled.allFinite()) return fit;
   const Eigen::VectorXd left = values - rows * scaled;
   for (Eigen::Index i = 0; i < n; ++i) fit.residual[static_cast<std::size_t>(i)] = left(i) / roots(i);
@@ -242,17 +265,17 @@ LinearFit linearFit(const FramePatches& frame, const LobeImage& image, Backgroun
   return fit;
 }
 
-LinearFit robustFit(const FramePatches& frame, const LobeImage& image, BackgroundKind kind, const State& at, Weights& weights) {
+LinearFit robustFit(const FramePatches& frame, const LobeImage& image, const BackgroundBasis& basis, Weights& weights) {
   LinearFit fit;
   for (int round = 0; round < kReweightings; ++round) {
     const Eigen::VectorXd before = fit.coefficients;
-    fit = linearFit(frame, image, kind, at, weights);
+    fit = linearFit(frame, image, basis, weights);
     if (!fit.solved) return fit;
     for (std::size_t i = 0; i < weights.size(); ++i) weights[i] = robustWeight(fit.residual[i]);
     if (before.size() > 0 && (fit.coefficients - before).norm() <= kCoefficientsSettled * fit.coefficients.norm()) break;
   }
   // With the weights as they are left: whoever holds them and moves the lobe a little compares with this.
-  return linearFit(frame, image, kind, at, weights);
+  return linearFit(frame, image, basis, weights);
 }
 
 std::vector<double> backgroundOf(const PixelPatch& patch, const FramePatches& frame, BackgroundKind kind, const State& at,

@@ -20,6 +20,7 @@ struct State {
 
   double roughness() const { return std::exp(logRoughness); }
   bool atInfinity() const { return light.w() == 0; }
+  bool operator==(const State&) const = default;
   lobe::LampIn<double> lamp() const { return {shape, light, radiusSquared, halfAxis}; }
 };
 
@@ -43,14 +44,17 @@ Eigen::Vector4d normalisedLight(const Light& light, const Normalised& in);
 /// Two by two cells become one: four times fewer, for the search.
 PixelPatch coarsened(const PixelPatch& patch);
 
-/// S = exp(log I - logTop) over all cells of a frame's patches, blurred; logTop is the largest log I of the frame's cells.
+/// S = exp(log I - logTop) over all cells of a frame's patches; logTop is the largest log I of the frame's cells.
 struct LobeImage {
   std::vector<std::vector<double>> value;  ///< per patch and cell
   double logTop = 0;
   std::size_t topPatch = 0, topCell = 0;  ///< where it is
   bool lit = false;                       ///< some used cell is
 };
-LobeImage lobeImage(Lobe lobe, const FramePatches& frame, const State& at, const lobe::LampRule& rule);
+/// Not blurred: does not depend on the state's blur.
+LobeImage sharpImage(Lobe lobe, const FramePatches& frame, const State& at, const lobe::LampRule& rule);
+/// Blurred by the state's blur and the square of a pixel.
+LobeImage blurredImage(LobeImage sharp, const FramePatches& frame, const State& at);
 
 /// Variance of the square that a pixel averages over, px^2. A blur of minus this makes pixels of samples at their centres.
 inline constexpr double kPixelVariance = 1.0 / 12;
@@ -58,17 +62,26 @@ inline constexpr double kPixelVariance = 1.0 / 12;
 /// Weights of iteratively reweighted least squares, per used cell of a frame; ones to begin with.
 using Weights = std::vector<double>;
 
+/// What the background's coefficients multiply at the used cells of a frame: all that the linear part takes from a state besides the lobe.
+struct BackgroundBasis {
+  int each = 0;                ///< coefficients of a patch
+  std::vector<double> terms;   ///< per used cell, `each` of them
+  std::vector<double> spread;  ///< per used cell: I_max sqrt(max(I / I_max, darkest)), the residual's unit
+};
+BackgroundBasis backgroundBasis(const FramePatches& frame, BackgroundKind kind, const State& at);
+/// Whether the basis changes with the lamp.
+bool dependsOnLight(BackgroundKind kind);
+
 /// Strength and background coefficients of a frame for fixed weights, and the weighted residuals of all used cells.
 struct LinearFit {
   Eigen::VectorXd coefficients;  ///< strength, then each patch's background
   std::vector<double> residual;  ///< w (I - K S - b) / I_max, without the robust weight
   bool solved = false;
 };
-LinearFit linearFit(const FramePatches& frame, const LobeImage& image, BackgroundKind kind, const State& at,
-                    const Weights& weights);
+LinearFit linearFit(const FramePatches& frame, const LobeImage& image, const BackgroundBasis& basis, const Weights& weights);
 
 /// Reweights until the coefficients settle. `weights` start from what they are and are left as they end.
-LinearFit robustFit(const FramePatches& frame, const LobeImage& image, BackgroundKind kind, const State& at, Weights& weights);
+LinearFit robustFit(const FramePatches& frame, const LobeImage& image, const BackgroundBasis& basis, Weights& weights);
 
 /// rho(r) = 2 a^2 (sqrt(1 + r^2 / a^2) - 1), a = kRobust.
 double robustSquare(double residual);

@@ -175,6 +175,8 @@ template <class F>
 void PixelProblem::each(const F& work) {
   solved_.resize(evidence_.frames.size());
   images_.resize(evidence_.frames.size());
+  sharp_.resize(evidence_.frames.size());
+  bases_.resize(evidence_.frames.size());
   lit_.resize(evidence_.frames.size());
   parallelFor(
       static_cast<int>(evidence_.frames.size()), [&](int f) { work(static_cast<std::size_t>(f)); }, {}, "pixels");
@@ -182,6 +184,7 @@ void PixelProblem::each(const F& work) {
 
 bool PixelProblem::residualsAt(const State& at, double* out) {
   bool any = false;
+  here_ = at;
   each([&](std::size_t f) { solveAt(f, at); });
   for (std::size_t f = 0; f < solved_.size(); ++f) {
     any = any || lit_[f];
@@ -208,11 +211,14 @@ void PixelProblem::differences(const State& moved, double step, double* column, 
 }
 
 void PixelProblem::solveAt(std::size_t f, const State& at) {
-  images_[f] = lobeImage(lobe_, evidence_.frames[f], at, rule_);
+  const FramePatches& frame = evidence_.frames[f];
+  sharp_[f] = sharpImage(lobe_, frame, at, rule_);
+  images_[f] = blurredImage(sharp_[f], frame, at);
   lit_[f] = images_[f].lit;
   if (lit_[f]) {
     Weights weights(weights_[f].size(), 1.0);
-    solved_[f] = robustFit(evidence_.frames[f], images_[f], kind_, at, weights);
+    bases_[f] = backgroundBasis(frame, kind_, at);
+    solved_[f] = robustFit(frame, images_[f], bases_[f], weights);
     weights_[f] = std::move(weights);
     // A highlight takes nothing away from the light that is there.
     if (solved_[f].solved && !(solved_[f].coefficients(0) > 0)) solved_[f].solved = false;
@@ -220,15 +226,21 @@ void PixelProblem::solveAt(std::size_t f, const State& at) {
   if (lit_[f] && solved_[f].solved) return;
   // Nothing of the frame is explained: what it shows above zero is the residual.
   solved_[f] = {};
-  for (const PixelPatch& p : evidence_.frames[f].patches)
+  for (const PixelPatch& p : frame.patches)
     for (std::size_t i = 0; i < p.size(); ++i)
-      if (p.used[i]) solved_[f].residual.push_back(std::sqrt(std::max(0.0f, p.value[i]) / evidence_.frames[f].top));
+      if (p.used[i]) solved_[f].residual.push_back(std::sqrt(std::max(0.0f, p.value[i]) / frame.top));
 }
 
 LinearFit PixelProblem::fitFixed(std::size_t f, const State& at) const {
-  const LobeImage image = lobeImage(lobe_, evidence_.frames[f], at, rule_);
-  if (!image.lit || !solved_[f].solved) return solved_[f];
-  LinearFit fit = linearFit(evidence_.frames[f], image, kind_, at, weights_[f]);
+  if (!solved_[f].solved) return solved_[f];
+  const FramePatches& frame = evidence_.frames[f];
+  // What the step leaves as it is was computed by residualsAt().
+  State withBlurOfHere = at;
+  withBlurOfHere.blurVariance = here_.blurVariance;
+  const LobeImage image = blurredImage(withBlurOfHere == here_ ? sharp_[f] : sharpImage(lobe_, frame, at, rule_), frame, at);
+  if (!image.lit) return solved_[f];
+  const bool sameBasis = !dependsOnLight(kind_) || at.light == here_.light;
+  LinearFit fit = linearFit(frame, image, sameBasis ? bases_[f] : backgroundBasis(frame, kind_, at), weights_[f]);
   return fit.solved ? fit : solved_[f];
 }
 

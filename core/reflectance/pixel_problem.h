@@ -54,7 +54,9 @@ class PixelProblem {
   std::size_t total_ = 0;
   std::vector<Weights> weights_;
   std::vector<LinearFit> solved_;
-  std::vector<LobeImage> images_;
+  std::vector<LobeImage> sharp_, images_;
+  std::vector<BackgroundBasis> bases_;
+  State here_;  ///< of the last residualsAt()
   std::vector<char> lit_;
 };
 
