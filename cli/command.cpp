@@ -16,6 +16,7 @@
 #include "core/base/similar_name.h"
 #include "core/base/task_memory.h"
 #include "core/base/version.h"
+#include "core/codecs/codecs.h"
 #include "core/plugin/load.h"
 #include "viz/added_layer.h"
 
@@ -91,6 +92,8 @@ int guarded(const std::function<int()>& run) {
     showWarnings();
     return code;
   } catch (const InputError& e) {
+    return fail(e.what(), kWrongInput);
+  } catch (const CodecsMissing& e) {
     return fail(e.what(), kWrongInput);
   } catch (const CannotAnswer& e) {
     return fail(e.failure.message(), kCannotAnswer);

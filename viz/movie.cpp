@@ -84,7 +84,7 @@ auto quietly(const Call& call) {
 
 /// A writer that ends in silence too, also when a picture could not be drawn.
 struct Writer {
-  const std::unique_ptr<VideoWriter> video = newVideoWriter();
+  const std::unique_ptr<VideoEncoder> video = newVideoEncoder();
   ~Writer() {
     quietly([&] { video->close(); });
   }
@@ -106,10 +106,10 @@ void encode(const std::string& file, const fs::path& temporary, const MovieForma
   }
   quietly([&] { writer.video->close(); });
   // The writer tells of no failure: a full disk shows only here.
-  const std::unique_ptr<VideoReader> back = newVideoReader();
-  quietly([&] { return back->open(temporary.string()); });
+  const std::unique_ptr<VideoDecoder> back = newVideoDecoder();
   int found = 0;
-  while (quietly([&] { return back->grab(); })) {
+  const bool opened = quietly([&] { return back->open(temporary.string()); });
+  while (opened && quietly([&] { return back->grab(); })) {
     if (!report(progress, {"reading back", found, frames})) throw Stopped{};
     ++found;
   }

@@ -145,7 +145,7 @@ class OpenVideo {
   std::uintmax_t bytes_;
   fs::file_time_type changed_;
   std::mutex mutex_;
-  const std::unique_ptr<VideoReader> video_ = newVideoReader();
+  const std::unique_ptr<VideoDecoder> video_ = newVideoDecoder();
   int next_ = 0;  ///< the picture that `grab` gives next
   std::deque<Kept> kept_;
 };
@@ -197,7 +197,7 @@ VideoContent readVideoContent(const fs::path& file) {
   VideoContent content;
   try {
     const QuietLibraries quiet;
-    const std::unique_ptr<VideoReader> video = newVideoReader();
+    const std::unique_ptr<VideoDecoder> video = newVideoDecoder();
     if (!video->open(name)) throw InputError(name, "", "is no video that can be decoded: damaged, or of an unknown codec");
     requireVideoSize(video->width(), video->height(), name);
     VideoClock clock(file, video->picturesPerSecond());

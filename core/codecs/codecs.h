@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -9,12 +10,19 @@ namespace cv {
 class Mat;
 }
 
-/// Images and videos through OpenCV's modules imgcodecs and videoio. These bring two hundred libraries (GDAL's, FFmpeg's), which take more
-/// than half of the start of a program that may never need them. So they are linked by a library of their own, libglint-codecs, which the
-/// first call of a function below loads. Pixels of PNG and JPEG files are read without it (core/scene/image_decode.h).
-/// All functions may run on several threads at once.
-/// @throws InputError  libglint-codecs is missing or cannot be loaded
+/// Images and videos through OpenCV's modules imgcodecs and videoio. These bring two hundred libraries (GDAL's, FFmpeg's), which took
+/// four fifths of the start of a program that may never need them. So they are linked by a library of their own, libglint-codecs, which the
+/// first call of a function below loads from the folder of libglint-core. Pixels of PNG and JPEG files are read without it
+/// (core/scene/image_decode.h). The functions may run on several threads at once; a decoder or an encoder belongs to one thread at a time.
+/// All functions throw CodecsMissing.
 namespace glint {
+
+/// libglint-codecs is missing, cannot be loaded or is of another version. One line with its file. Not an InputError: whoever goes on
+/// without a file that cannot be read must not go on without all of them.
+class CodecsMissing : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
 
 /// Loads what the functions below need, unless that was done. Call it where an exception of theirs would be taken for a damaged file.
 void loadCodecs();
@@ -35,9 +43,9 @@ bool encodeWithOpenCv(const std::string& ending, const cv::Mat& pixels, std::vec
 
 /// A video that is being decoded, picture by picture, by FFmpeg alone: other back ends take addresses and patterns of file names.
 /// Functions throw cv::Exception for some damaged files.
-class VideoReader {
+class VideoDecoder {
  public:
-  virtual ~VideoReader() = default;
+  virtual ~VideoDecoder() = default;
   /// Pictures are turned as the file says. @return false: no video that can be decoded
   virtual bool open(const std::string& file) = 0;
   virtual bool isOpen() const = 0;
@@ -53,12 +61,12 @@ class VideoReader {
   virtual double height() const = 0;             ///< px
   virtual double picturesPerSecond() const = 0;  ///< 0 = unknown
 };
-std::unique_ptr<VideoReader> newVideoReader();
+std::unique_ptr<VideoDecoder> newVideoDecoder();
 
-/// A video that is being written. It tells of no failure after `open`: read it back.
-class VideoWriter {
+/// A video that is being written by FFmpeg. It tells of no failure after `open`: read it back.
+class VideoEncoder {
  public:
-  virtual ~VideoWriter() = default;
+  virtual ~VideoEncoder() = default;
   /// @param codec  four characters. @return false: no access or no such encoder
   virtual bool open(const std::string& file, const char* codec, double picturesPerSecond, int width, int height) = 0;
   virtual bool isOpen() const = 0;
@@ -66,6 +74,6 @@ class VideoWriter {
   virtual void write(const cv::Mat& picture) = 0;
   virtual void close() = 0;
 };
-std::unique_ptr<VideoWriter> newVideoWriter();
+std::unique_ptr<VideoEncoder> newVideoEncoder();
 
 }  // namespace glint

@@ -19,7 +19,7 @@ bool encode(const std::string& ending, const cv::Mat& pixels, std::vector<unsign
   return cv::imencode(ending, pixels, bytes, parameters);
 }
 
-class OpenCvReader : public VideoReader {
+class OpenCvDecoder : public VideoDecoder {
  public:
   bool open(const std::string& file) override {
     const std::vector<int> options{cv::CAP_PROP_HW_ACCELERATION, cv::VIDEO_ACCELERATION_NONE};
@@ -45,10 +45,10 @@ class OpenCvReader : public VideoReader {
   cv::VideoCapture capture_;
 };
 
-class OpenCvWriter : public VideoWriter {
+class OpenCvEncoder : public VideoEncoder {
  public:
   bool open(const std::string& file, const char* codec, double picturesPerSecond, int width, int height) override {
-    return writer_.open(file, cv::VideoWriter::fourcc(codec[0], codec[1], codec[2], codec[3]), picturesPerSecond,
+    return writer_.open(file, cv::CAP_FFMPEG, cv::VideoWriter::fourcc(codec[0], codec[1], codec[2], codec[3]), picturesPerSecond,
                         cv::Size(width, height));
   }
   bool isOpen() const override { return writer_.isOpened(); }
@@ -59,13 +59,13 @@ class OpenCvWriter : public VideoWriter {
   cv::VideoWriter writer_;
 };
 
-std::unique_ptr<VideoReader> reader() { return std::make_unique<OpenCvReader>(); }
-std::unique_ptr<VideoWriter> writer() { return std::make_unique<OpenCvWriter>(); }
+std::unique_ptr<VideoDecoder> decoder() { return std::make_unique<OpenCvDecoder>(); }
+std::unique_ptr<VideoEncoder> encoder() { return std::make_unique<OpenCvEncoder>(); }
 
 }  // namespace
 }  // namespace glint
 
 extern "C" __attribute__((visibility("default"))) const glint::CodecTable* glint_codecs() {
-  static constexpr glint::CodecTable table{&glint::decode, &glint::encode, &glint::reader, &glint::writer};
+  static constexpr glint::CodecTable table{GLINT_VERSION, &glint::decode, &glint::encode, &glint::decoder, &glint::encoder};
   return &table;
 }

@@ -33,6 +33,7 @@ void blur(std::vector<double>& cells, int columns, int rows, double variance) {
   const std::vector<double> taps = kernelOf(variance);
   const int reach = static_cast<int>(taps.size()) / 2;
   Eigen::ArrayXd line, sums;
+  if (columns == 0 || rows == 0) return;
   const auto along = [&](int start, int count, int stride) {
     const Eigen::Map<Eigen::ArrayXd, 0, Eigen::InnerStride<>> cell(cells.data() + start, count, Eigen::InnerStride<>(stride));
     line.resize(count + 2 * reach);
@@ -215,8 +216,8 @@ BackgroundBasis backgroundBasis(const FramePatches& frame, BackgroundKind kind, 
     for (std::size_t i = 0; i < p.size(); ++i) {
       if (!p.used[i]) continue;
       double row[6];
-      const int count = fillBasis(p, frame, i, kind, at, row);
-      basis.terms.insert(basis.terms.end(), row, row + count);
+      require(fillBasis(p, frame, i, kind, at, row) == basis.each, "backgroundBasis: as many terms as coefficients");
+      basis.terms.insert(basis.terms.end(), row, row + basis.each);
       const double share = p.value[i] / frame.top;
       basis.spread.push_back(frame.top * std::sqrt(std::max(share, kDarkest)));
     }

@@ -185,6 +185,7 @@ void PixelProblem::each(const F& work) {
 bool PixelProblem::residualsAt(const State& at, double* out) {
   bool any = false;
   here_ = at;
+  fresh_ = true;
   each([&](std::size_t f) { solveAt(f, at); });
   for (std::size_t f = 0; f < solved_.size(); ++f) {
     any = any || lit_[f];
@@ -237,9 +238,10 @@ LinearFit PixelProblem::fitFixed(std::size_t f, const State& at) const {
   // What the step leaves as it is was computed by residualsAt().
   State withBlurOfHere = at;
   withBlurOfHere.blurVariance = here_.blurVariance;
-  const LobeImage image = blurredImage(withBlurOfHere == here_ ? sharp_[f] : sharpImage(lobe_, frame, at, rule_), frame, at);
+  const LobeImage image =
+      blurredImage(fresh_ && withBlurOfHere == here_ ? sharp_[f] : sharpImage(lobe_, frame, at, rule_), frame, at);
   if (!image.lit) return solved_[f];
-  const bool sameBasis = !dependsOnLight(kind_) || at.light == here_.light;
+  const bool sameBasis = fresh_ && (!dependsOnLight(kind_) || at.light == here_.light);
   LinearFit fit = linearFit(frame, image, sameBasis ? bases_[f] : backgroundBasis(frame, kind_, at), weights_[f]);
   return fit.solved ? fit : solved_[f];
 }
@@ -259,6 +261,7 @@ bool PixelProblem::chooseRule(const State& at) {
   largestRatio_ = 1.3 * largest;
   const lobe::LampRule before = rule_;
   rule_ = lobe::lampRuleFor(at.shape, largestRatio_);
+  fresh_ = false;
   return first || rule_.disc != before.disc || rule_.along != before.along;
 }
 

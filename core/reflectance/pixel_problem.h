@@ -56,7 +56,8 @@ class PixelProblem {
   std::vector<LinearFit> solved_;
   std::vector<LobeImage> sharp_, images_;
   std::vector<BackgroundBasis> bases_;
-  State here_;  ///< of the last residualsAt()
+  State here_;          ///< of the last residualsAt()
+  bool fresh_ = false;  ///< sharp_ and bases_ are of that state and of this rule
   std::vector<char> lit_;
 };
 

@@ -18,6 +18,7 @@ namespace glint {
 /// standard error, whatever the decoders find.
 /// @param header  of these bytes, without a problem
 /// @return FrameUnreadable: damaged data, where a decoder would go on with grey or wrong pixels; CMYK.
+/// @throws CodecsMissing  neither PNG nor JPEG, and libglint-codecs is not there
 Outcome<cv::Mat> decodeImage(const std::string& bytes, const ImageHeader& header);
 
 }  // namespace glint

@@ -37,18 +37,29 @@ def main():
         names = loaded(glint, "detect", plane, "--out", folder / "written")
         assert any(n.startswith("libglint-codecs") for n in names), names
 
-        for part in ("bin", "lib"):
+        # The library is missing: what needs none of it goes on, the rest is refused in one line that names the file.
+        for part in ("bin", "lib", "theirs"):
             (folder / part).mkdir()
         shutil.copy2(glint, folder / "bin")
         for library in libraries.glob("libglint-*.so.0"):
-            if "codecs" not in library.name:
-                shutil.copy2(library, folder / "lib")
-        alone, path = folder / "bin/glint", {"LD_LIBRARY_PATH": str(folder / "lib")}
+            shutil.copy2(library, folder / ("lib" if "codecs" in library.name else "theirs"))  # bin/../lib is not asked
+        alone, path = folder / "bin/glint", {"LD_LIBRARY_PATH": str(folder / "theirs")}
         assert run(alone, "detect", plane, **path).returncode == 0
-        refused = run(alone, "detect", plane, "--out", folder / "refused", **path)
-        line = f"glint: {folder}/lib/libglint-codecs.so.0: cannot be loaded, and without it Glint writes no images and reads only PNG and JPEG: "
-        assert refused.returncode == 2 and refused.stderr.startswith(line) and refused.stderr.count("\n") == 1, refused
-        assert not (folder / "refused").exists()
+        assert run(glint, "synth", sessions / "lessons/plane/spec.json", "--out", folder / "floats").returncode == 0
+        assert list((folder / "floats").rglob("*.tiff"))
+        written = folder / "refused"
+        for command in (["detect", plane, "--out", written], ["detect", folder / "floats/scene.json"]):
+            refused = run(alone, *command, **path)
+            assert refused.returncode == 2 and refused.stderr.count("\n") == 1, refused
+            assert refused.stderr.startswith(f"glint: {folder}/theirs/libglint-codecs.so.0: cannot be loaded: "), refused
+            assert "without it Glint writes no images and reads no videos and no images but PNG and JPEG" in refused.stderr, refused
+        assert not written.exists()
+        # One of another version is refused, too.
+        (folder / "other.c").write_text('const char* table[8] = {"0.0.9"};\nconst void* glint_codecs(void) { return table; }\n')
+        if shutil.which("cc"):
+            assert run("cc", "-shared", "-fPIC", folder / "other.c", "-o", folder / "theirs/libglint-codecs.so.0").returncode == 0
+            refused = run(alone, "detect", plane, "--out", written, **path)
+            assert refused.returncode == 2 and "libglint-codecs.so.0: is of Glint 0.0.9, not of " in refused.stderr, refused
 
 
 main()

@@ -43,7 +43,7 @@ print(*sorted({{line.split()[-1] for line in open("/proc/self/maps") if "libglin
 assert (pathlib.Path(glint.__file__).parent / "py.typed").exists()
 """, cwd="/", env=environment).split()
     outside = [path for path in said if not pathlib.Path(path).is_relative_to(work / "venv")]
-    assert not outside and len(said) >= 3, f"not of the virtual environment: {outside}; {said}"
+    assert not outside and len(said) >= 4 and any("libglint-codecs" in path for path in said), f"not of the virtual environment: {outside}; {said}"
     print(*said, sep="\n")
 
 

@@ -59,14 +59,14 @@ TEST(Codecs, AVideoIsWhatOpenCvReadsAndWrites) {
   const testing_support::TemporaryFolder folder;
   const std::string file = (folder.path() / "grey.avi").string();
   {
-    const std::unique_ptr<VideoWriter> writer = newVideoWriter();
+    const std::unique_ptr<VideoEncoder> writer = newVideoEncoder();
     EXPECT_FALSE(writer->open((folder.path() / "no/folder.avi").string(), "MJPG", 25, 64, 48));
     ASSERT_TRUE(writer->open(file, "MJPG", 25, 64, 48));
     for (int i = 0; i < 5; ++i) writer->write(cv::Mat(48, 64, CV_8UC3, cv::Scalar::all(40 * i)));
     writer->close();
   }
   cv::VideoCapture theirs(file);
-  const std::unique_ptr<VideoReader> ours = newVideoReader();
+  const std::unique_ptr<VideoDecoder> ours = newVideoDecoder();
   EXPECT_FALSE(ours->isOpen());
   ASSERT_TRUE(ours->open(file));
   EXPECT_TRUE(ours->isOpen());
@@ -82,9 +82,9 @@ TEST(Codecs, AVideoIsWhatOpenCvReadsAndWrites) {
   }
   EXPECT_FALSE(ours->grab());
   ASSERT_TRUE(ours->open(file) && ours->seek(3) && ours->grab());
-  cv::Mat third;
-  ASSERT_TRUE(ours->retrieve(third));
-  EXPECT_NEAR(cv::mean(third)[0], 120, kGreyOff);
+  cv::Mat fourth;
+  ASSERT_TRUE(ours->retrieve(fourth));
+  EXPECT_NEAR(cv::mean(fourth)[0], 120, kGreyOff);
   ours->close();
   EXPECT_FALSE(ours->isOpen());
   EXPECT_FALSE(ours->open((folder.path() / "absent.avi").string()));

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "core/reflectance/lobe_contour.h"
+#include "core/reflectance/pixel_problem.h"
 #include "core/surface/analytic.h"
 #include "tests/core/surface/surfaces.h"
 
@@ -396,6 +397,55 @@ TEST(ContourWithLobe, AClippedHighlightKeepsItsContourAndNamesItsLevel) {
   // The contour that was found lies where the radiance is this share of the true peak.
   const double radius = std::sqrt(h.areaPx2);
   EXPECT_NEAR(radius / std::sqrt(trueArea(s, 1, *h.trueLevel)), 1, 0.03);
+}
+
+// ---- A step that leaves the lamp and the lobe as they are takes the sharp image and the background's terms from before. The same step with
+// the roughness moved by one unit in the last place computes all anew.
+
+/// Largest difference between the two ways, share of the largest entry.
+double keptAgainstAnew(patch::PixelProblem& problem, const patch::State& at, double stepPx2) {
+  patch::State kept = at;
+  kept.blurVariance += stepPx2;
+  patch::State anew = kept;
+  anew.logRoughness = std::nextafter(anew.logRoughness, 0.0);
+  Eigen::VectorXd a(problem.residuals()), b(problem.residuals());
+  problem.differences(kept, stepPx2, a.data(), 1);
+  problem.differences(anew, stepPx2, b.data(), 1);
+  EXPECT_GT(b.cwiseAbs().maxCoeff(), 1e-6) << "the blur changes nothing";
+  return (a - b).cwiseAbs().maxCoeff() / b.cwiseAbs().maxCoeff();
+}
+
+TEST(PixelProblem, AStepOfTheBlurEqualsOneThatComputesAllAnew) {
+  Scene s;
+  s.albedo = 0.3;
+  const std::vector<PixelPatch> patches = patchesOf(s);
+  std::vector<const PixelPatch*> pointers;
+  for (const PixelPatch& p : patches) pointers.push_back(&p);
+  const patch::Normalised evidence = patch::normalised(pointers);
+  constexpr double kStepPx2 = 0.01;
+  constexpr double kRoundOff = 1e-8;  // of one unit in the last place of the roughness, over the step
+  for (const BackgroundKind kind : {BackgroundKind::SlopedCosine, BackgroundKind::Quadratic}) {
+    patch::PixelProblem problem(evidence, s.lobe, kind);
+    std::vector<double> residuals(static_cast<std::size_t>(problem.residuals()));
+    patch::State at;
+    at.shape = lobe::LampShape::Sphere;
+    at.light = patch::normalisedLight(Light::at(s.lamp), evidence);
+    at.logRoughness = std::log(s.roughness);
+    at.radiusSquared = 1e-4;
+    problem.chooseRule(at);
+    ASSERT_TRUE(problem.residualsAt(at, residuals.data()));
+    EXPECT_LT(keptAgainstAnew(problem, at, kStepPx2), kRoundOff);
+    // Another state: nothing of the first is left.
+    at.blurVariance = 0.5;
+    at.logRoughness += 0.2;
+    ASSERT_TRUE(problem.residualsAt(at, residuals.data()));
+    EXPECT_LT(keptAgainstAnew(problem, at, kStepPx2), kRoundOff);
+    // A finer rule for a larger lamp, before the residuals are asked for again.
+    patch::State larger = at;
+    larger.radiusSquared = 1;
+    ASSERT_TRUE(problem.chooseRule(larger));
+    EXPECT_LT(keptAgainstAnew(problem, at, kStepPx2), kRoundOff);
+  }
 }
 
 }  // namespace
