@@ -10,6 +10,7 @@
 
 #include "cli/interrupt.h"
 #include "cli/terminal.h"
+#include "core/base/freed_memory.h"
 #include "core/base/limits.h"
 #include "core/base/number_text.h"
 #include "core/base/safe_text.h"
@@ -86,6 +87,7 @@ int fail(const std::string& line, int code) {
 /// Every way in which a command may end, as an exit code and at most one line.
 int guarded(const std::function<int()>& run) {
   try {
+    keepFreedMemory();
     reserveTaskMemory();
     const int code = run();
     if (!finish()) return stopped();

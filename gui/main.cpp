@@ -13,12 +13,12 @@
 
 #include "core/base/limits.h"
 #include "core/base/outcome.h"
-#include "core/base/task_memory.h"
 #include "core/base/version.h"
 #include "core/plugin/load.h"
 #include "core/scene/outputs.h"
 #include "gui/base/error_line.h"
 #include "gui/base/input_rules.h"
+#include "gui/base/memory_rules.h"
 #include "gui/lamps/lamps_in_window.h"
 #include "gui/scene/camera_glide.h"
 #include "gui/window/command_line.h"
@@ -142,7 +142,7 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   try {
-    glint::reserveTaskMemory();
+    glint::gui::applyMemoryRules();
     return run(argc, argv);
   } catch (const std::exception& e) {
     glint::gui::printErrorLine(e.what());

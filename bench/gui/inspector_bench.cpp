@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "gui/base/memory_rules.h"
 #include "gui/base/theme.h"
 #include "gui/frame/frame_canvas.h"
 #include "gui/window/main_window.h"
@@ -172,6 +173,7 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   try {
+    applyMemoryRules();
     return run(argc, argv);
   } catch (const std::exception& e) {
     std::fprintf(stderr, "bench_inspector: %s\n", e.what());

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 namespace glint {
@@ -39,21 +40,22 @@ LinearPixels linearPixels(const Image& linear, const Image* mask, double clipVal
   p.value = Image(linear.width, linear.height, 1);
   p.usable.assign(p.value.data.size(), 0);
   p.clipped.assign(p.value.data.size(), 0);
-  for (int y = 0; y < linear.height; ++y)
-    for (int x = 0; x < linear.width; ++x) {
-      bool good = !mask || mask->at(x, y) != 0.f, full = false;
-      double sum = 0;
-      for (int c = 0; c < linear.channels; ++c) {
-        const float v = linear.at(x, y, c);
-        good = good && std::isfinite(v) && v >= 0;
-        full = full || (clipValue > 0 && v >= clipValue);
-        sum += v;
-      }
-      const std::size_t i = static_cast<std::size_t>(y) * linear.width + x;
-      p.clipped[i] = full;
-      p.usable[i] = good && !full;
-      p.value.data[i] = std::isfinite(sum) ? static_cast<float>(sum / linear.channels) : 0.f;
+  const double clip = clipValue > 0 ? clipValue : std::numeric_limits<double>::infinity();
+  constexpr float kLargest = std::numeric_limits<float>::max();
+  const float* v = linear.data.data();
+  for (std::size_t i = 0; i < p.value.data.size(); ++i) {
+    // Without branches: this loop goes over every pixel of every frame.
+    bool good = !mask || mask->data[i] != 0.f, full = false;
+    double sum = 0;
+    for (int c = 0; c < linear.channels; ++c, ++v) {
+      good &= (*v >= 0) & (*v <= kLargest);
+      full |= *v >= clip;
+      sum += *v;
     }
+    p.clipped[i] = full;
+    p.usable[i] = good & !full;
+    p.value.data[i] = std::isfinite(sum) ? static_cast<float>(sum / linear.channels) : 0.f;
+  }
   return p;
 }
 

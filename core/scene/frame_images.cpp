@@ -7,8 +7,10 @@
 #include <opencv2/core.hpp>
 
 #include "core/base/atomic_file.h"
+#include "core/base/limits.h"
 #include "core/base/median.h"
 #include "core/base/srgb.h"
+#include "core/scene/decoded_images.h"
 #include "core/scene/image_decode.h"
 #include "core/scene/scene.h"
 #include "core/scene/scene_files.h"
@@ -29,11 +31,6 @@ std::string wrongSize(std::uint64_t width, std::uint64_t height, const Camera& c
          std::to_string(camera.width) + " x " + std::to_string(camera.height);
 }
 
-struct Decoded {
-  cv::Mat pixels;  ///< 1 or 3 channels, RGB order, the file's own depth
-  bool saysLinear = false;
-};
-
 /// What is wrong with a file as far as its header tells; "" = nothing.
 std::string headerProblem(const ImageHeader& header, const Camera& camera) {
   if (!header.problem.empty()) return header.problem;
@@ -47,7 +44,7 @@ std::string headerProblem(const ImageHeader& header, const Camera& camera) {
 
 constexpr double kMega = 1e6;
 
-Outcome<Decoded> decode(const fs::path& file, const Camera& camera) {
+Outcome<DecodedImage> decodeFile(const fs::path& file, const Camera& camera) {
   std::string bytes;
   ImageHeader header;
   try {
@@ -60,21 +57,42 @@ Outcome<Decoded> decode(const fs::path& file, const Camera& camera) {
   }
   Outcome<cv::Mat> pixels = decodeImage(bytes, header);
   if (!pixels) return unreadable(file, pixels.failure().detail);
-  if (pixels->cols != camera.width || pixels->rows != camera.height)  // a decoder may know better than the header
-    return unreadable(file,
-                      wrongSize(static_cast<std::uint64_t>(pixels->cols), static_cast<std::uint64_t>(pixels->rows), camera));
-  return Decoded{std::move(*pixels), header.saysLinear};
+  return DecodedImage{std::make_shared<const cv::Mat>(*std::move(pixels)), header.saysLinear};
+}
+
+/// What an earlier read of the same file found. Nothing beyond a limit that was lowered since.
+std::optional<DecodedImage> keptImage(const fs::path& file, const FileVersion& version) {
+  std::optional<DecodedImage> kept = decodedImages().find(file, version);
+  if (!kept || double(version.bytes) / kMega > limitOf(Limit::ImageMegabytes) ||
+      double(kept->pixels->total()) / kMega > limitOf(Limit::ImageMegapixels))
+    return std::nullopt;
+  return kept;
+}
+
+Outcome<DecodedImage> decode(const fs::path& file, const Camera& camera) {
+  const std::optional<FileVersion> version = decodedImages().keepsAny() ? versionOf(file) : std::nullopt;
+  std::optional<DecodedImage> image = version ? keptImage(file, *version) : std::nullopt;
+  if (!image) {
+    Outcome<DecodedImage> read = decodeFile(file, camera);
+    if (!read) return read.failure();
+    if (version) decodedImages().keep(file, *version, *read);
+    image = *std::move(read);
+  }
+  const cv::Mat& m = *image->pixels;
+  if (m.cols != camera.width || m.rows != camera.height)  // a decoder may know better than the header
+    return unreadable(file, wrongSize(static_cast<std::uint64_t>(m.cols), static_cast<std::uint64_t>(m.rows), camera));
+  return *std::move(image);
 }
 
 /// The picture of a frame. Of a video all decoders give 8 bits.
-Outcome<Decoded> decode(const Frame& frame, const fs::path& file) {
+Outcome<DecodedImage> decode(const Frame& frame, const fs::path& file) {
   if (!frame.ofVideo || file != frame.image) return decode(file, frame.camera);
   const Outcome<cv::Mat> pixels = videoPicture(file, *frame.ofVideo);
   if (!pixels) return pixels.failure();
   if (pixels->cols != frame.camera.width || pixels->rows != frame.camera.height)
     return unreadable(
         file, wrongSize(static_cast<std::uint64_t>(pixels->cols), static_cast<std::uint64_t>(pixels->rows), frame.camera));
-  return Decoded{*pixels, false};
+  return DecodedImage{std::make_shared<const cv::Mat>(*pixels), false};
 }
 
 bool isFloat(const cv::Mat& m) { return m.depth() == CV_32F || m.depth() == CV_64F; }
@@ -101,6 +119,17 @@ Image floatImage(const cv::Mat& m) {
   return image;
 }
 
+template <class Code>
+void lookUp(const cv::Mat& codes, const std::vector<float>& table, Image& image) {
+  const std::size_t channels = static_cast<std::size_t>(codes.channels());
+  float* out = image.data.data();
+  for (int y = 0; y < codes.rows; ++y) {
+    const Code* code = codes.ptr<Code>(y);
+    for (int x = 0; x < codes.cols; ++x)
+      for (std::size_t c = 0; c < channels; ++c) *out++ = table[*code++ * channels + c];
+  }
+}
+
 /// One value per code: 8- and 16-bit images have at most 65536.
 /// @param curve  of a code in 0..1 and its channel
 Image throughTable(const cv::Mat& m, const std::function<double(double, int)>& curve) {
@@ -109,23 +138,32 @@ Image throughTable(const cv::Mat& m, const std::function<double(double, int)>& c
   for (int i = 0; i <= largest; ++i)
     for (int c = 0; c < channels; ++c) table.push_back(static_cast<float>(curve(double(i) / largest, c)));
   Image image(m.cols, m.rows, channels);
-  float* out = image.data.data();
-  for (int y = 0; y < m.rows; ++y) {
-    for (int i = 0; i < m.cols * channels; ++i) {
-      const int code = m.depth() == CV_8U ? m.ptr<std::uint8_t>(y)[i] : m.ptr<std::uint16_t>(y)[i];
-      *out++ = table[static_cast<std::size_t>(code * channels + i % channels)];
-    }
-  }
+  if (m.depth() == CV_8U)
+    lookUp<std::uint8_t>(m, table, image);
+  else
+    lookUp<std::uint16_t>(m, table, image);
   return image;
 }
 
-/// Where no response is stated.
-bool takenAsLinear(const Decoded& d) { return d.pixels.depth() == CV_16U && d.saysLinear; }
+/// 1 where a channel of an 8-bit image is not 0, else 0.
+Image notZero(const cv::Mat& codes) {
+  Image mask(codes.cols, codes.rows, 1);
+  float* out = mask.data.data();
+  for (int y = 0; y < codes.rows; ++y) {
+    const std::uint8_t* code = codes.ptr<std::uint8_t>(y);
+    for (int x = 0; x < codes.cols; ++x, code += codes.channels())
+      *out++ = std::any_of(code, code + codes.channels(), [](std::uint8_t c) { return c != 0; }) ? 1.f : 0.f;
+  }
+  return mask;
+}
 
-std::string howLinear(const Frame& frame, const Decoded& d) {
-  if (isFloat(d.pixels))
+/// Where no response is stated.
+bool takenAsLinear(const DecodedImage& d) { return d.pixels->depth() == CV_16U && d.saysLinear; }
+
+std::string howLinear(const Frame& frame, const DecodedImage& d) {
+  if (isFloat(*d.pixels))
     return frame.response.isStated() ? "float values as stored (the response is of codes)" : "float values as stored";
-  return std::string(d.pixels.depth() == CV_8U ? "8-bit codes " : "16-bit codes ") + frame.response.words(takenAsLinear(d)) +
+  return std::string(d.pixels->depth() == CV_8U ? "8-bit codes " : "16-bit codes ") + frame.response.words(takenAsLinear(d)) +
          (frame.response.isStated() ? " (stated)"
           : takenAsLinear(d)        ? ""
                                     : " (default: no response is stated)");
@@ -160,9 +198,9 @@ Outcome<Image> readLinear(const Frame& frame, FrameSource source, std::string* h
   const bool useRadiance = frame.image.empty() || (source == FrameSource::Radiance && !frame.radiance.empty());
   const fs::path& file = useRadiance ? frame.radiance : frame.image;
   if (file.empty()) return Failure{Reason::FrameUnreadable, "frame " + frame.id + " has neither radiance nor image"};
-  Outcome<Decoded> decoded = decode(frame, file);
+  Outcome<DecodedImage> decoded = decode(frame, file);
   if (!decoded) return decoded.failure();
-  const cv::Mat& m = decoded->pixels;
+  const cv::Mat& m = *decoded->pixels;
   if (how) *how = howLinear(frame, *decoded);
   if (isFloat(m)) return floatImage(m);
   if (useRadiance) return unreadable(file, "radiance must be 32-bit float (give an 8- or 16-bit picture as image)");
@@ -177,9 +215,9 @@ Outcome<Image> readPhotograph(const Frame& frame) {
     if (!linear) return linear.failure();
     return toneMapped(*linear);
   }
-  Outcome<Decoded> decoded = decode(frame, frame.image);
+  Outcome<DecodedImage> decoded = decode(frame, frame.image);
   if (!decoded) return decoded.failure();
-  const cv::Mat& m = decoded->pixels;
+  const cv::Mat& m = *decoded->pixels;
   if (isFloat(m)) return toneMapped(floatImage(m));
   if (!isCode(m)) return unreadable(frame.image, "the pixel type is not supported (8-bit, 16-bit or float)");
   const CameraResponse& response = frame.response;
@@ -217,9 +255,11 @@ std::string frameFileProblem(const Frame& frame, FrameFile kind) {
 
 Outcome<std::optional<Image>> readMask(const Frame& frame) {
   if (frame.mask.empty()) return std::optional<Image>();
-  Outcome<Decoded> decoded = decode(frame.mask, frame.camera);
+  Outcome<DecodedImage> decoded = decode(frame.mask, frame.camera);
   if (!decoded) return decoded.failure();
-  const Image all = toImage(decoded->pixels, [](double v) { return v != 0 ? 1.f : 0.f; });
+  const cv::Mat& codes = *decoded->pixels;
+  if (codes.depth() == CV_8U) return std::optional<Image>(notZero(codes));
+  const Image all = toImage(codes, [](double v) { return v != 0 ? 1.f : 0.f; });
   Image mask(all.width, all.height, 1);
   for (std::size_t i = 0; i < mask.data.size(); ++i)
     for (int c = 0; c < all.channels; ++c)
@@ -229,9 +269,9 @@ Outcome<std::optional<Image>> readMask(const Frame& frame) {
 
 Outcome<std::optional<Image>> readDepth(const Frame& frame) {
   if (frame.depth.empty()) return std::optional<Image>();
-  Outcome<Decoded> decoded = decode(frame.depth, frame.depthCamera.value_or(frame.camera));
+  Outcome<DecodedImage> decoded = decode(frame.depth, frame.depthCamera.value_or(frame.camera));
   if (!decoded) return decoded.failure();
-  const cv::Mat& m = decoded->pixels;
+  const cv::Mat& m = *decoded->pixels;
   if (m.channels() != 1)
     return unreadable(frame.depth, "a depth image has one channel; this one has " + std::to_string(m.channels()));
   if (!isFloat(m) && !(frame.depthScale > 0))
@@ -253,9 +293,9 @@ Outcome<std::optional<Image>> readDepth(const Frame& frame, const DepthPolicy& p
 
 Outcome<std::optional<Image>> readNormals(const Frame& frame) {
   if (frame.normals.empty()) return std::optional<Image>();
-  Outcome<Decoded> decoded = decode(frame.normals, frame.camera);
+  Outcome<DecodedImage> decoded = decode(frame.normals, frame.camera);
   if (!decoded) return decoded.failure();
-  const cv::Mat& m = decoded->pixels;
+  const cv::Mat& m = *decoded->pixels;
   if (m.channels() != 3)
     return unreadable(frame.normals, "a normal image has three channels; this one has " + std::to_string(m.channels()));
   if (isFloat(m)) return std::optional<Image>(floatImage(m));

@@ -125,6 +125,9 @@ Outcome<Image> readLinear(const Frame& frame, FrameSource source, std::string* h
 /// The display image, 3 channels, sRGB 0..1: the codes as they are where they are sRGB, else their light in sRGB; tone-mapped
 /// radiance when there is no photograph.
 Outcome<Image> readPhotograph(const Frame& frame);
+/// For a program's start: from now on this process keeps decoded image files, up to so many bytes of pixels in all, for the next time that a frame is
+/// looked at. A file that changes is read again. 0, as at the start of every process: none is kept.
+void keepDecodedImages(std::size_t mostBytes);
 /// 1 on the glossy object, 0 elsewhere; nothing when the frame has no mask. FrameUnreadable.
 Outcome<std::optional<Image>> readMask(const Frame& frame);
 /// Depth along the optical axis in metres, 0 = none (non-finite and negative values too); nothing when the frame has none. That of a depth camera of

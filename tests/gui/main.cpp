@@ -8,11 +8,13 @@
 #include <memory>
 
 #include "gui/base/input_rules.h"
+#include "gui/base/memory_rules.h"
 #include "gui/base/theme.h"
 #include "tests/gui/fixture.h"
 
 int main(int argc, char** argv) {
   using namespace glint::gui;
+  applyMemoryRules();
   static const TestClass classes[] = {
       {"document", makeDocumentTest},
       {"runner", makeRunnerTest},
