@@ -15,6 +15,8 @@ class LatestJob {
  public:
   using Deliver = std::function<void()>;  ///< runs on the interface thread
 
+  explicit LatestJob(JobQueue::Rank rank = JobQueue::Rank::Background) : queue_(rank) {}
+
   /// @param work  Deliver() or Deliver(const JobToken&): runs elsewhere, must not touch widgets, says what to do with its result.
   /// @param failed  takes what it throws, as one line; without it that is told as unexpected.
   template <class Work>

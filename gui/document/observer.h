@@ -21,7 +21,7 @@ class Observer : public QObject {
 
   const Engine& engine_;
   Document& document_;
-  LatestJob job_;
+  LatestJob job_{JobQueue::Rank::Foreground};  // the hand waits for it; the run beside it need not
 };
 
 }  // namespace glint::gui
