@@ -43,8 +43,7 @@ fs::path codecLibrary() {
 const CodecTable& load() {
   const std::string file = codecLibrary().string();
   const auto refuse = [&](const std::string& reason) {
-    throw CodecsMissing(file + ": " + reason +
-                        "; without it Glint writes no images and reads no videos and no images but PNG and JPEG");
+    throw CodecsMissing(file + ": " + reason + "; without it Glint writes no images or videos, and reads only PNG and JPEG");
   };
   if (file.front() != '/') refuse("is not looked for by a relative path");
   // Never closed: libraries that it brings keep threads and handlers for the end of the program.
@@ -52,7 +51,9 @@ const CodecTable& load() {
   void* const function = library ? ::dlsym(library, kCodecSymbol) : nullptr;
   if (!function) {
     const char* const words = ::dlerror();
-    refuse(std::string("cannot be loaded: ") + (words ? words : "unknown reason"));
+    std::string reason = words ? words : "unknown reason";
+    if (reason.starts_with(file + ": ")) reason.erase(0, file.size() + 2);  // the line begins with it
+    refuse("cannot be loaded: " + reason);
   }
   const CodecTable& table = *reinterpret_cast<CodecTableFunction>(function)();
   if (std::string_view(table.version) != GLINT_VERSION)
