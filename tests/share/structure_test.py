@@ -123,6 +123,22 @@ def check_drawing(data):
     return checked
 
 
+def check_roles(data):
+    """Which frames train, as `evaluate --json` says it; tangent planes that hold their point; lights where the fits have them."""
+    training = {row["index"] for row in data["evaluation"]["training"]}
+    assert {f["index"] for f in data["frames"] if f["role"] == "training"} == training, training
+    mirrors = [m for frame in data["frames"] for m in frame["mirrors"]]
+    assert any(abs(m["offset"]) > 0.01 for m in mirrors)
+    for m in mirrors:
+        assert abs(sum(n * x for n, x in zip(m["normal"], m["at"])) + m["offset"]) < 1e-4, m  # m: places are rounded
+    places = {fit["light"]: fit["light_position"] for model in data["evaluation"]["models"].values() for fit in model["fits"]
+              if fit.get("light_position")}
+    assert places and all(place[3] == 1 for place in places.values()), places
+    for light in data["lights"]:
+        x, y, z, w = light["homogeneous"]
+        assert math.dist([x / w, y / w, z / w], places[light["id"]][:3]) < 1e-9, light
+
+
 def check_surfaces(data):
     for surface in data["surfaces"]:
         assert surface["problem"] == ""
@@ -163,6 +179,7 @@ def check_session(glint, session, folder):
     assert data["evaluation"] == untimed(evaluation), "numbers differ from evaluate --json"
     assert any(m["summary"]["predicted"] for m in data["evaluation"]["models"].values())
     check_surfaces(data)
+    check_roles(data)
     assert check_drawing(data) > 3
     assert all(p.startswith("data:image/jpeg;base64,") for p in data["photographs"]) and len(data["photographs"]) == len(data["frames"])
     return data

@@ -182,6 +182,41 @@ TEST(Diagnosis, LeavingAFrameOutOfTheScoreIsNoMeasuredRemedy) {
   EXPECT_LT(left->after.meanPct(), kExactPct) << "all others are exact";
 }
 
+/// Three other models help `dual` on a ball, one of them less. A held-out frame shows something else: the mean without it is smaller than that of
+/// any better model, by definition.
+TEST(Diagnosis, RemediesStandByWhatTheyLeaveAndWhatIsNotMeasuredLast) {
+  const std::shared_ptr<Scene> scene = exactScene(sphere(0.25), 9);
+  for (Pixel& p : scene->frames[7].highlights[0].contour.points) p.x() += 25;
+  DiagnoseOptions options;
+  options.mostTried = 0;  // other models, and what is left out of the score
+  const std::vector<Remedy> remedies = diagnose(inspected(scene, {"dual"}), options).models.at(0).remedies;
+  ASSERT_GE(remedies.size(), 3U);
+  const auto left = remedies.end() - 1;
+  const auto leavesLess = [](const Remedy& a, const Remedy& b) { return a.after.meanPct() < b.after.meanPct(); };
+  EXPECT_TRUE(std::is_sorted(remedies.begin(), left, leavesLess));
+  EXPECT_LT(remedies.front().after.meanPct(), (left - 1)->after.meanPct() - 0.1) << "% of the diameter: not all alike";
+  EXPECT_TRUE(std::all_of(remedies.begin(), left, [](const Remedy& r) { return r.measured; }));
+  EXPECT_FALSE(left->measured);
+  EXPECT_LT(left->after.meanPct(), remedies.front().after.meanPct());
+}
+
+LeftOutError errorsOf(const std::vector<double>& pct) {
+  LeftOutError error;
+  for (std::size_t i = 0; i < pct.size(); ++i) error.views.push_back({int(i), "lamp", true, pct[i], 20, pct[i] < 100});
+  return error;
+}
+
+/// Standard errors by hand: gains of 3, -2, 3, -2 have the mean 0.5 and the standard error 1.44.
+TEST(IsBetter, OnlyBeyondChance) {
+  EXPECT_FALSE(isBetter(errorsOf({1, 6, 1, 6}), errorsOf({4, 4, 4, 4})));
+  EXPECT_TRUE(isBetter(errorsOf({3, 3.5, 3, 3.5}), errorsOf({4, 4, 4, 4})));
+  EXPECT_FALSE(isBetter(errorsOf({3.7, 3.7, 3.7, 3.7}), errorsOf({4, 4, 4, 4}))) << "less than a tenth";
+  EXPECT_FALSE(isBetter(errorsOf({4, 4}), errorsOf({3, 3})));
+  // One that went astray and does so no more: its gain of 96 is as large as its standard error.
+  EXPECT_TRUE(isBetter(errorsOf({4.1, 4, 4, 4}), errorsOf({100, 4, 4, 3.9})));
+  EXPECT_FALSE(isBetter(errorsOf({4, 4, 4, 5.1}), errorsOf({100, 4, 4, 4}))) << "another one goes astray";
+}
+
 TEST(Diagnosis, StopsWhenAsked) {
   const Inspection inspection = inspected(withMovedContour(2));
   EXPECT_THROW(diagnose(inspection, {}, [](const StageEvent&) { return false; }), Stopped);

@@ -60,6 +60,22 @@ TEST(FitTrace, ExactContoursEndAtTheLamp) {
   EXPECT_FALSE(textOf(fits[0]).empty());
 }
 
+TEST(FitTrace, SaysHowFarTheLightMovedOrTurned) {
+  const auto text = [](const Eigen::Vector4d& from, const Eigen::Vector4d& to) {
+    SolverRun run;
+    run.what = "light";
+    run.unit = "px^2";
+    run.rounds = {{812, 40, 0.31}};
+    run.ending = "converged";
+    run.start = from.normalized();
+    run.end = to.normalized();
+    return textOf(FitTrace{{"lamp", std::nullopt}, {run}, std::nullopt}).at(0);
+  };
+  EXPECT_EQ(text({1, 0, 0, 1}, {1, 3, 4, 1}), "light: cost 812 -> 0.31 px^2, 2 steps in all, moved 5 m; converged");
+  EXPECT_EQ(text({1, 0, 0, 0}, {1, 1, 0, 0}), "light: cost 812 -> 0.31 px^2, 2 steps in all, turned by 45 deg; converged");
+  EXPECT_EQ(text({1, 0, 0, 1}, {1, 1, 0, 0}), "light: cost 812 -> 0.31 px^2, 2 steps in all, ended at infinity; converged");
+}
+
 TEST(FitTrace, AnEllipsoidIsFittedAfterItsLight) {
   const std::vector<FitTrace> fits = traced(exactScene(sphere(0.5), 9), "canonical");
   ASSERT_EQ(fits.size(), 1U);

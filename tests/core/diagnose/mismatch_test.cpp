@@ -4,12 +4,17 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/angle.h"
 #include "tests/core/diagnose/exact_sphere.h"
 
 namespace glint::mismatch_tests {
 
 using namespace testing_support;
 using testing::HasSubstr;
+using testing::Not;
 
 class Mismatch : public testing_support::ExactSphere {
  protected:
@@ -69,6 +74,27 @@ TEST_F(Mismatch, DetectionSawItAndDidNotTakeIt) {
   EXPECT_EQ(whyUnmatched(with, c, row), "detection saw a spot there and did not take it: streak");
 }
 
+/// A candidate's place is measured, a contour ideal: a lens that moves that place by 40 px must not part them.
+TEST_F(Mismatch, DetectionSawItThroughALensThatBends) {
+  Inspection with = *inspection_;
+  const auto scene = std::make_shared<Scene>(*with.scene);
+  Camera& camera = scene->frames[7].camera;
+  camera.lens.model = LensModel::SimpleRadial;
+  with.scene = scene;
+  FrameComparison c = with.models.at("limit-angle").frames[7];
+  Polyline& contour = c.prediction.editable()[0].contour;
+  const Pixel far = Pixel(560, 239.5) - centroid(contour);  // 0.3 of the focal length from the axis
+  for (Pixel& p : contour.points) p += far;
+  const Pixel middle = centroid(contour);
+  camera.lens.parameters[0] = -40 / (middle.x() - 319.5) / std::pow((middle.x() - 319.5) / 800, 2);
+  ASSERT_NEAR((camera.distorted(middle) - middle).norm(), 40, 1);
+  for (Pixel& p : contour.points) p = middle + 0.1 * (p - middle);  // smaller than the lens moves it
+  with.evidence[7].rejected.push_back({camera.distorted(middle), 20, "streak"});
+  FrameComparison::Row row;
+  row.predicted = 0;
+  EXPECT_EQ(whyUnmatched(with, c, row), "detection saw a spot there and did not take it: streak");
+}
+
 TEST_F(Mismatch, FarFromWhatWasObserved) {
   EXPECT_THAT(whySpurious([](PredictedHighlight& h) {
                 for (Pixel& p : h.contour.points) p += Pixel(30, 40);
@@ -86,6 +112,52 @@ TEST_F(Mismatch, MissedSaysWhereTheNearestPredictionIs) {
   row.failure.reset();
   c.prediction = Failure{Reason::NotReached, "no walk ended"};
   EXPECT_THAT(whyUnmatched(*inspection_, c, row), HasSubstr("no walk ended"));
+}
+
+/// A point of the ball whose normal leans by a known angle from the view ray, beside the ball's centre in the image. The lamp is where the camera
+/// is: what one sees is lit.
+TEST_F(Mismatch, AtGrazingIncidenceSaysTheAngle) {
+  Inspection lit = *inspection_;
+  const Camera& camera = lit.scene->frames[7].camera;
+  const Eigen::Vector3d eye = camera.centreInWorld(), centre(0, 0, -0.5), axis = (centre - eye).normalized();
+  const Eigen::Vector3d across = axis.cross(Eigen::Vector3d::UnitZ()).normalized();
+  for (auto& [key, light] : lit.lights) light->light = Light::at(eye);
+  for (const double angle : {70.0, 80.0}) {
+    const double off = std::asin(0.5 * std::sin(radians(angle)) / (centre - eye).norm());  // of the ray from the centre
+    FrameComparison c = lit.models.at("limit-angle").frames[7];
+    Polyline& contour = c.prediction.editable()[0].contour;
+    const Pixel shift = *camera.project(eye + std::cos(off) * axis + std::sin(off) * across) - centroid(contour);
+    for (Pixel& p : contour.points) p += shift;
+    FrameComparison::Row row;
+    row.predicted = 0;
+    EXPECT_THAT(whyUnmatched(lit, c, row), testing::StartsWith(angle > 75 ? "at grazing incidence: seen 80\u00b0 from the normal"
+                                                                          : "the nearest observed highlight"));
+  }
+}
+
+/// A third of a contour beyond the border is not yet outside.
+TEST_F(Mismatch, MostOfItIsInTheImage) {
+  EXPECT_THAT(whySpurious([](PredictedHighlight& h) {
+                std::vector<double> rows;
+                for (const Pixel& p : h.contour.points) rows.push_back(p.y());
+                std::sort(rows.begin(), rows.end());
+                for (Pixel& p : h.contour.points) p.y() -= rows[rows.size() / 3];
+              }),
+              Not(HasSubstr("outside")));
+}
+
+TEST_F(Mismatch, MissedSaysThatItsPredictionIsFiltered) {
+  FrameComparison c = inspection_->models.at("limit-angle").frames[7];
+  const PredictedHighlight there = c.prediction.highlights()[0];
+  PredictedHighlight elsewhere = there;
+  for (Pixel& p : elsewhere.contour.points) p += Pixel(-3000, 0);
+  for (Pixel& p : c.prediction.editable()[0].contour.points) p += Pixel(-60, 80);
+  FrameComparison::Row row;
+  row.observed = 0;
+  c.prediction.filtered = {{elsewhere, "too small"}};
+  EXPECT_EQ(whyUnmatched(*inspection_, c, row), "the nearest predicted highlight is 100 px away");
+  c.prediction.filtered.push_back({there, "too faint"});
+  EXPECT_EQ(whyUnmatched(*inspection_, c, row), "its prediction is filtered: too faint");
 }
 
 TEST_F(Mismatch, AMatchedRowHasNone) {

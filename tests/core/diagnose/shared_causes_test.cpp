@@ -67,6 +67,16 @@ TEST(SharedCauses, FourOfFiveAndNoneOfTwenty) {
   EXPECT_NEAR(causes[0].chance, 5.0 / 12650, 1e-12);  // C(5,4) C(20,0) / C(25,4)
 }
 
+TEST(SharedCauses, LowNumbersAreSharedToo) {
+  std::vector<HighlightRow> rows = split(4, 0);
+  for (HighlightRow& r : rows) r.values[std::size_t(RowValue::IncidentDeg)] = 90 - r.value(RowValue::IncidentDeg);
+  const std::vector<SharedCause> causes = sharedCauses(sequence(25), rows, "dual");
+  ASSERT_EQ(causes.size(), 1u);
+  EXPECT_THAT(causes[0].text, testing::StartsWith("4 of 5 have an incident angle up to "));
+  EXPECT_THAT(causes[0].text, HasSubstr("; 0 of 20 others"));
+  EXPECT_EQ(causes[0].highlights.size(), 4u);
+}
+
 TEST(SharedCauses, WeakSplitsAreNotSaid) {
   const Inspection in = sequence(25);
   EXPECT_THAT(sharedCauses(in, split(3, 0), "dual"), IsEmpty()) << "three of five are not most";

@@ -132,6 +132,27 @@ TEST(HighlightRows, NumbersOfCircles) {
   EXPECT_TRUE(std::isnan(highlightRows(in).at(0).value(RowValue::AreaRatio))) << "nobody knows the whole area";
 }
 
+TEST(HighlightRows, EveryMetricHasItsColumn) {
+  Inspection in = sequence({{seenAt({50, 50})}});
+  FrameComparison::Row row = pair(0, 0, 1);
+  row.metrics = ContourMetrics{.contourErrorPx = 2,
+                               .contourErrorPct = 1,
+                               .ellipseErrorPct = 3,
+                               .hausdorffPx = 4,
+                               .iou = 0.5,
+                               .centreOffsetPx = 6,
+                               .axisRatioError = 0.7,
+                               .angleErrorDeg = 8,
+                               .peakOffsetPx = 9};
+  predict(in, 0, std::vector{predictedAt({50, 50})}, {row});
+  const HighlightRow r = highlightRows(in).at(0);
+  const std::vector<std::pair<RowValue, double>> expected{
+      {RowValue::ErrorPx, 2},     {RowValue::ErrorPct, 1},    {RowValue::EllipsePct, 3},
+      {RowValue::HausdorffPx, 4}, {RowValue::Iou, 0.5},       {RowValue::CentrePx, 6},
+      {RowValue::PeakPx, 9},      {RowValue::AxisRatio, 0.7}, {RowValue::AxisAngleDeg, 8}};
+  for (const auto& [column, value] : expected) EXPECT_EQ(r.value(column), value) << columnOf(column).id;
+}
+
 /// The fit says residuals in the order of the views it used; a view that was not usable has none.
 TEST(HighlightRows, ResidualsBelongToTheirViews) {
   Inspection in = sequence({{seenAt({50, 50})}, {seenAt({30, 50}), seenAt({90, 50})}, {seenAt({50, 50})}}, "0-2");
@@ -210,6 +231,23 @@ TEST(RowChanges, MeansAreOverWhatBothHave) {
   EXPECT_TRUE(std::isnan(c2[0].meanAfter));
   EXPECT_THAT(textOf(c2[0]), HasSubstr("no held-out highlight has an error in both"));
   EXPECT_THAT(textOf(c2[0]), Not(HasSubstr("nan")));
+}
+
+/// No count is that of its opposite.
+TEST(RowChanges, SaysWhichWayItWent) {
+  const double none = std::nan("");
+  const std::vector<Highlight> seen(9, seenAt({50, 50}));
+  const Inspection before = errorsOf({1, 4, 4, 4, 2, none, none, none, 8}, seen);
+  const Inspection after = errorsOf({1, 2, 2, 2, 3, 5, 5, none, none}, seen);
+  const ErrorChange c = errorChanges(before, highlightRows(before), after, highlightRows(after)).at(0);
+  EXPECT_EQ(c.better, 3);  // frames 1 to 3
+  EXPECT_EQ(c.worse, 1);
+  EXPECT_EQ(c.gained, 2);  // 5 and 6
+  EXPECT_EQ(c.lost, 1);    // 8
+  EXPECT_EQ(c.withoutBefore, 3);
+  EXPECT_EQ(c.withoutAfter, 2);
+  EXPECT_EQ(c.spuriousBefore, 3);
+  EXPECT_EQ(c.spuriousAfter, 2);
 }
 
 /// Detection may order and place highlights anew: the one in the same place is the same one.

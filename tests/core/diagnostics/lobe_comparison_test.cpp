@@ -123,6 +123,22 @@ TEST(LobeComparison, SaysWhatTheNoiseHides) {
     }
 }
 
+/// Three standard deviations of one number: chi squared of a lobe, in units of the best one's noise, is at most 9 above that of the best.
+TEST(LobeComparison, AsGoodIsWithinThreeStandardDeviations) {
+  int near = 0;
+  for (const double noise : {0.05, 0.06, 0.08, 0.1, 0.12, 0.15, 0.2, 0.3}) {
+    const LobeComparison c = compared(pixels(Lobe::TorranceSparrow, kTypical, noise));
+    const double best = c.matches[std::size_t(c.best)].rmsPct;
+    for (const LobeMatch& m : c.matches) {
+      if (m.failure) continue;
+      const double above = c.pixels * (std::pow(m.rmsPct / best, 2) - 1);
+      EXPECT_EQ(m.asGood, above < 9) << nameOf(m.lobe) << ", noise " << noise << ": " << above;
+      near += above > 9 && above < 18;
+    }
+  }
+  EXPECT_GT(near, 0) << "some must lie near the bound, or this tells nothing";
+}
+
 /// The pixels of pixels() as a grid: 29 x 29 cells, 2 px apart.
 LobeGrid gridOf(const std::vector<LobePixel>& of) {
   LobeGrid grid{Pixel(100, 50), 2, 29, 29, {}};
@@ -154,6 +170,21 @@ TEST(LobeComparison, ItsContoursLieWhereTheRadianceHasTheLevel) {
       EXPECT_NEAR((1 - t) * radiance(x0, y0) + t * radiance(x1, y1), kLevel, kLinearPct / 100) << nameOf(lobe);
     }
   }
+}
+
+/// What the background adds to the highlight belongs to the curves and contours that lie over the measured ones.
+TEST(LobeComparison, AConstantIsInProfilesAndContours) {
+  constexpr double kOffset = 0.1, kLevel = 0.5;
+  const std::vector<LobePixel> lit = pixels(Lobe::Ggx, kTypical, 0, 1, kOffset), bare = pixels(Lobe::Ggx, kTypical);
+  const LobeComparison c = compared(lit), without = compared(bare);
+  const LobeMatch& own = matchOf(c, Lobe::Ggx);
+  ASSERT_EQ(own.profile.size(), c.measured.size());
+  for (std::size_t i = 0; i < own.profile.size(); ++i) EXPECT_NEAR(own.profile[i], c.measured[i].mean, 1e-5);
+  const std::vector<Polyline> lines = lobeContours(gridOf(lit), own, kLevel);
+  const std::vector<Polyline> same = lobeContours(gridOf(bare), matchOf(without, Lobe::Ggx), kLevel - kOffset);
+  ASSERT_EQ(lines.size(), 1u);
+  ASSERT_EQ(same.size(), 1u);
+  EXPECT_NEAR(signedArea(lines[0]) / signedArea(same[0]), 1, 1e-4);
 }
 
 TEST(LobeComparison, ItsContoursEndWhereTheSamplesDo) {

@@ -86,6 +86,17 @@ TEST(Duality, TheConesOfAnEllipsoidTouchItAndTheirDualPointsLieOnItsDual) {
   }
 }
 
+TEST(Duality, EachOfTwoHighlightsInAFrameHasItsOwnResidual) {
+  Inspection in = seen(lens(), 4);
+  ModelFit& fit = *in.models["primal"].fits[0].fit;
+  fit.frames = {0, 1, 1, 3};
+  in.views[2].frame = 1;
+  const auto d = dualityOf(in, 0, "lamp", "primal");
+  ASSERT_TRUE(d) << d.failure().message();
+  ASSERT_EQ(d->views.size(), 4u);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(d->views[i].fitPx, fit.residualPx[i]) << i;
+}
+
 TEST(Duality, OneViewIsOneSliceOfTheDual) {
   const auto d = dualityOf(seen(lens(), 3), 0, "lamp", "primal");
   ASSERT_TRUE(d);

@@ -99,6 +99,13 @@ TEST(IgnoredByHand, ACrescentIsNamedByAPlaceInside) {
   EXPECT_TRUE(edited({h}, {ignoreEdit(0, h)}).highlights.empty());
 }
 
+TEST(IgnoredByHand, OfTwoAroundAPlaceTheSmaller) {
+  const std::vector<Highlight> nested{disc(100, 100, 5), disc(100, 100, 40)};
+  const FrameEvidence e = edited(nested, {{HighlightEdit::Kind::Ignore, 0, {{100, 100}}}});
+  ASSERT_EQ(e.ignored.size(), 1u);
+  EXPECT_EQ(e.ignored[0].areaPx2, nested[0].areaPx2);
+}
+
 /// The hull of two equal discs, a distance d apart: area pi r^2 + 2 r d, and two straight lines of d join them.
 TEST(MergedByHand, IsTheHullOfBoth) {
   for (const double d : {45.0, 90.0}) {
@@ -121,6 +128,16 @@ TEST(MergedByHand, KeepsThePeakOfTheBrighter) {
   std::vector<Highlight> two{disc(100, 100), disc(160, 100)};
   two[1].peakValue = 2;
   EXPECT_EQ(edited(two, {mergeEdit(0, two[0], two[1])}).highlights[0].peak, two[1].peak);
+}
+
+TEST(MergedByHand, IsCutOrClippedWhereEitherIs) {
+  std::vector<Highlight> two{disc(100, 100), disc(160, 100)};
+  for (const int i : {0, 1}) {
+    two[std::size_t(i)].clipped = two[std::size_t(i)].touchesBorder = true;
+    two[std::size_t(1 - i)].clipped = two[std::size_t(1 - i)].touchesBorder = false;
+    const Highlight whole = edited(two, {mergeEdit(0, two[0], two[1])}).highlights[0];
+    EXPECT_TRUE(whole.clipped && whole.touchesBorder) << i;
+  }
 }
 
 /// Two discs that overlap, as one contour; its neck is the chord through both crossings.
@@ -160,6 +177,20 @@ TEST(SplitByHand, CutsAtTheNeckThatOneClicksAt) {
   int said = 0;
   ASSERT_EQ(std::sscanf(e.highlights[0].byHand.c_str(), "split by hand: %d %%", &said), 1);
   EXPECT_NEAR(said, 100 * neck / (neck + arc), 1);
+}
+
+TEST(SplitByHand, ThePartWithThePeakStaysTheHighlight) {
+  const double d = 32;
+  for (const double peak : {100.0, 100 + d}) {
+    Highlight whole = hourglass(d);
+    whole.peak = {peak, 100};
+    const Outcome<HighlightEdit> edit = splitEdit(0, whole, {100 + d / 2, 101});
+    ASSERT_TRUE(edit) << edit.failure().message();
+    const FrameEvidence e = edited({whole}, {*edit});
+    ASSERT_EQ(e.highlights.size(), 2u);
+    EXPECT_EQ(e.highlights[0].peak, whole.peak) << "peak at " << peak;
+    EXPECT_TRUE(contains(e.highlights[0].contour, whole.peak)) << "peak at " << peak;
+  }
 }
 
 TEST(SplitByHand, OutsideIsRefusedAndAPlaceThatIsGoneIsNoCut) {

@@ -63,6 +63,8 @@ class Taken : public glint::CaptureReader {
 
 #if defined(FAULT_INTERFACE)
 [[maybe_unused]] constexpr int kInterface = GLINT_INTERFACE_VERSION - 1;
+#elif defined(FAULT_LATER_INTERFACE)
+[[maybe_unused]] constexpr int kInterface = GLINT_INTERFACE_VERSION + 1;
 #else
 [[maybe_unused]] constexpr int kInterface = GLINT_INTERFACE_VERSION;
 #endif

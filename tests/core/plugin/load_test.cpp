@@ -94,6 +94,10 @@ TEST(LoadPlugin, RefusesAnOtherInterfaceByItsVersion) {
   EXPECT_THAT(refusalOf(built("interface")),
               AllOf(HasSubstr("interface.so"), HasSubstr("version -1 of Glint's plugin interface")));
 }
+TEST(LoadPlugin, RefusesALaterInterfaceToo) {
+  EXPECT_THAT(refusalOf(built("later-interface")),
+              AllOf(HasSubstr("later-interface.so"), HasSubstr("of Glint's plugin interface")));
+}
 TEST(LoadPlugin, RefusesOtherHeadersByName) {
   EXPECT_THAT(refusalOf(built("headers")), AllOf(HasSubstr("plugin 'tried'"), HasSubstr("headers of Glint 0.0.9")));
 }
@@ -128,6 +132,17 @@ TEST(LoadPlugins, FromAFolderAWrongOneIsLeftOutWithItsName) {
   ::setenv("GLINT_PLUGIN_PATH", folder.c_str(), 1);
   EXPECT_THAT(loadPlugins({}), testing::ElementsAre(HasSubstr("interface.so")));
   EXPECT_EQ(loadedPlugins().size(), 1u);
+  fs::remove_all(folder);
+}
+
+TEST(LoadPlugins, NoFileThatEveryUserCanWriteTo) {
+  const fs::path folder = fs::path(testing::TempDir()) / "glint_open_file";
+  fs::create_directories(folder);
+  fs::copy_file(built("none"), folder / "none.so", fs::copy_options::overwrite_existing);
+  fs::permissions(folder / "none.so", fs::perms::others_write, fs::perm_options::add);
+  ::setenv("GLINT_PLUGIN_PATH", folder.c_str(), 1);
+  EXPECT_THAT(loadPlugins({}), testing::ElementsAre(AllOf(HasSubstr("none.so"), HasSubstr("every user can write to it"))));
+  EXPECT_TRUE(loadedPlugins().empty());
   fs::remove_all(folder);
 }
 
