@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <QAction>
 #include <QApplication>
 #include <QLocale>
 #include <algorithm>
@@ -76,6 +77,17 @@ void loadPluginsOf(const glint::gui::CommandLine& command) {
   for (const std::string& line : glint::viz::addPluginLayers()) glint::gui::printErrorLine(line);
 }
 
+/// The ids that `--run` takes, one a line. @return the exit code
+int printActions(glint::gui::MainWindow& window) {
+  for (const QAction* action : window.actions().all()) std::puts(qPrintable(glint::gui::Actions::id(action)));
+  return 0;
+}
+
+void printProblems(const glint::gui::MainWindow& window) {
+  QObject::connect(&window, &glint::gui::MainWindow::problem,
+                   [](const QString& line) { glint::gui::printErrorLine(line.toStdString()); });
+}
+
 bool starting = true;  ///< What Qt cannot do until its first window is the user's business, and no fault of the program.
 
 int run(int argc, char** argv) {
@@ -121,8 +133,8 @@ int run(int argc, char** argv) {
   applyTheme(app, command.theme);
 
   MainWindow window(coreEngine());
-  if (!command.run.isEmpty() && command.screenshot.isEmpty())  // a script may be waiting for it
-    QObject::connect(&window, &MainWindow::problem, [](const QString& line) { printErrorLine(line.toStdString()); });
+  if (command.run == QStringList{QStringLiteral("list")}) return printActions(window);
+  if (!command.run.isEmpty() && command.screenshot.isEmpty()) printProblems(window);  // a script may be waiting for it
   window.setTheme(command.theme);
   if (!command.size.isEmpty())
     window.resize(command.size);

@@ -42,7 +42,7 @@ std::string withMean(const Inspection& inspection, const std::string& model, con
     if (const std::optional<double> pct = wholeErrorPct(scores[f])) sum += *pct, ++answered;
   }
   if (answered == 0) return model + ": no held-out frame predicted";
-  return model + formatted(": mean %.3g %% over %d of %d ", sum / answered, answered, asked) +
+  return model + formatted(": mean of frames %.3g %%, over %d of %d ", sum / answered, answered, asked) +
          (inspection.train.perSurface ? "frames" : "held-out frames");
 }
 
@@ -64,7 +64,7 @@ PlotData errorPlot(const Inspection& inspection, const ErrorPlotOptions& options
   for (std::size_t i = 0; i < n && inspection.scene; ++i)
     if (std::atoi(inspection.scene->frames[i].id.c_str()) != int(i)) plot.x.title = "frame, by position in the sequence";
   std::vector<double> values;
-  std::string silent;  // models that matched no highlight at all: their crosses would fill the plot
+  std::vector<std::string> silent;  // models that matched no highlight at all: their crosses would fill the plot
   for (const std::string& model : modelsInOrder(inspection, options.models)) {
     PlotSeries series;
     series.colour = modelColour(model);
@@ -103,10 +103,11 @@ PlotData errorPlot(const Inspection& inspection, const ErrorPlotOptions& options
     if (matched)
       plot.series.push_back(std::move(series));
     else
-      silent += (silent.empty() ? "" : ", ") + model;
+      silent.push_back(model);
   }
   if (plot.series.empty()) return nothing(plot, "No model predicted an observed highlight");
-  if (!silent.empty()) plot.title += "   (" + silent + ": no highlight predicted)";
+  if (silent.size() == 1) plot.title += "   (" + silent[0] + ": no highlight predicted)";
+  if (silent.size() > 1) plot.title += formatted("   (%zu models: no highlight predicted)", silent.size());  // names would be cut
   plot.y.log = needsLogAxis(values);
   if (!plot.y.log) plot.y.from = 0;
   plot.x.from = -0.5;

@@ -165,7 +165,7 @@ Attempt traced(NormalisedContours& contours, Eigen::Vector4d start, bool atInfin
   Attempt a = solve(contours.points, start, atInfinity, options);
   const char* const ending = !std::isfinite(a.cost) ? "no usable step"
                              : a.behind             ? "the light lies behind the surface"
-                             : a.converged          ? "converged"
+                             : a.converged          ? "at a minimum"
                                                     : "out of iterations";
   run.end(a.converged && !a.behind, ending, worldOf(a.light, contours));
   a.run = run.index();
@@ -297,7 +297,7 @@ Outcome<Best> bestAttempt(NormalisedContours& contours, const Light& start, cons
 Attempt directedAndTraced(NormalisedContours& contours, const Attempt& start, const BundleOptions& options) {
   TracedRun run("light with its extent", worldOf(start.light, contours));
   const Attempt a = directed(contours.points, start, options.robustPx, options.maxIterations);
-  run.end(a.directed, a.directed ? "converged" : "no extent in front of the surface explains the contours better",
+  run.end(a.directed, a.directed ? "at a minimum" : "no extent in front of the surface explains the contours better",
           worldOf(a.light, contours));
   if (a.directed) traceAnswer(run.index());
   return a;

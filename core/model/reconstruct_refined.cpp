@@ -295,7 +295,7 @@ Outcome<Reconstruction> reconstructRefined(const std::vector<ConicView>& views, 
     last = length;
   }
   traceRound(costs);
-  run.end(converged, converged ? "converged" : "out of iterations", inWorld(state));
+  run.end(converged, converged ? "at a minimum" : "out of iterations", inWorld(state));
   traceAnswer(run.index());
 
   if (!(linear.smallest() > kRankRatio * linear.largest()))

@@ -321,7 +321,7 @@ Attempt solve(PixelProblem& problem, const State& start, const SolveOptions& opt
   const Attempt a = solveFrom(problem, start, options);
   run.end(a.converged,
           !std::isfinite(a.cost) ? "no usable step"
-          : a.converged          ? "converged"
+          : a.converged          ? "at a minimum"
                                  : "out of iterations",
           problem.worldOf(a.at.light));
   return a;

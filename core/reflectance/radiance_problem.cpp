@@ -272,7 +272,7 @@ Attempt RadianceProblem::solve(const State& start) {
   const Attempt a = solveFrom(start);
   run.end(a.converged,
           !std::isfinite(a.cost) ? "no usable step"
-          : a.converged          ? "converged"
+          : a.converged          ? "at a minimum"
                                  : "out of iterations",
           light(a.state));
   return a;

@@ -50,7 +50,8 @@ std::string bestInWords(const Inspection& inspection, const std::string& model, 
   std::string text = model + (alone ? ": its contours are off by " : " predicts best: its contours are off by ") +
                      percent(s.contourErrorPct.mean) +
                      formatted(" of a highlight's diameter on average (%.3g px), and by ", s.contourErrorPx.mean) +
-                     percent(s.contourErrorPct.max) + " at worst. Of " + counted(s.matched + s.missed, "highlight") + " in " +
+                     percent(s.contourErrorPct.max) + " for the worst highlight. Of " +
+                     counted(s.matched + s.missed, "highlight") + " in " +
                      counted(heldOutFrames(inspection).all, scored + "frame") + " it ";
   text += s.missed == 0 ? (s.matched == 1 ? "found it" : "found all")
                         : "missed " + std::to_string(s.missed) + " (" +

@@ -107,8 +107,8 @@ std::string bestFigures(const Inspection& inspection, const std::string& model) 
   const std::vector<std::pair<int, double>> sorted = byError(inspection, model);
   if (!sorted.empty()) {
     const int typical = sorted[sorted.size() / 2].first;
-    if (typical != sorted[0].first) html += frameFigure(inspection, typical, model, "Typical");
-    html += frameFigure(inspection, sorted[0].first, model, sorted.size() == 1 ? "The only frame" : "Worst");
+    if (typical != sorted[0].first) html += frameFigure(inspection, typical, model, "Typical frame");
+    html += frameFigure(inspection, sorted[0].first, model, sorted.size() == 1 ? "The only frame" : "Worst frame");
   }
   if (const std::vector<int> missed = framesMissed(inspection, model); !missed.empty())
     html += frameFigure(inspection, missed[0], model, "Missed");

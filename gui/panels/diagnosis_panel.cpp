@@ -216,6 +216,33 @@ DiagnosisPanel::DiagnosisPanel(Document& document, QWidget* parent) : QWidget(pa
   refresh();
 }
 
+void DiagnosisPanel::addActions(Actions& actions, QMenu* menu, std::function<void()> show) {
+  actions.add("plots.diagnose", menu, tr("Find out &why models fail"), [this, show] {
+    show();
+    diagnose();
+  });
+  actions.add("plots.try-remedy", menu, tr("&Try first remedy"),
+              [this, show] {
+                show();
+                tryFirst();
+              },
+              {{}, {}, tr("The first remedy in Problems for the selected model, else the first of all; undo takes it back")});
+}
+
+void DiagnosisPanel::tryFirst() {
+  std::vector<std::pair<std::string, Remedy>> known = found_;
+  if (diagnosis_) {
+    known.clear();
+    for (const ModelDiagnosis& d : diagnosis_->models)
+      for (const Remedy& remedy : d.remedies) known.emplace_back(d.model, remedy);
+  }
+  if (known.empty()) return void(emit problem(tr("There is no remedy to try; \"Find out why models fail\" looks for them")));
+  const auto ofSelected =
+      std::find_if(known.begin(), known.end(), [&](const auto& r) { return r.first == document_.selection().model; });
+  const auto& [model, remedy] = ofSelected != known.end() ? *ofSelected : known.front();
+  tryRemedy(model, remedy.change);
+}
+
 void DiagnosisPanel::stop() { queue_.stop(); }
 
 void DiagnosisPanel::diagnose() {

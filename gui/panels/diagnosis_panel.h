@@ -2,9 +2,11 @@
 #pragma once
 
 #include <QWidget>
+#include <functional>
 #include <memory>
 
 #include "core/diagnose/diagnosis.h"
+#include "gui/base/actions.h"
 #include "gui/base/job_queue.h"
 #include "gui/document/document.h"
 
@@ -30,10 +32,14 @@ class DiagnosisPanel : public QWidget {
   int problems() const { return problems_; }
   bool busy() const { return queue_.busy(); }
   QTreeWidget* list() const { return list_; }
+  /// @param show  brings the panel into sight
+  void addActions(Actions& actions, QMenu* menu, std::function<void()> show);
 
  public slots:
   /// Measures what helps, off the interface thread; remedies appear as they are found. Asked again while it runs: stops.
   void diagnose();
+  /// The first remedy of the selected model, else the first one of all.
+  void tryFirst();
   void stop();
 
  signals:

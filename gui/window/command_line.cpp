@@ -5,6 +5,7 @@
 
 #include "core/base/limits.h"
 #include "core/base/outcome.h"
+#include "core/base/similar_name.h"
 #include "gui/window/layouts.h"
 
 namespace glint::gui {
@@ -27,6 +28,14 @@ const ChoiceOption* choiceOption(const QString& name) {
   for (const ChoiceOption& option : choiceOptions())
     if (name == QLatin1String(option.flag)) return &option;
   return nullptr;
+}
+
+/// All options: what one that is not known was meant to be.
+std::vector<std::string> optionNames() {
+  std::vector<std::string> names{"--help", "--version", "--layout", "--theme",  "--frame",     "--ball",      "--exclude",
+                                 "--run",  "--size",    "--limit",  "--plugin", "--wait-idle", "--screenshot"};
+  for (const ChoiceOption& option : choiceOptions()) names.emplace_back(option.flag);
+  return names;
 }
 
 /// The options for captures, two lines each.
@@ -86,7 +95,7 @@ CommandLine parseCommandLine(const QStringList& arguments) {
     else if (const ChoiceOption* option = choiceOption(name))
       option->set(c.choices, value().toStdString());
     else if (name.startsWith('-') && name.size() > 1)
-      throw InputError("", name.toStdString(), "unknown option; see --help");
+      throw InputError("", name.toStdString(), "unknown option" + didYouMean(name.toStdString(), optionNames()) + "; see --help");
     else if (c.input.isEmpty())
       c.input = name;
     else
@@ -115,7 +124,7 @@ QString helpText() {
              "                        INPUT is a folder of photographs of mirror balls: measure their lamps in a window of its\n"
              "                        own, as `glint lights`; may be repeated. --camera and --exclude SPEC as there\n"
              "  --run ID[,ID...]      run actions by id once the scene is shown (explain.step-contour, view.panel-plots ...);\n"
-             "                        an unknown id lists them all\n"
+             "                        `--run list` prints all ids\n"
              "  --screenshot FILE     write the window as PNG and quit\n"
              "  --size WxH            window size in pixels (default: 1600x1000)\n"
              "  --wait-idle           take the screenshot once everything is computed and drawn\n"

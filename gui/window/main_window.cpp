@@ -401,10 +401,7 @@ void MainWindow::buildMenus() {
     docks_.bring(QStringLiteral("tradeoff"));
     press("measureTradeoff")();
   });
-  actions_.add("plots.diagnose", plots, tr("Find out &why models fail"), [this] {
-    docks_.bring(QStringLiteral("problems"));
-    diagnosis_->diagnose();
-  });
+  diagnosis_->addActions(actions_, plots, [this] { docks_.bring(QStringLiteral("problems")); });
   lamps_->addActions(actions_, plots, file);
 
   QMenu* view = menuBar()->addMenu(tr("&View"));

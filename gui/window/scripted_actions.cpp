@@ -2,9 +2,12 @@
 #include "gui/window/scripted_actions.h"
 
 #include <QAction>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "core/base/outcome.h"
+#include "core/base/similar_name.h"
 
 namespace glint::gui {
 
@@ -22,12 +25,13 @@ ScriptedActions::ScriptedActions(Actions& actions, std::function<bool()> quiet, 
 }
 
 void ScriptedActions::run(const QStringList& ids) {
-  QStringList known;
-  for (const QAction* action : actions_.all()) known << Actions::id(action);
+  std::vector<std::string> known;
+  for (const QAction* action : actions_.all()) known.push_back(Actions::id(action).toStdString());
   for (const QString& id : ids)
-    if (!known.contains(id))
-      throw InputError("", "--run",
-                       "'" + id.toStdString() + "' is not one of: " + known.join(QStringLiteral(", ")).toStdString());
+    if (!actions_.find(id))
+      throw InputError(
+          "", "--run",
+          "'" + id.toStdString() + "' is no action" + didYouMean(id.toStdString(), known) + "; `--run list` prints all");
   waiting_ += ids;
   if (!waiting_.isEmpty()) clock_.start(kLookMs);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What is wrong and what helps, by clicks: a fault is put into exact contours, and the dock must lead out of it.
 #include <QLabel>
+#include <QMenu>
 #include <QPushButton>
 #include <QRegularExpression>
 #include <QSet>
@@ -131,6 +132,36 @@ class DiagnosisTest : public QObject {
         qPrintable(lines(panel).join("\n")));
     document.undoStack()->undo();
     QVERIFY(document.request() == before);
+  }
+
+  /// The action (menu, palette, a script) does what a click on the first "Try" does, and says so where there is none.
+  void theFirstRemedyIsAnAction() {
+    Document document(parseTrainSpec);
+    DiagnosisPanel panel(document);
+    Actions actions;
+    QMenu menu;
+    int shown = 0;
+    panel.addActions(actions, &menu, [&] { ++shown; });
+    open(document, faulty());
+    QSignalSpy problem(&panel, &DiagnosisPanel::problem);
+    actions.find("plots.try-remedy")->trigger();
+    QCOMPARE(problem.size(), 1);
+    actions.find("plots.diagnose")->trigger();
+    QTRY_VERIFY(!panel.busy());
+    QCOMPARE(shown, 2);
+    const InspectionRequest before = document.request();
+    const QTreeWidgetItem* top = panel.list()->topLevelItem(0);
+    QPushButton* first = nullptr;
+    for (int i = 0; i < top->childCount() && !first; ++i)
+      if (QWidget* holder = panel.list()->itemWidget(top->child(i), 0))
+        first = holder->findChild<QPushButton*>(QStringLiteral("try"));
+    QVERIFY(first);
+    first->click();
+    const InspectionRequest clicked = document.request();
+    QVERIFY(!(clicked == before));
+    document.undoStack()->undo();
+    actions.find("plots.try-remedy")->trigger();
+    QVERIFY(document.request() == clicked);
   }
 
   /// Sentences are read without hovering, in the words of the window, and once each; an undo brings back what is known of that state.

@@ -5,6 +5,7 @@
 #include <QFileInfo>
 #include <QImage>
 #include <QProcess>
+#include <QSet>
 #include <set>
 
 #include "gui/base/text.h"
@@ -143,6 +144,10 @@ class ProgramTest : public QObject {
     QTest::newRow("no such input") << QStringList{QStringLiteral("/nowhere/scene.json"), QStringLiteral("--screenshot"), shot}
                                    << QStringLiteral("/nowhere/scene.json");
     QTest::newRow("unknown option") << QStringList{QStringLiteral("--colour")} << QStringLiteral("--colour");
+    QTest::newRow("mistyped option") << QStringList{QStringLiteral("--layuot"), QStringLiteral("debug")}
+                                     << QStringLiteral("did you mean '--layout'?");
+    QTest::newRow("mistyped action") << QStringList{QStringLiteral("--run"), QStringLiteral("view.theem")}
+                                     << QStringLiteral("did you mean 'view.theme'?");
     QTest::newRow("unknown layout") << QStringList{QStringLiteral("--layout"), QStringLiteral("x")} << QStringLiteral("--layout");
     QTest::newRow("unknown theme") << QStringList{QStringLiteral("--theme"), QStringLiteral("red")} << QStringLiteral("--theme");
     QTest::newRow("size") << QStringList{QStringLiteral("--size"), QStringLiteral("12")} << QStringLiteral("--size");
@@ -165,6 +170,14 @@ class ProgramTest : public QObject {
     QVERIFY2(r.err.contains(mentions), qPrintable(r.err));
     QCOMPARE(r.err.trimmed().count('\n'), 0);
     QVERIFY(!QFile::exists(folder_.filePath(QStringLiteral("never.png"))));
+  }
+
+  void everyActionIsListedOnALineOfItsOwn() {
+    const Run r = run({QStringLiteral("--run"), QStringLiteral("list")});
+    QVERIFY2(r.code == 0, qPrintable(r.err));
+    const QStringList ids = r.out.split('\n', Qt::SkipEmptyParts);
+    QVERIFY2(ids.contains(QStringLiteral("plots.try-remedy")) && ids.contains(QStringLiteral("file.open")), qPrintable(r.out));
+    QCOMPARE(QSet<QString>(ids.begin(), ids.end()).size(), ids.size());
   }
 
   /// A line of at most 400 bytes, without control characters, whatever the arguments and names hold.

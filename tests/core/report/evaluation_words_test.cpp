@@ -48,10 +48,10 @@ TEST(EvaluationWords, SayHowGoodTheBestIsAndWhichIsNext) {
   const EvaluationWords words = evaluationWords(runWith({{"primal", {2, 3, 4, 3, 3}}, {"dual", {0.5, 1.5, 1, 1, 1}}}), {});
   EXPECT_EQ(words.best, "dual");
   ASSERT_GE(words.inShort.size(), 2u);
-  EXPECT_EQ(
-      words.inShort[0],
-      "dual predicts best: its contours are off by 1 % of a highlight's diameter on average (0.1 px), and by 1.5 % at worst. Of "
-      "5 highlights in 5 held-out frames it found all, and it predicted none that is not there.");
+  EXPECT_EQ(words.inShort[0],
+            "dual predicts best: its contours are off by 1 % of a highlight's diameter on average (0.1 px), and by 1.5 % for the "
+            "worst highlight. Of "
+            "5 highlights in 5 held-out frames it found all, and it predicted none that is not there.");
   EXPECT_EQ(words.inShort[1], "The next is primal with 3 % on average.");
   EXPECT_THAT(words.inShort, Not(Contains(HasSubstr("No model is good")))) << "and nothing is wrong";
   EXPECT_THAT(words.inShort, Not(Contains(HasSubstr("glint diagnose"))));
