@@ -2,14 +2,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Makes two sequences that are hard to fit, lets `glint diagnose` lead out of them, and writes the tables of docs/debugging.md.
 
-Usage: docs/make_debugging.py --glint PROGRAM --times PROGRAM [--keep DIR] [--picture INSPECTOR] [--write]
+Usage: docs/make_debugging.py --glint PROGRAM --times PROGRAM [--keep DIR] [--write]
+       docs/make_debugging.py --glint PROGRAM --pictures INSPECTOR [--keep DIR]
 
 Every command of the page is run; every figure is what one printed. The two sequences:
   unequal   an ellipsoid under a small and a wide lamp; no frame says which lamps are on
   ears      a body with two thin ears and a thin fin, as a mesh; two of 16 frames are hard to tell by eye
 --times PROGRAM  diagnose_times of the same build (bench/): seconds until the first remedy
 --keep DIR       leave the sequences there
---picture FILE   draw the pictures with this glint-inspector (needs xvfb-run)
+--pictures FILE  draw the pictures of each step with this glint-inspector instead of the tables (needs xvfb-run and mogrify)
 --write          put the tables into docs/debugging.md; else print them"""
 import argparse
 import json
@@ -25,6 +26,8 @@ import time
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs/debugging.md"
 CAMERA = {"width": 480, "height": 360, "fx": 600, "fy": 600, "cx": 239.5, "cy": 179.5}
+ASK, TRY = "plots.diagnose", "plots.try-remedy"
+STEPS = {"unequal": [ASK, TRY], "ears": [ASK, TRY, ASK, TRY]}
 MODELS = ("primal", "dual", "canonical", "limit-angle", "reflectance")
 
 
@@ -157,28 +160,34 @@ def table(glint, times, name, scene):
     return "\n".join(lines)
 
 
-def picture(inspector, scene, name):
-    target = ROOT / "docs/pictures" / f"{name}.png"
-    run(["xvfb-run", "-a", "-s", "-screen 0 1600x1000x24 -noreset", "env", "QT_QPA_PLATFORM=xcb", "LIBGL_ALWAYS_SOFTWARE=1", inspector, scene,
-         "--theme", "dark", "--size", "1500x940", "--run", "plots.diagnose", "--screenshot", target, "--wait-idle"])
-    subprocess.run(["mogrify", "-strip", "-colors", "128", "-define", "png:compression-level=9", target], check=False)
+def pictures(inspector, name, scene):
+    """The window after each step that the page tells: what its buttons do, the menu's actions do, too."""
+    for step in range(1, len(STEPS[name]) + 1):
+        target = ROOT / "docs/pictures" / f"debugging-{name}-{step}.png"
+        run(["xvfb-run", "-a", "-s", "-screen 0 1600x1000x24 -noreset", "env", "QT_QPA_PLATFORM=xcb", "LIBGL_ALWAYS_SOFTWARE=1", inspector, scene,
+             "--theme", "dark", "--size", "1500x940", "--run", ",".join(STEPS[name][:step]), "--screenshot", target, "--wait-idle"])
+        run(["mogrify", "-strip", "-colors", "128", "-define", "png:compression-level=9", target])
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--glint", required=True, type=pathlib.Path)
-    parser.add_argument("--times", required=True, type=pathlib.Path)
+    parser.add_argument("--times", type=pathlib.Path)
     parser.add_argument("--keep", type=pathlib.Path)
-    parser.add_argument("--picture", type=pathlib.Path)
+    parser.add_argument("--pictures", type=pathlib.Path)
     parser.add_argument("--write", action="store_true")
     options = parser.parse_args()
+    if bool(options.times) == bool(options.pictures):
+        parser.error("give either --times or --pictures")
     with tempfile.TemporaryDirectory() as temporary:
         folder = options.keep or pathlib.Path(temporary)
         os.makedirs(folder, exist_ok=True)
         scenes = make(options.glint.resolve(), folder)
+        if options.pictures:
+            for name, scene in scenes.items():
+                pictures(options.pictures.resolve(), name, scene)
+            return
         tables = {name: table(options.glint.resolve(), options.times.resolve(), name, scene) for name, scene in scenes.items()}
-        if options.picture:
-            picture(options.picture.resolve(), scenes["ears"], "problems")
     if not options.write:
         print("\n\n".join(f"{name}\n\n{text}" for name, text in tables.items()))
         return
