@@ -243,6 +243,15 @@ void DiagnosisPanel::tryFirst() {
   tryRemedy(model, remedy.change);
 }
 
+void DiagnosisPanel::bringFirstRemedyIntoSight() {
+  for (int i = 0; i < list_->topLevelItemCount(); ++i) {
+    const QTreeWidgetItem* const top = list_->topLevelItem(i);
+    for (int j = 0; j < top->childCount(); ++j)
+      if (QTreeWidgetItem* const line = top->child(j); list_->itemWidget(line, 0))
+        return list_->scrollToItem(line, QAbstractItemView::EnsureVisible);
+  }
+}
+
 void DiagnosisPanel::stop() { queue_.stop(); }
 
 void DiagnosisPanel::diagnose() {
@@ -269,6 +278,7 @@ void DiagnosisPanel::diagnose() {
         if (!result.failure().isEmpty()) emit problem(result.failure());
         if (result.value) diagnosis_ = *result.value;
         refresh();
+        bringFirstRemedyIntoSight();
         if (result.stopped) state_->setText(tr("Stopped: what was found so far is listed"));
       },
       Asks::Instead);

@@ -64,6 +64,8 @@ class DiagnosisPanel : public QWidget {
   /// The line of a model, made with this text where there is none.
   QTreeWidgetItem* itemOf(const std::string& model, const QString& otherwise);
   void addRemedy(const std::string& model, const Remedy& remedy);
+  /// The causes of a model may fill the panel: what to do about them must not be looked for.
+  void bringFirstRemedyIntoSight();
   void tryRemedy(const std::string& model, const Change& change);
   void showState(const QString& stage = {});
   void choose(QTreeWidgetItem* item);

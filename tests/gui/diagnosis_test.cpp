@@ -138,6 +138,9 @@ class DiagnosisTest : public QObject {
   void theFirstRemedyIsAnAction() {
     Document document(parseTrainSpec);
     DiagnosisPanel panel(document);
+    panel.resize(400, 160);
+    panel.show();
+    QVERIFY(QTest::qWaitForWindowExposed(&panel));
     Actions actions;
     QMenu menu;
     int shown = 0;
@@ -156,6 +159,8 @@ class DiagnosisTest : public QObject {
       if (QWidget* holder = panel.list()->itemWidget(top->child(i), 0))
         first = holder->findChild<QPushButton*>(QStringLiteral("try"));
     QVERIFY(first);
+    QVERIFY2(panel.list()->viewport()->rect().contains(first->geometry().translated(first->parentWidget()->pos())),
+             "it is in sight though the panel has room for few lines");
     first->click();
     const InspectionRequest clicked = document.request();
     QVERIFY(!(clicked == before));
