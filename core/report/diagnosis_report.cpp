@@ -147,7 +147,8 @@ void addRemedies(const ModelDiagnosis& d, std::string& text) {
     text += formatted("    %-36s %s\n      (%s)\n", flagsOf(d.remedies[i].change).c_str(), effectText(d.remedies[i]).c_str(),
                       d.remedies[i].why.c_str());
   if (d.remedies.size() > kMostLines) text += formatted("    and %zu more\n", d.remedies.size() - kMostLines);
-  if (d.tried < d.known) text += formatted("    %d of %d known changes were tried; --thorough or --most N tries more\n", d.tried, d.known);
+  if (d.tried < d.known)
+    text += formatted("    %d of %d known changes were tried; --thorough or --most N tries more\n", d.tried, d.known);
 }
 
 /// The best remedy as a command to paste.
