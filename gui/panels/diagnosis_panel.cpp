@@ -5,6 +5,7 @@
 #include <QHeaderView>
 #include <QLabel>
 #include <QPushButton>
+#include <QTimer>
 #include <QTreeWidget>
 #include <QUndoStack>
 #include <QVBoxLayout>
@@ -184,6 +185,7 @@ DiagnosisPanel::DiagnosisPanel(Document& document, QWidget* parent) : QWidget(pa
   list_->setHeaderHidden(true);
   list_->setWordWrap(true);
   list_->setUniformRowHeights(false);
+  list_->setVerticalScrollMode(QAbstractItemView::ScrollPerPixel);  // lines are tall: one may be half in sight
   list_->setItemDelegate(new WrappingDelegate(list_));
   list_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
   list_->header()->setSectionResizeMode(0, QHeaderView::Stretch);
@@ -244,6 +246,7 @@ void DiagnosisPanel::tryFirst() {
 }
 
 void DiagnosisPanel::bringFirstRemedyIntoSight() {
+  list_->doItemsLayout();
   for (int i = 0; i < list_->topLevelItemCount(); ++i) {
     const QTreeWidgetItem* const top = list_->topLevelItem(i);
     for (int j = 0; j < top->childCount(); ++j)
@@ -278,7 +281,8 @@ void DiagnosisPanel::diagnose() {
         if (!result.failure().isEmpty()) emit problem(result.failure());
         if (result.value) diagnosis_ = *result.value;
         refresh();
-        bringFirstRemedyIntoSight();
+        // Once lines have wrapped to their final width: that of a panel with a scroll bar.
+        QTimer::singleShot(0, this, &DiagnosisPanel::bringFirstRemedyIntoSight);
         if (result.stopped) state_->setText(tr("Stopped: what was found so far is listed"));
       },
       Asks::Instead);
