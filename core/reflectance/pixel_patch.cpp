@@ -35,12 +35,13 @@ Ellipse around(const Ellipse& e, double level, double by) {
 
 LinearPixels linearPixels(const Image& linear, const Image* mask, double clipValue) {
   require(linear.channels == 1 || linear.channels == 3, "linearPixels: 1 or 3 channels");
-  require(!mask || (mask->width == linear.width && mask->height == linear.height), "linearPixels: mask of another size");
+  require(!mask || (mask->width == linear.width && mask->height == linear.height && mask->channels == 1),
+          "linearPixels: a mask of that size with one channel");
   LinearPixels p;
   p.value = Image(linear.width, linear.height, 1);
   p.usable.assign(p.value.data.size(), 0);
   p.clipped.assign(p.value.data.size(), 0);
-  const double clip = clipValue > 0 ? clipValue : std::numeric_limits<double>::infinity();
+  const double clip = clipValue > 0 ? clipValue : std::nan("");  // nothing reaches it, not even an infinite value
   constexpr float kLargest = std::numeric_limits<float>::max();
   const float* v = linear.data.data();
   for (std::size_t i = 0; i < p.value.data.size(); ++i) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <random>
 
@@ -173,6 +174,23 @@ double offBy(const PixelFit& fit, const Scene& s) {
 
 // What nine samples a pixel and single precision leave of the light, m and the lobe.
 constexpr double kLightTolerance = 2e-3, kRoughnessTolerance = 2e-3;
+
+// 0: good; 1: one channel at the clip value; 2: infinite; 3: not a number; 4: below zero; 5: outside the mask.
+TEST(LinearPixels, SaysWhichPixelsCountAndWhichAreClipped) {
+  const float infinite = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
+  Image image(6, 1, 3), mask(6, 1, 1);
+  image.data = {0.1f, 0.2f, 0.6f, 0.5f, 1, 0.6f, infinite, 0, 0, nan, 0, 0, -0.1f, 0.1f, 0.3f, 0.3f, 0.3f, 0.3f};
+  mask.data = {1, 1, 1, 1, 1, 0};
+  const LinearPixels p = linearPixels(image, &mask, 1);
+  EXPECT_EQ(p.usable, (std::vector<char>{1, 0, 0, 0, 0, 0}));
+  EXPECT_EQ(p.clipped, (std::vector<char>{0, 1, 1, 0, 0, 0}));
+  EXPECT_NEAR(p.value.data[0], 0.3, 1e-6);  // the mean of the channels
+  EXPECT_EQ(p.value.data[2], 0.f);
+  // Values that never end are never clipped, an infinite one neither.
+  const LinearPixels open = linearPixels(image, nullptr, 0);
+  EXPECT_EQ(open.usable, (std::vector<char>{1, 1, 0, 0, 0, 1}));
+  EXPECT_EQ(open.clipped, std::vector<char>(6, 0));
+}
 
 TEST(PixelFit, FindsLightRoughnessAndLobe) {
   for (const Lobe lobe : {Lobe::Ggx, Lobe::TorranceSparrow})

@@ -25,6 +25,15 @@ DecodedImage imageOf(int width, uchar value) {
 FileVersion versionAt(std::int64_t ns) { return {1, 2, 3, ns}; }
 uchar valueOf(const std::optional<DecodedImage>& image) { return image ? image->pixels->ptr<uchar>(0)[0] : 0; }
 
+Frame frameOf(int width, int height, const fs::path& image) {
+  Frame f;
+  f.id = "a";
+  f.camera.width = width;
+  f.camera.height = height;
+  f.image = image;
+  return f;
+}
+
 /// What this process keeps is as before at the end of a test.
 struct Keeping {
   explicit Keeping(std::size_t bytes) { keepDecodedImages(bytes); }
@@ -83,11 +92,7 @@ TEST(DecodedImages, AFileThatJustChangedIsNotKept) {
 TEST(DecodedImages, AFrameWhoseFileChangesIsReadAgain) {
   const TemporaryFolder folder;
   const Keeping keeping(1'000'000);
-  Frame f;
-  f.id = "a";
-  f.camera.width = 4;
-  f.camera.height = 3;
-  f.image = folder / "x.png";
+  const Frame f = frameOf(4, 3, folder / "x.png");
   ASSERT_TRUE(writeStored(f.image, 10));
   const std::uintmax_t bytes = fs::file_size(f.image);
   const fs::file_time_type written = fs::last_write_time(f.image);
@@ -109,11 +114,7 @@ TEST(DecodedImages, AFrameWhoseFileChangesIsReadAgain) {
 TEST(DecodedImages, ALimitThatIsLoweredAndACameraOfAnotherSizeCountForKeptImagesToo) {
   const TemporaryFolder folder;
   const Keeping keeping(10'000'000);
-  Frame f;
-  f.id = "a";
-  f.camera.width = 1200;
-  f.camera.height = 1000;
-  f.image = folder / "x.png";
+  Frame f = frameOf(1200, 1000, folder / "x.png");
   ASSERT_TRUE(cv::imwrite(f.image.string(), cv::Mat(1000, 1200, CV_8UC1, cv::Scalar(10))));
   letItSettle();
   ASSERT_TRUE(readLinear(f, FrameSource::Image));
