@@ -130,12 +130,14 @@ int run(int argc, char** argv) {
   QApplication::setApplicationVersion(QStringLiteral(GLINT_VERSION));
   QLocale::setDefault(QLocale::c());  // numbers have a point everywhere
   installInputRules(app);
-  applyTheme(app, command.theme);
+  // A picture looks the same for everybody.
+  const Theme theme = command.theme.value_or(command.screenshot.isEmpty() ? keptTheme() : Theme::Dark);
+  applyTheme(app, theme);
 
   MainWindow window(coreEngine());
   if (command.run == QStringList{QStringLiteral("list")}) return printActions(window);
   if (!command.run.isEmpty() && command.screenshot.isEmpty()) printProblems(window);  // a script may be waiting for it
-  window.setTheme(command.theme);
+  window.setTheme(theme);
   if (!command.size.isEmpty())
     window.resize(command.size);
   else

@@ -7,6 +7,7 @@
 #include <QPainter>
 #include <QPalette>
 #include <QPixmap>
+#include <QSettings>
 #include <QSvgRenderer>
 
 #include "core/draw/contrast.h"
@@ -18,6 +19,7 @@ static void initIcons() { Q_INIT_RESOURCE(icons); }
 namespace glint::gui {
 
 namespace {
+const char *const kThemeKey = "theme", *const kLight = "light", *const kDark = "dark";
 Theme theTheme = Theme::Dark;
 
 QByteArray svg(const QString& name, const QColor& colour) {
@@ -118,6 +120,12 @@ void applyTheme(QApplication& app, Theme theme) {
 }
 
 Theme currentTheme() { return theTheme; }
+Theme keptTheme() {
+  return QSettings().value(QLatin1String(kThemeKey)).toString() == QLatin1String(kLight) ? Theme::Light : Theme::Dark;
+}
+void keepTheme(Theme theme) {
+  QSettings().setValue(QLatin1String(kThemeKey), QLatin1String(theme == Theme::Light ? kLight : kDark));
+}
 QIcon icon(const QString& name) { return QIcon(new SvgIconEngine(name)); }
 /// White stands on it, where a row or a box is selected.
 QColor accentColour() { return toQColor(draw::readableOn({1, 1, 1}, draw::kActiveView)); }

@@ -38,9 +38,19 @@ fs::path sessionAt(const fs::path& path) {
 viz::ViewPoint viewPointOf(const SessionCamera& c) { return {c.position, c.focalPoint, c.up, c.viewAngleDeg, c.parallel}; }
 SessionCamera cameraOf(const viz::ViewPoint& v) { return {v.position, v.focalPoint, v.up, v.viewAngleDeg, v.parallel}; }
 
-int frameNumber(const Scene& scene, const std::string& id) {
+/// The frame to show first: a training frame shows how well a model fits, a held-out one what it predicts. 0 where all frames train.
+int firstHeldOut(const Scene& scene, const InspectionRequest& request) {
+  const std::vector<int> train = parseTrainSpec(request.train, scene).frames;
+  for (int i = 0; i < int(scene.frames.size()); ++i)
+    if (std::count(train.begin(), train.end(), i) + std::count(request.excluded.begin(), request.excluded.end(), i) == 0)
+      return i;
+  return 0;
+}
+
+/// @param id  of the frame that was on screen; "" = none was
+int frameNumber(const Scene& scene, const InspectionRequest& request, const std::string& id) {
   const auto it = std::find_if(scene.frames.begin(), scene.frames.end(), [&](const Frame& f) { return f.id == id; });
-  return it == scene.frames.end() ? 0 : int(it - scene.frames.begin());
+  return it == scene.frames.end() ? firstHeldOut(scene, request) : int(it - scene.frames.begin());
 }
 /// What this program left behind may name what the session that it is of may name, and what it was told itself.
 Relinked withFoldersOf(Relinked instead, const Recovery& recovery, const Session& session) {
@@ -69,6 +79,7 @@ Opened openInput(const std::string& path, const Relinked& instead) {
     // A short scene opens too: the default would ask for more frames than there are.
     const int frames = int(opened.scene->frames.size());
     if (frames < kDefaultTraining) opened.request.train = "first:" + std::to_string(frames);
+    opened.selection.frame = firstHeldOut(*opened.scene, opened.request);
     return opened;
   }
   if (!session.empty()) removeAbandonedTemporaries(session.parent_path());  // of a program that was killed while it saved
@@ -96,7 +107,8 @@ Opened openInput(const std::string& path, const Relinked& instead) {
   }
   opened.scene = read.scene;
   opened.request = read.session.request;
-  opened.selection = {frameNumber(*read.scene, view.frame), view.model, view.highlight, view.light, {}, view.predicted};
+  opened.selection = {
+      frameNumber(*read.scene, read.session.request, view.frame), view.model, view.highlight, view.light, {}, view.predicted};
   opened.layers = view.layers;
   opened.options = view.options;
   opened.layout = view.layout;

@@ -110,6 +110,7 @@ ErrorTable::ErrorTable(Document& document, QWidget* parent) : QWidget(parent), d
   view_->viewport()->installEventFilter(this);
   column->addWidget(view_, 1);
 
+  connect(view_->horizontalHeader(), &QHeaderView::sortIndicatorChanged, view_, &QTableView::scrollToTop);  // what one sorts for
   connect(filter_, QOverload<int>::of(&QComboBox::currentIndexChanged), this, [this](int i) {
     proxy_->setFrames(RowFilter::Frames(i));
     showFiltered();

@@ -375,18 +375,18 @@ void TimelineStrip::mousePressEvent(QMouseEvent* e) {
   scrubbing_ = false;
   const int frame = frameAt(positionOf(*e));
   if (e->button() != Qt::LeftButton || frame < 0) return;
-  if (roleMark(frame).contains(positionOf(*e))) {
-    const FrameRole next[] = {FrameRole::HeldOut, FrameRole::Excluded,
-                              FrameRole::Training};  // after training, held out, excluded
-    document_.setRole(frame, next[int(document_.role(frame))]);
-    return;
-  }
   if (const int light = lightAt(positionOf(*e).y()); light >= 0) {
     const viz::LightRow& row = data_.lights[std::size_t(light)];
     if (canSwitch(document_, viz::lightState(row, *document_.scene(), document_.request().whatIf, frame)))
       switchLight(document_, row, frame);
     else
       showTip(e->globalPos(), lightTip(light, frame), this);
+    return;
+  }
+  if (e->modifiers() & Qt::ControlModifier) {  // a plain click selects: who wants to see a frame must not exclude it
+    const FrameRole next[] = {FrameRole::HeldOut, FrameRole::Excluded,
+                              FrameRole::Training};  // after training, held out, excluded
+    document_.setRole(frame, next[int(document_.role(frame))]);
     return;
   }
   scrubbing_ = true;
@@ -397,7 +397,7 @@ void TimelineStrip::mousePressEvent(QMouseEvent* e) {
 void TimelineStrip::mouseMoveEvent(QMouseEvent* e) {
   const int frame = frameAt(positionOf(*e));
   if (!(e->buttons() & Qt::LeftButton)) {
-    const bool clickable = frame >= 0 && (roleMark(frame).contains(positionOf(*e)) || lightAt(positionOf(*e).y()) >= 0);
+    const bool clickable = frame >= 0 && lightAt(positionOf(*e).y()) >= 0;
     setCursor(clickable ? Qt::PointingHandCursor : Qt::ArrowCursor);
     return;
   }
@@ -467,7 +467,7 @@ QString TimelineStrip::lightTip(int row, int frame) const {
 
 QString TimelineStrip::toolTip(int frame) const {
   const Frame& f = document_.scene()->frames[std::size_t(frame)];
-  QString text = tr("Frame %1, %2").arg(nameText(f.id), roleName(document_.role(frame)));
+  QString text = tr("Frame %1, %2 (Ctrl+click or the menu changes that)").arg(nameText(f.id), roleName(document_.role(frame)));
   if (unreadable_.contains(frame)) text += tr("\nno photograph: %1").arg(unreadable_.value(frame));
   if (!data_.lights.empty()) {
     std::vector<std::string> on;

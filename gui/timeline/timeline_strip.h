@@ -24,7 +24,7 @@ class TimelineStrip : public QWidget {
  public:
   explicit TimelineStrip(Document& document, QWidget* parent = nullptr);
   QRectF cell(int frame) const;                  ///< in widget coordinates, from the thumbnails to the errors
-  QRectF roleMark(int frame) const;              ///< where a click changes the role
+  QRectF roleMark(int frame) const;              ///< where the role is drawn
   QRectF missedRow() const;                      ///< above the errors: frames where a model missed a highlight; empty without any
   QRectF lightMark(int light, int frame) const;  ///< where a click switches that light of lights()
   const std::vector<viz::LightRow>& lights() const { return data_.lights; }

@@ -118,7 +118,7 @@ QString helpText() {
              "  INPUT                 a scene file (scene.json), a session (*.glint), a capture of another program (COLMAP,\n"
              "                        nerfstudio ...) or a folder containing one; default: start empty\n\n"
              "  --layout NAME         arrangement of the panels: %1\n"
-             "  --theme light|dark    colours (default: dark)\n"
+             "  --theme light|dark    colours (default: those of the last time; dark at first and for --screenshot)\n"
              "  --frame ID            frame to select: id, or number in the input (from 0)\n"
              "  --ball [DIR:]CX,CY,R[@X0,Y0]\n"
              "                        INPUT is a folder of photographs of mirror balls: measure their lamps in a window of its\n"

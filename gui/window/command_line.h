@@ -4,6 +4,7 @@
 #include <QSize>
 #include <QString>
 #include <QStringList>
+#include <optional>
 
 #include "core/scene/input_choices.h"
 #include "gui/base/theme.h"
@@ -15,7 +16,7 @@ struct CommandLine {
   QString input;         ///< "" = empty state
   InputChoices choices;  ///< how it is read, where it is a capture of another program
   QString layout = QStringLiteral("debug");
-  Theme theme = Theme::Dark;
+  std::optional<Theme> theme;  ///< nothing: the one of last time
   QStringList
       balls;        ///< outlines of mirror balls, as `glint lights --ball` takes them: INPUT is a folder of photographs of these
   QString exclude;  ///< photographs of balls that are left out

@@ -17,7 +17,7 @@
 namespace glint::gui {
 
 namespace {
-constexpr int kNarrow = 1100, kLow = 740;  // below these, px, columns of docks would leave the views too little
+constexpr int kNarrow = 1100, kLow = 900;  // below these, px, columns of docks would leave the views too little
 constexpr int kTimeline = 150;             // px: its rows and an axis that is read
 constexpr int kBeside = 330;               // px: sliders with their names
 constexpr double kErrors = 0.32;           // of the height: summary, choice of rows and four rows of the table

@@ -420,7 +420,11 @@ void MainWindow::buildMenus() {
   docks_.addActions(actions_, view->addMenu(tr("&Panels")));
   view->addSeparator();
   actions_.add("view.theme", view, tr("Switch light/dark &theme"),
-               [this] { setTheme(currentTheme() == Theme::Dark ? Theme::Light : Theme::Dark); }, {{}, "theme"});
+               [this] {
+                 setTheme(currentTheme() == Theme::Dark ? Theme::Light : Theme::Dark);
+                 keepTheme(currentTheme());
+               },
+               {{}, "theme"});
 
   auto* pinned = new PinnedResults(document_, {scene_, frame_}, this);
   pinned->addActions(actions_, view);
@@ -532,9 +536,8 @@ void MainWindow::showProblem(const QString& oneLine) {
                                .arg(oneLine, shownText(exactQString(outside->folder))),
                            {{tr("Allow and open"), [this, outside] { files_->allow(outside); }}});
   else if (const UndecidedPtr undecided = std::exchange(undecided_, {}))
-    messageBar_->showError(oneLine, answersTo(undecided, this, [this, path = undecided->path](const Relinked& with) {
-                             files_->openRelinked(path, with);
-                           }));
+    askIn(*messageBar_, oneLine, undecided, this,
+          [this, path = undecided->path](const Relinked& with) { files_->openRelinked(path, with); });
   else if (!unreadable_->offerMesh(oneLine))
     messageBar_->showError(oneLine);
   log(oneLine);

@@ -198,13 +198,13 @@ QList<PaletteItem> paletteItems(const QString& typed, const Actions& actions, Do
     addKnobs(items, document, targets.whatIf);
     return items;
   }
+  // Not before a number is typed: a thousand frames would bury the rest. Then before what else names a frame, as undo may.
+  if (document.scene() && typed.contains(QRegularExpression(QStringLiteral("\\d")))) addFrames(items, document);
   addActions(items, actions);
   addParameters(items, document, targets.parameter);
   addKnobs(items, document, targets.whatIf);
   addLightSwitches(items, document);
   addLayers(items, document, targets.activeView());
-  // Not before a number is typed: a thousand frames would bury the rest.
-  if (document.scene() && typed.contains(QRegularExpression(QStringLiteral("\\d")))) addFrames(items, document);
   return items;
 }
 

@@ -29,24 +29,28 @@ QString titleOf(const UndecidedInput::Answer& answer, Question question) {
   return question == Question::Reading ? QObject::tr("Open %1").arg(words) : words;
 }
 
+// Each asks for an answer and opens with it; false when the user gives none.
+
 /// @param filter  as QFileDialog takes it
-void chooseFile(const UndecidedPtr& undecided, QWidget* window, const QString& title, const QString& filter, const Open& open) {
+bool chooseFile(const UndecidedPtr& undecided, QWidget* window, const QString& title, const QString& filter, const Open& open) {
   const QFileInfo input(undecided->path);
   const QString file = QFileDialog::getOpenFileName(window, title, input.isDir() ? undecided->path : input.path(), filter);
-  if (!file.isEmpty()) answer(undecided, file.toStdString(), open);
+  if (file.isEmpty()) return false;
+  answer(undecided, file.toStdString(), open);
+  return true;
 }
 
-void chooseMesh(const UndecidedPtr& undecided, QWidget* window, const Open& open) {
-  chooseFile(undecided, window, QObject::tr("Mesh of the object"),
-             QObject::tr("Meshes (*.ply *.obj *.stl *.gltf *.glb);;All files (*)"), open);
+bool chooseMesh(const UndecidedPtr& undecided, QWidget* window, const Open& open) {
+  return chooseFile(undecided, window, QObject::tr("Mesh of the object"),
+                    QObject::tr("Meshes (*.ply *.obj *.stl *.gltf *.glb);;All files (*)"), open);
 }
 
-void choosePoses(const UndecidedPtr& undecided, QWidget* window, const Open& open) {
-  chooseFile(undecided, window, QObject::tr("Poses of the cameras: TUM lines, or JSON lines with camera_from_world"),
-             QObject::tr("Poses (*.txt *.tum *.json *.jsonl);;All files (*)"), open);
+bool choosePoses(const UndecidedPtr& undecided, QWidget* window, const Open& open) {
+  return chooseFile(undecided, window, QObject::tr("Poses of the cameras: TUM lines, or JSON lines with camera_from_world"),
+                    QObject::tr("Poses (*.txt *.tum *.json *.jsonl);;All files (*)"), open);
 }
 
-void enterCamera(const UndecidedPtr& undecided, QWidget* window, const Open& open) {
+bool enterCamera(const UndecidedPtr& undecided, QWidget* window, const Open& open) {
   QString text;
   for (;;) {
     bool entered = false;
@@ -54,39 +58,51 @@ void enterCamera(const UndecidedPtr& undecided, QWidget* window, const Open& ope
                                  QObject::tr("fx,fy,cx,cy or fx,fy,cx,cy,k1,k2,p1,p2,k3 in pixels;\n"
                                              "(0,0) is the centre of the first pixel"),
                                  QLineEdit::Normal, text, &entered);
-    if (!entered) return;
+    if (!entered) return false;
     try {
-      return answer(undecided, text.remove(' ').toStdString(), open);
+      answer(undecided, text.remove(' ').toStdString(), open);
+      return true;
     } catch (const InputError&) {
       continue;  // the text stays, to be corrected
     }
   }
 }
 
-void chooseAnswer(const UndecidedPtr& undecided, QWidget* window, const Open& open) {
+bool chooseAnswer(const UndecidedPtr& undecided, QWidget* window, const Open& open) {
   QStringList titles;
   for (const UndecidedInput::Answer& a : undecided->answers) titles << titleOf(a, undecided->question);
   bool chosen = false;
   const QString title = QInputDialog::getItem(window, QObject::tr("Open"), QObject::tr("Which one?"), titles, 0, false, &chosen);
-  if (chosen) answer(undecided, undecided->answers[std::size_t(titles.indexOf(title))].value, open);
+  if (!chosen) return false;
+  answer(undecided, undecided->answers[std::size_t(titles.indexOf(title))].value, open);
+  return true;
 }
-}  // namespace
 
-MessageBar::Answers answersTo(const UndecidedPtr& undecided, QWidget* window, const Open& open) {
+/// @param cancelled  called where the user gives none
+MessageBar::Answers answersTo(const UndecidedPtr& undecided, QWidget* window, const Open& open,
+                              const std::function<void()>& cancelled) {
   MessageBar::Answers answers;
+  const auto ask = [=](bool (*question)(const UndecidedPtr&, QWidget*, const Open&)) {
+    return [=] {
+      if (!question(undecided, window, open)) cancelled();
+    };
+  };
   if (undecided->answers.size() > kMostButtons) {
-    answers << std::pair(QObject::tr("Choose…"), [=] { chooseAnswer(undecided, window, open); });
+    answers << std::pair(QObject::tr("Choose…"), ask(chooseAnswer));
   } else {
     for (const UndecidedInput::Answer& a : undecided->answers)
       answers << std::pair(titleOf(a, undecided->question), [=, value = a.value] { answer(undecided, value, open); });
   }
-  if (undecided->question == Question::Surface)
-    answers << std::pair(QObject::tr("Choose mesh…"), [=] { chooseMesh(undecided, window, open); });
-  if (undecided->question == Question::Poses)
-    answers << std::pair(QObject::tr("Choose poses…"), [=] { choosePoses(undecided, window, open); });
-  if (undecided->question == Question::Camera)
-    answers << std::pair(QObject::tr("Enter intrinsics…"), [=] { enterCamera(undecided, window, open); });
+  if (undecided->question == Question::Surface) answers << std::pair(QObject::tr("Choose mesh…"), ask(chooseMesh));
+  if (undecided->question == Question::Poses) answers << std::pair(QObject::tr("Choose poses…"), ask(choosePoses));
+  if (undecided->question == Question::Camera) answers << std::pair(QObject::tr("Enter intrinsics…"), ask(enterCamera));
   return answers;
+}
+}  // namespace
+
+void askIn(MessageBar& bar, const QString& oneLine, const UndecidedPtr& undecided, QWidget* window, const Open& open) {
+  const auto again = [&bar, oneLine, undecided, window, open] { askIn(bar, oneLine, undecided, window, open); };
+  bar.showError(oneLine, answersTo(undecided, window, open, again));
 }
 
 }  // namespace glint::gui

@@ -10,8 +10,10 @@ class QWidget;
 
 namespace glint::gui {
 
-/// Buttons for what the files leave open: one for each answer, and one that asks for a mesh, for poses or for intrinsics.
+/// Shows a message with buttons for what the files leave open: one for each answer, and one that asks for a mesh, for poses or for
+/// intrinsics. Whoever cancels such a question finds the message there again.
 /// @param open  opens the same input with this in addition
-MessageBar::Answers answersTo(const UndecidedPtr& undecided, QWidget* window, const std::function<void(const Relinked&)>& open);
+void askIn(MessageBar& bar, const QString& oneLine, const UndecidedPtr& undecided, QWidget* window,
+           const std::function<void(const Relinked&)>& open);
 
 }  // namespace glint::gui

@@ -269,6 +269,19 @@ class PaletteTest : public QObject {
     QCOMPARE(window_->document().selection().frame, 7);
   }
 
+  /// The action that undoes the change of a frame has the frame's id in its title, too.
+  void anIdFindsTheFrameBeforeTheUndoThatNamesIt() {
+    window_->document().setRole(5, FrameRole::Excluded);
+    popUp();
+    window_->commandPalette()->line()->setText("0005");
+    const QTreeWidget* list = window_->commandPalette()->list();
+    QCOMPARE(list->topLevelItem(0)->text(0), QStringLiteral("Frame 0005"));
+    QVERIFY2(list->topLevelItemCount() > 1 && list->topLevelItem(1)->text(0).startsWith("Undo"),
+             qPrintable(list->topLevelItem(1)->text(0)));
+    QTest::keyClick(window_->commandPalette()->line(), Qt::Key_Escape);
+    window_->document().undoStack()->undo();
+  }
+
   void aShortcutIsChangedKeptAndTakenFromItsOwner() {
     Actions& actions = window_->actions();
     ShortcutDialog dialog(actions, window_.get());

@@ -12,6 +12,7 @@
 #include <algorithm>
 
 #include "gui/base/text.h"
+#include "gui/document/session_file.h"
 #include "gui/scene/scene_options.h"
 #include "gui/scene/scene_panel.h"
 #include "gui/scene/scene_views.h"
@@ -46,6 +47,20 @@ class Heartbeat {
 class SessionTest : public QObject {
   Q_OBJECT
  private slots:
+  /// What a model predicts is seen at once, unless a session remembers another frame.
+  void aHeldOutFrameIsShownFirst() {
+    const QTemporaryDir copy;  // what is written beside a session is not to lie in the sources
+    std::filesystem::copy(GLINT_SOURCE_DIR "/sessions/vase", copy.path().toStdString(),
+                          std::filesystem::copy_options::recursive);
+    Opened opened = openInput(copy.filePath(QStringLiteral("scene.json")).toStdString(), {});
+    const std::vector<int> train = parseTrainSpec(opened.request.train, *opened.scene).frames;
+    QCOMPARE(opened.selection.frame, int(train.size()));  // "first:6"
+    opened.selection.frame = 1;
+    const std::string file = copy.filePath(QStringLiteral("looked-at.glint")).toStdString();
+    coreEngine().save(opened, nullptr, file, {});
+    QCOMPARE(openInput(file, {}).selection.frame, 1);
+  }
+
   void aSavedSessionReplaysAndComesBack() {
     const QString file = folder_.filePath(QStringLiteral("plane.glint"));
     const Engine engine = coreEngine();

@@ -9,6 +9,7 @@
 #include <QLabel>
 #include <QLineEdit>
 #include <QMenu>
+#include <QScrollBar>
 #include <QSettings>
 #include <QTableView>
 
@@ -120,6 +121,13 @@ class TableTest : public QObject {
     QVERIFY2(lines[0].startsWith(QStringLiteral("Frame,Model,Error %,Error px")), qPrintable(lines[0]));
     QVERIFY(lines[1].startsWith(QStringLiteral("0000,primal,8.000,3.200,")));
     QCOMPARE(lines[1].count(','), lines[0].count(','));
+  }
+
+  void sortingShowsTheFirstRows() {
+    table_->view()->scrollToBottom();
+    QVERIFY(table_->view()->verticalScrollBar()->value() > 0);
+    table_->view()->sortByColumn(ErrorModel::ErrorPct, Qt::DescendingOrder);
+    QCOMPARE(table_->view()->verticalScrollBar()->value(), 0);
   }
 
   void sortingAgainstAColumnPutsWhatHasNoValueLast() {

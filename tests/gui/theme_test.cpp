@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "gui/base/theme.h"
 
+#include <QAction>
 #include <QApplication>
 #include <QCheckBox>
 #include <QComboBox>
@@ -26,6 +27,7 @@
 #include "gui/base/panel_scroll.h"
 #include "gui/base/text.h"
 #include "gui/plots/conditioning_panel.h"
+#include "gui/window/main_window.h"
 #include "tests/gui/fixture.h"
 
 namespace glint::gui {
@@ -63,6 +65,21 @@ QImage drawn(QWidget& widget) {
 class ThemeTest : public QObject {
   Q_OBJECT
  private slots:
+  void theThemeThatWasChosenIsThatOfTheNextStart() {
+    const Fixture fixture;
+    MainWindow window(fixture.engine());
+    for (const Theme chosen : {keptTheme() == Theme::Dark ? Theme::Light : Theme::Dark, keptTheme()}) {
+      window.setTheme(chosen == Theme::Dark ? Theme::Light : Theme::Dark);
+      window.actions().find("view.theme")->trigger();
+      QCOMPARE(currentTheme(), chosen);
+      QCOMPARE(keptTheme(), chosen);
+      window.setTheme(chosen == Theme::Dark ? Theme::Light : Theme::Dark);  // as --theme of one start does
+      QCOMPARE(keptTheme(), chosen);
+    }
+    window.setTheme(Theme::Dark);
+    keepTheme(Theme::Dark);
+  }
+
   void cleanup() { applyTheme(*qApp, Theme::Dark); }
 
   void aSwatchKeepsItsColourInASelectedRow() {

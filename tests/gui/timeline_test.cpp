@@ -82,15 +82,20 @@ class TimelineTest : public QObject {
     QVERIFY(!frame->isVisible());
   }
 
-  void aClickOnARoleMarkGivesTheNextRole() {
+  /// A click looks at a frame, wherever it lands; only Ctrl+click changes what trains.
+  void onlyCtrlAndAClickGiveTheNextRole() {
     Shown shown;
     Document& document = shown.document;
     Timeline& timeline = shown.timeline;
     TimelineStrip* strip = timeline.strip();
     QCOMPARE(document.role(3), FrameRole::Training);
+    QTest::mouseClick(strip, Qt::LeftButton, {}, strip->roleMark(3).center().toPoint());
+    QCOMPARE(document.role(3), FrameRole::Training);
+    QCOMPARE(document.selection().frame, 3);
+    document.selectFrame(0);
     for (const FrameRole next : {FrameRole::HeldOut, FrameRole::Excluded, FrameRole::Training}) {
       const int steps = document.undoStack()->index();
-      QTest::mouseClick(strip, Qt::LeftButton, {}, strip->roleMark(3).center().toPoint());
+      QTest::mouseClick(strip, Qt::LeftButton, Qt::ControlModifier, strip->roleMark(3).center().toPoint());
       QCOMPARE(document.role(3), next);
       QCOMPARE(document.undoStack()->index(), steps + 1);
     }

@@ -184,7 +184,7 @@ class WindowSizeTest : public QObject, WindowFixture {
   void captionsAndSwitchesLeaveThePhotographTheLargestShare() {
     if (screen()->availableSize().width() < 1000 || screen()->availableSize().height() < 800) QSKIP("the screen is smaller");
     MainWindow window(fixture_.engine());
-    window.resize(1000, 800);
+    window.resize(1000, 660);
     show(window);
     openAndWait(window);
     Document& d = window.document();
