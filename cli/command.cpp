@@ -164,19 +164,6 @@ void Options::flag(bool& target, const std::string& flags, const std::string& he
 
 namespace {
 
-/// The plugins that --plugin names, which are loaded before the commands are made: they list models and layers.
-std::vector<std::filesystem::path> namedPlugins(int argc, char** argv) {
-  const std::string flag = "--plugin";
-  std::vector<std::filesystem::path> files;
-  for (int i = 1; i < argc; ++i) {
-    const std::string argument = argv[i];
-    if (argument == "--") break;
-    if (argument == flag && i + 1 < argc) files.emplace_back(argv[++i]);
-    if (argument.rfind(flag + "=", 0) == 0) files.emplace_back(argument.substr(flag.size() + 1));
-  }
-  return files;
-}
-
 /// Options that every command has.
 struct Everywhere {
   std::vector<std::string> limits;
@@ -244,21 +231,61 @@ std::vector<std::string> wordsFrom(int argc, char** argv) {
   return {words[1], "--help"};
 }
 
-int run(int argc, char** argv, const std::vector<Command>& commands) {
-  CLI::App app("Predicts specular highlights from a few images of a known scene.", "glint");
-  app.formatter(std::make_shared<Page>());
-  app.set_version_flag("--version", std::string("glint ") + GLINT_VERSION + pluginLines());
-  app.set_help_flag("-h,--help", "Show this page");
-  app.require_subcommand(1);
-  app.footer("`glint COMMAND --help` describes a command.\n" + std::string(kExitCodes));
-  const Command* chosen = nullptr;
-  Everywhere everywhere;
-  app.add_option("--plugin", everywhere.plugins, "Load this plugin; also behind the command")
-      ->type_name("FILE")
-      ->expected(1)
-      ->take_all();
-  for (const Command& command : commands) {
-    CLI::App* sub = app.add_subcommand(command.name, command.summary);
+/// All commands with their options, and what one command line says to them.
+class Line {
+ public:
+  explicit Line(std::vector<Command> commands)
+      : commands_(std::move(commands)), app_("Predicts specular highlights from a few images of a known scene.", "glint") {
+    app_.formatter(std::make_shared<Page>());
+    app_.set_version_flag("--version", std::string("glint ") + GLINT_VERSION + pluginLines());
+    app_.set_help_flag("-h,--help", "Show this page");
+    app_.require_subcommand(1);
+    app_.footer("`glint COMMAND --help` describes a command.\n" + std::string(kExitCodes));
+    app_.add_option("--plugin", everywhere_.plugins, "Load this plugin; also behind the command")
+        ->type_name("FILE")
+        ->expected(1)
+        ->take_all();
+    for (const Command& command : commands_) add(command);
+  }
+  Line(const Line&) = delete;  // the options refer to its members
+  Line& operator=(const Line&) = delete;
+
+  /// The plugins that the line names as options: not a value of another option, nothing behind "--", nothing of a line that is wrong in a
+  /// way that no plugin mends.
+  std::vector<std::filesystem::path> plugins(const std::vector<std::string>& words) {
+    try {
+      parse(words);
+    } catch (const CLI::ParseError& e) {
+      const bool mayName = dynamic_cast<const CLI::ValidationError*>(&e) != nullptr;  // a model that the plugin adds
+      if (!mayName && e.get_exit_code() != 0) return {};
+    }
+    std::vector<std::filesystem::path> files;
+    const auto take = [&files](const CLI::App& app) {
+      for (const std::string& file : app.get_option("--plugin")->results()) files.emplace_back(file);
+    };
+    take(app_);
+    for (const CLI::App* sub : app_.get_subcommands()) take(*sub);
+    return files;
+  }
+
+  int run(const std::vector<std::string>& words) {
+    if (words.empty()) {  // `glint` alone asks what there is
+      Context().print(app_.help());
+      return kDone;
+    }
+    try {
+      parse(words);
+    } catch (const CLI::ParseError& e) {
+      return answer(app_, e, words.front(), commands_);
+    }
+    for (const std::string& limit : everywhere_.limits) setLimit(limit);
+    showEachWarning(everywhere_.allWarnings);
+    return chosen_->run(Context());
+  }
+
+ private:
+  void add(const Command& command) {
+    CLI::App* sub = app_.add_subcommand(command.name, command.summary);
     sub->formatter(std::make_shared<Page>());
     std::string footer;
     if (!command.description.empty()) footer += command.description + "\n\n";
@@ -267,32 +294,32 @@ int run(int argc, char** argv, const std::vector<Command>& commands) {
     Options::Parser parser{*sub};
     Options options(parser);
     command.declare(options);
-    everywhere.declare(*sub);
-    sub->callback([&chosen, &command] { chosen = &command; });
+    everywhere_.declare(*sub);
+    sub->callback([this, &command] { chosen_ = &command; });
   }
-  if (argc < 2) {  // `glint` alone asks what there is
-    Context().print(app.help());
-    return kDone;
+  void parse(const std::vector<std::string>& words) {
+    app_.parse(std::vector<std::string>(words.rbegin(), words.rend()));  // CLI11 takes them from the back
   }
-  const std::vector<std::string> words = wordsFrom(argc, argv);
-  try {
-    app.parse(std::vector<std::string>(words.rbegin(), words.rend()));  // CLI11 takes them from the back
-  } catch (const CLI::ParseError& e) {
-    return answer(app, e, words.front(), commands);
-  }
-  for (const std::string& limit : everywhere.limits) setLimit(limit);
-  showEachWarning(everywhere.allWarnings);
-  return chosen->run(Context());
-}
+
+  std::vector<Command> commands_;
+  Everywhere everywhere_;
+  CLI::App app_;
+  const Command* chosen_ = nullptr;
+};
 
 }  // namespace
 
 int runCommandLine(int argc, char** argv, const std::function<std::vector<Command>()>& makeCommands) {
   return guarded([&]() -> int {
-    std::vector<std::string> refused = loadPlugins(namedPlugins(argc, argv));
+    const std::vector<std::string> words = wordsFrom(argc, argv);
+    // The pages list what plugins add, so the commands are made again behind them.
+    const bool mayName =
+        std::any_of(words.begin(), words.end(), [](const std::string& word) { return word.rfind("--plugin", 0) == 0; });
+    std::vector<std::string> refused =
+        loadPlugins(mayName ? Line(makeCommands()).plugins(words) : std::vector<std::filesystem::path>());
     for (std::string& line : viz::addPluginLayers()) refused.push_back(std::move(line));
     for (const std::string& line : refused) Context().warn(line);
-    return run(argc, argv, makeCommands());
+    return Line(makeCommands()).run(words);
   });
 }
 

@@ -93,6 +93,13 @@ void writeBeside(const fs::path& folder, const fs::path& given, const Write& wri
   parents.keep();
 }
 
+/// A link that somebody put into the folder would lead the files out of it.
+void requireNoLink(const fs::path& inside, const fs::path& given) {
+  std::error_code ignored;  // what cannot be asked about fails later
+  if (fs::is_symlink(inside, ignored))
+    throw InputError(given.string(), "", "is a link; nothing is written through it: remove it or choose another folder");
+}
+
 /// Moves what `from` holds into `to`: a folder as a whole where there is none yet, else file by file.
 void moveInto(const fs::path& from, const fs::path& to, const fs::path& given, const std::string& last) {
   std::vector<fs::path> names;
@@ -101,6 +108,7 @@ void moveInto(const fs::path& from, const fs::path& to, const fs::path& given, c
   std::stable_partition(names.begin(), names.end(), [&](const fs::path& name) { return name != last; });
   for (const fs::path& name : names) {
     std::error_code ignored;  // what cannot be asked about fails below
+    if (fs::is_directory(from / name, ignored)) requireNoLink(to / name, given / name);
     if (fs::is_directory(from / name, ignored) && fs::is_directory(to / name, ignored))
       moveInto(from / name, to / name, given / name, "");
     else if (::rename((from / name).c_str(), (to / name).c_str()) != 0)
@@ -129,6 +137,7 @@ void atomicFiles(const fs::path& given, const std::string& main, const Write& wr
   TemporaryPath temporary(folder, given / main, TemporaryPath::Kind::Folder);
   fill(temporary.path(), given, write);
   const fs::path whole = temporary.path() / main;
+  if (const fs::path above = fs::path(main).parent_path(); !above.empty()) requireNoLink(folder / above, given / above);
   if (!main.empty() && !fs::exists(folder / main, error) && fs::exists(whole, error) &&
       ::rename(whole.c_str(), (folder / main).c_str()) != 0)
     throw InputError((given / main).string(), "", std::string("cannot be written: ") + std::strerror(errno));

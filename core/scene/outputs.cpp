@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <fstream>
+#include <iterator>
+#include <sstream>
 
 #include "core/base/document_kind.h"
 #include "core/base/number_text.h"
@@ -28,10 +30,17 @@ bool isMovie(const std::string& head) {
          (head.starts_with("RIFF") && head.compare(8, 4, "AVI ") == 0);
 }
 
-/// A first line of digits alone.
-bool isCount(const std::string& head) {
-  const std::size_t digits = head.find_first_not_of("0123456789");
-  return digits != 0 && digits != std::string::npos && (head[digits] == '\n' || head[digits] == '\r');
+/// A first line of digits alone, and below it a name and three numbers: other lists begin with their length, too.
+bool isLightPositions(const std::string& head) {
+  std::istringstream lines(head);
+  std::string count, first;
+  if (!std::getline(lines, count) || !std::getline(lines, first)) return false;
+  if (!count.empty() && count.back() == '\r') count.pop_back();
+  if (count.empty() || count.find_first_not_of("0123456789") != std::string::npos) return false;
+  std::istringstream words(first);
+  const std::vector<std::string> found{std::istream_iterator<std::string>(words), {}};
+  return found.size() >= 4 &&
+         std::all_of(found.end() - 3, found.end(), [](const std::string& word) { return numberFrom(word).has_value(); });
 }
 
 }  // namespace
@@ -53,7 +62,7 @@ bool OutputKind::holds(const fs::path& file) const {
     case Form::Table: return head.starts_with(key_);
     case Form::Page: return head.starts_with("<!doctype html>") && head.find("<title>Glint") != std::string::npos;
     case Form::Png: return head.starts_with("\x89PNG\r\n\x1a\n");
-    case Form::LightPositions: return isCount(head);
+    case Form::LightPositions: return isLightPositions(head);
     case Form::Movie: return head.size() >= 12 && isMovie(head);
   }
   return false;

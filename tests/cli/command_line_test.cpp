@@ -25,6 +25,18 @@ std::string quoted(const fs::path& p) {
   return text;
 }
 
+// A plugin is code: only an option --plugin of this line loads one, never another option's value or a word behind "--".
+TEST(CommandLine, OnlyTheOptionItselfNamesAPlugin) {
+  const auto tried = [](const std::string& arguments) {
+    return runGlint(arguments).err.rfind("glint: /nowhere.so: no such file", 0) == 0;
+  };
+  EXPECT_TRUE(tried("info x --plugin /nowhere.so"));
+  EXPECT_TRUE(tried("info x --plugin=/nowhere.so"));
+  EXPECT_FALSE(tried("info -- --plugin=/nowhere.so"));
+  EXPECT_FALSE(tried("info x --json --plugin=/nowhere.so"));
+  EXPECT_FALSE(tried("info x --no-such-option --plugin=/nowhere.so"));
+}
+
 TEST(CommandLine, VersionAndHelpAreDone) {
   EXPECT_EQ(runGlint("--version").out, "glint 0.1.0\n");
   for (const char* arguments : {"", "--help", "info --help", "convert --help", "settings --help", "help", "help convert"}) {

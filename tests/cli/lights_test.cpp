@@ -104,10 +104,12 @@ TEST_F(OneBall, SeveralFilesByTheirEndings) {
   EXPECT_THAT(contentOf(folder_ / "a.csv"), testing::StartsWith("id,status,reason"));
   // Again over its own files, and never over others'.
   EXPECT_EQ(lights("--ball 151,129,101 -o " + out("a.lp")).code, 0);
-  folder_.write("mine.lp", "not a list\n");
-  const ProgramRun refused = lights("--ball 151,129,101 -o " + out("mine.lp"));
-  EXPECT_EQ(refused.code, 2);
-  EXPECT_THAT(refused.err, HasSubstr("nothing is overwritten"));
+  for (const char* other : {"not a list\n", "42\n", "3\nmy precious notes of today\n", "2\n1 2\n3 4\n"}) {
+    folder_.write("mine.lp", other);
+    const ProgramRun refused = lights("--ball 151,129,101 -o " + out("mine.lp"));
+    EXPECT_EQ(refused.code, 2) << other;
+    EXPECT_THAT(refused.err, HasSubstr("nothing is overwritten"));
+  }
 }
 
 TEST_F(OneBall, AShotWithoutALampIsLeftOut) {

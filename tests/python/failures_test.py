@@ -3,6 +3,7 @@
 import json
 import pathlib
 import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -232,3 +233,10 @@ def test_random_arrays_never_crash():
                     except allowed:
                         outcomes[False] += 1
     assert outcomes[True] > 50 and outcomes[False] > 1000
+
+
+@pytest.mark.parametrize("what", ["pickle.dumps(x, 0)", "pickle.dumps(x, 2)", "copy.copy(x)", "x.__reduce__()", "x.__reduce_ex__(0)"])
+def test_pickling_is_refused_and_ends_nothing(what):
+    program = f"import copy, pickle, glint\nx = glint.Ellipse([1, 2], [3, 2], 0.1)\ntry:\n  {what}\nexcept TypeError as e:\n  print(e)"
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
+    assert done.returncode == 0 and "cannot pickle or copy 'Ellipse'" in done.stdout, done.stderr

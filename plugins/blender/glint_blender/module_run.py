@@ -4,6 +4,7 @@ preferences; the files and numbers are those of the command line, times aside. N
 import importlib
 import json
 import os
+import tempfile
 import threading
 
 from .failures import InputError
@@ -38,10 +39,12 @@ def predictions_of(inspection, models):
 
 def write(path, text):
     """A file, whole or not at all."""
-    unfinished = os.path.join(os.path.dirname(path), f".{os.path.basename(path)}.tmp")
-    with open(unfinished, "w", encoding="utf-8") as file:
-        file.write(text)
-    os.replace(unfinished, path)
+    # In a folder that is new and this user's alone: nobody has put a link in its place.
+    with tempfile.TemporaryDirectory(prefix=".glint-", suffix=".tmp", dir=os.path.dirname(path)) as work:
+        unfinished = os.path.join(work, os.path.basename(path))
+        with open(unfinished, "w", encoding="utf-8") as file:
+            file.write(text)
+        os.replace(unfinished, path)
 
 
 class InProcess:

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Predicted contours as transparent pictures before the views of the cameras, pixel by pixel those of the photographs."""
 import os
+import tempfile
 
 import bpy
 import numpy
@@ -57,10 +58,12 @@ def save(path, picture):
     image = bpy.data.images.new("Glint overlay", width, height, alpha=True)
     try:
         image.pixels.foreach_set(picture[::-1].astype(numpy.float32).ravel())
-        unfinished = os.path.join(os.path.dirname(path), f".{os.path.basename(path)}.tmp")
-        image.filepath_raw, image.file_format = unfinished, "PNG"
-        image.save()
-        os.replace(unfinished, path)
+        # In a folder that is new and this user's alone: nobody has put a link in its place.
+        with tempfile.TemporaryDirectory(prefix=".glint-", suffix=".tmp", dir=os.path.dirname(path)) as work:
+            unfinished = os.path.join(work, os.path.basename(path))
+            image.filepath_raw, image.file_format = unfinished, "PNG"
+            image.save()
+            os.replace(unfinished, path)
     except (RuntimeError, OSError) as e:
         raise InputError(path, "", f"cannot be written: {e}") from None
     finally:
@@ -71,10 +74,14 @@ def prepared(folder):
     """The folder `overlays` of a run; one that somebody else made is refused."""
     path = os.path.join(folder, FOLDER)
     try:
-        if os.path.isdir(path) and os.listdir(path) and not os.path.isfile(os.path.join(path, MARK)):
+        mark = os.path.join(path, MARK)
+        ours = os.path.isfile(mark) and not os.path.islink(mark)
+        if os.path.islink(path) or (os.path.isdir(path) and os.listdir(path) and not ours):
             raise InputError(path, "", "exists already and is not of an earlier run")
         os.makedirs(path, exist_ok=True)
-        with open(os.path.join(path, MARK), "w", encoding="ascii") as file:
+        if ours:
+            return path
+        with open(mark, "x", encoding="ascii") as file:
             file.write("The Glint add-on for Blender wrote the pictures here and may replace them.\n")
     except OSError as e:
         raise InputError(path, "", e.strerror or str(e)) from None

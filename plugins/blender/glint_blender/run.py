@@ -16,13 +16,21 @@ DEFAULT_KINDS = {"ELLIPSOIDS", "LIGHTS", "PLANES", "CONTOURS", "MATERIAL"}
 NO_HIGHLIGHT = 3  # exit code: the data cannot answer
 
 
+def absolute(path, what):
+    """A path of the panel, absolute; InputError else. It is stored in the .blend file, whose author must not be able to write an option there."""
+    if path.startswith("//") and not bpy.data.filepath:
+        raise InputError(path, "", "is relative to the .blend file, which is not saved yet")
+    found = bpy.path.abspath(path)
+    if not os.path.isabs(found):
+        raise InputError(what, path, "must be an absolute path, or begin with // for the folder of the .blend file")
+    return found
+
+
 def folder_of(settings):
     """The folder of the run, absolute; InputError where the user has not said one."""
     if not settings.folder:
         raise InputError("folder", "", "choose the folder of the run")
-    if settings.folder.startswith("//") and not bpy.data.filepath:
-        raise InputError(settings.folder, "", "is relative to the .blend file, which is not saved yet")
-    path = bpy.path.abspath(settings.folder)
+    path = absolute(settings.folder, "folder")
     try:
         os.makedirs(path, exist_ok=True)
     except OSError as e:
@@ -60,7 +68,7 @@ def asked_of(settings):
 
 
 def commands(program_file, settings, scene_path, folder):
-    """The steps of a run, as Sequence takes them."""
+    """The steps of a run, as Sequence takes them. What the .blend file names is the value of an option, or behind "--"."""
     models, values = asked_of(settings)
     models = ",".join(models)
     common = ["--train", settings.train_spec(), "--source", settings.source]
@@ -70,9 +78,9 @@ def commands(program_file, settings, scene_path, folder):
     predictions = os.path.join(folder, "predictions")
     # Blender shows no bands, and they take several fits.
     without_bands = [] if "predict.band" in values else ["--set", "predict.band=false"]
-    return [("Fit", [program_file, "reconstruct", scene_path, "--model", models, *common, "-o", session], {0}),
-            ("Predict", [program_file, "predict", session, *without_bands, "--out", predictions], {0, NO_HIGHLIGHT}),
-            ("Evaluate", [program_file, "evaluate", session, "--models", models, *common, "--json", evaluation], {0, NO_HIGHLIGHT})]
+    return [("Fit", [program_file, "reconstruct", "--model", models, *common, "-o", session, "--", scene_path], {0}),
+            ("Predict", [program_file, "predict", *without_bands, "--out", predictions, "--", session], {0, NO_HIGHLIGHT}),
+            ("Evaluate", [program_file, "evaluate", "--models", models, *common, "--json", evaluation, "--", session], {0, NO_HIGHLIGHT})]
 
 
 class GLINT_OT_run(bpy.types.Operator):
@@ -113,7 +121,7 @@ class GLINT_OT_run(bpy.types.Operator):
         if settings.origin == "BLENDER":
             path, warnings = export_for_run(context, folder)
         else:
-            path = bpy.path.abspath(settings.input)
+            path = absolute(settings.input, "scene")
         self.folder, self.scene_path = folder, path
         if found is None:
             models, values = asked_of(settings)

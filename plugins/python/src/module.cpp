@@ -9,6 +9,26 @@
 #include "plugins/python/src/options.h"
 #include "plugins/python/src/types.h"
 
+namespace {
+
+namespace py = pybind11;
+
+/// pybind11 aborts the process where Python's old protocols of pickle make an object without its constructor, so each class says no itself.
+void refusePickling(const py::module_& module) {
+  const py::handle ours(reinterpret_cast<PyObject*>(py::detail::get_internals().default_metaclass));
+  for (const auto& [name, value] : py::reinterpret_borrow<py::dict>(module.attr("__dict__"))) {
+    if (!py::isinstance(value, ours)) continue;
+    const auto refuse = [](const py::object& self, const py::args&) -> py::object {
+      throw py::type_error("cannot pickle or copy '" + py::str(py::type::of(self).attr("__name__")).cast<std::string>() +
+                           "' object");
+    };
+    for (const char* method : {"__reduce__", "__reduce_ex__"})
+      py::setattr(value, method, py::cpp_function(refuse, py::name(method), py::is_method(value)));
+  }
+}
+
+}  // namespace
+
 PYBIND11_MODULE(_glint, module) {
   using namespace glint::python;
   module.doc() = "Glint's computing core. Use the package `glint`, which adds the functions that take keyword arguments.";
@@ -29,6 +49,7 @@ PYBIND11_MODULE(_glint, module) {
   declareRetexture(module);
   declareTradeoff(module);
   declareSynth(module);
+  refusePickling(module);
   module.def(
       "set_limit", [](const std::string& nameAndValue) { glint::setLimit(nameAndValue); }, py::arg("name_and_value"),
       "Raises a limit on the size of inputs for this process: \"mesh-megabytes=4096\". InputError, with the known names.");

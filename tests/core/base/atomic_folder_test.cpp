@@ -119,6 +119,21 @@ TEST_F(AtomicFolder, FilesOfANewFolderAppearWithIt) {
 }
 
 /// A shell may stand in it: a new folder in its place would leave the shell in one that is gone.
+TEST_F(AtomicFolder, NothingIsWrittenThroughALinkInTheFolder) {
+  fs::create_directories(parent_ / "taken");
+  fs::create_directories(parent_ / "elsewhere");
+  fs::create_directory_symlink(parent_ / "elsewhere", parent_ / "taken/frames");
+  std::ofstream(parent_ / "taken/kept") << "kept";
+  const auto write = [](const fs::path& to) {
+    fs::create_directories(to / "frames");
+    std::ofstream(to / "frames/0001.png") << "new";
+  };
+  for (const char* main : {"scene.json", "frames/0001.png"}) {
+    EXPECT_THROW(atomicFiles(parent_ / "taken", main, write), InputError) << main;
+    EXPECT_TRUE(fs::is_empty(parent_ / "elsewhere")) << main;
+  }
+}
+
 TEST_F(AtomicFolder, TheCurrentFolderStaysTheSame) {
   const fs::path before = fs::current_path(), here = parent_ / "here";
   fs::create_directories(here);

@@ -196,6 +196,31 @@ class Operator(unittest.TestCase):
         with self.assertRaisesRegex(RuntimeError, "is relative to the .blend file, which is not saved yet"):
             bpy.ops.glint.run()
 
+    def test_paths_of_a_stranger_s_file_are_no_options(self):
+        from glint_blender import run
+        settings = self.scene.glint
+        for word in ("--plugin=/nowhere/evil.png", "relative/scene.json"):
+            with self.assertRaisesRegex(Exception, "must be an absolute path"):
+                run.absolute(word, "scene")
+            settings.folder = word
+            with self.assertRaisesRegex(RuntimeError, "must be an absolute path"):
+                bpy.ops.glint.run()
+
+    def test_what_is_written_follows_no_link(self):
+        from glint_blender import module_run, overlays
+        with tempfile.TemporaryDirectory() as folder:
+            victim = os.path.join(folder, "victim")
+            with open(victim, "w", encoding="ascii") as file:
+                file.write("precious")
+            for name in (".evaluation.json.tmp", "evaluation.json", "overlays"):
+                os.symlink(victim, os.path.join(folder, name))
+            module_run.write(os.path.join(folder, "evaluation.json"), "{}")
+            with self.assertRaisesRegex(Exception, "is not of an earlier run"):
+                overlays.prepared(folder)
+            with open(victim, encoding="ascii") as file:
+                self.assertEqual(file.read(), "precious")
+            self.assertEqual(sorted(os.listdir(folder)), [".evaluation.json.tmp", "evaluation.json", "overlays", "victim"])
+
     def test_presets_keep_the_request(self):
         settings = self.scene.glint
         asked = {"models": {"dual", "reflectance"}, "training": "FIRST", "count": 9, "source": "image", "more": "fit.lobe=ggx"}
@@ -216,10 +241,11 @@ class Operator(unittest.TestCase):
         settings.more, settings.source = "fit.solver=linear surface.normals=facet", "image"
         steps = run.commands("glint", settings, "scene.json", "out")
         common = ["--train", "first:4", "--source", "image", "--set", "detect.level=0.3", "--set", "fit.solver=linear", "--set", "surface.normals=facet"]
-        self.assertEqual(steps[0][1], ["glint", "reconstruct", "scene.json", "--model", "canonical,dual", *common, "-o", os.path.join("out", "run.glint")])
-        self.assertEqual(steps[1][1], ["glint", "predict", os.path.join("out", "run.glint"), "--set", "predict.band=false", "--out", os.path.join("out", "predictions")])
-        self.assertEqual(steps[2][1], ["glint", "evaluate", os.path.join("out", "run.glint"), "--models", "canonical,dual", *common, "--json",
-                                       os.path.join("out", "evaluation.json")])
+        self.assertEqual(steps[0][1], ["glint", "reconstruct", "--model", "canonical,dual", *common, "-o", os.path.join("out", "run.glint"), "--", "scene.json"])
+        self.assertEqual(steps[1][1], ["glint", "predict", "--set", "predict.band=false", "--out", os.path.join("out", "predictions"), "--",
+                                       os.path.join("out", "run.glint")])
+        self.assertEqual(steps[2][1], ["glint", "evaluate", "--models", "canonical,dual", *common, "--json",
+                                       os.path.join("out", "evaluation.json"), "--", os.path.join("out", "run.glint")])
         settings.training = "PER_SURFACE"
         self.assertIn("per-surface", run.commands("glint", settings, "scene.json", "out")[0][1])
         settings.models = set()
