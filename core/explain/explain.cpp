@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 
 #include "core/base/angle.h"
 #include "core/diagnostics/conditioning.h"
@@ -23,8 +24,6 @@ namespace glint {
 using namespace explaining;
 
 namespace {
-constexpr double kFlatShare = 0.05;      // of the limit angle: a normal that turns less across the highlight is that of a plane
-constexpr double kSameCurvature = 0.2;   // relative spread over the views: below, one sphere-like patch describes all of them
 constexpr double kSameLimit = 0.05;      // relative spread over the directions: beyond, one limit angle is not the contour
 constexpr double kPricePct = 1;          // of the highlight's size: below, a broken assumption has cost nothing that one sees
 constexpr double kEllipticShare = 0.01;  // of the size: a contour this near to its ellipse looks like one
@@ -85,34 +84,6 @@ void gather(Case& c) {
     addCanonicalContour(*out.view, *out.lightUsed, in.request.settings);
 }
 
-bool reached(const Case& c, ExplainStep& step) {
-  if (!c.highlight) {
-    const std::optional<Failure>& why = c.inspection.evidence[std::size_t(c.out.frame)].failure;
-    step.failure = why ? *why : Failure{Reason::NoHighlight, "the frame shows none"};
-  } else if (!c.out.view) {
-    step.failure = Failure{Reason::NoSurface, ""};
-  } else {
-    step.failure = c.out.view->failure();
-  }
-  return !step.failure;
-}
-
-/// Radius of the highlight on the tangent plane, m.
-double radiusOnPlane(const TrainingView& v) {
-  double sum = 0;
-  int n = 0;
-  for (const Pixel& p : v.highlight.contour.points) {
-    const Ray ray = v.camera.ray(p);
-    const double across = v.seen->tangentPlane.normal.dot(ray.direction);
-    if (across == 0) continue;
-    const double t = -v.seen->tangentPlane.signedDistance(ray.origin) / across;
-    if (!(t > 0)) continue;
-    sum += (ray.at(t) - v.seen->brightest.point.position).norm();
-    ++n;
-  }
-  return n > 0 ? sum / n : 0;
-}
-
 void peakStep(const Case& c, ExplainStep& step) {
   if (!c.highlight) return void(reached(c, step));
   step.numbers.push_back(pixel("p", "peak in the photograph", c.highlight->peak));
@@ -123,7 +94,7 @@ void peakStep(const Case& c, ExplainStep& step) {
   const TrainingView& v = *c.out.view;
   step.numbers.push_back(point("P_B", "brightest point", v.seen->brightest.point.position));
   step.numbers.push_back(
-      one("", "distance from the camera", (v.seen->brightest.point.position - v.camera.centreInWorld()).norm(), "m"));
+      one("d", "distance from the camera", (v.seen->brightest.point.position - v.camera.centreInWorld()).norm(), "m"));
 }
 
 void tangentStep(const Case& c, ExplainStep& step) {
@@ -132,75 +103,12 @@ void tangentStep(const Case& c, ExplainStep& step) {
   const Eigen::Vector3d toCamera = (v.camera.centreInWorld() - v.seen->brightest.point.position).normalized();
   step.numbers.push_back(point("N", "normal at P_B", v.seen->tangentPlane.normal, ""));
   step.numbers.push_back(one(
-      "", "angle between N and the view ray",
+      "θ", "angle between N and the view ray",
       degrees(std::atan2(toCamera.cross(v.seen->tangentPlane.normal).norm(), toCamera.dot(v.seen->tangentPlane.normal))), "deg"));
   if (!c.surface) return;
   if (const Outcome<Curvature> k = c.surface->curvatureAt(v.seen->brightest.point)) {
     step.numbers.push_back(one("κ₁", "principal curvature", k->k1, "1/m"));
     step.numbers.push_back(one("κ₂", "principal curvature", k->k2, "1/m"));
-  }
-}
-
-/// What the camera sees of the light's side within the highlight: in a flat mirror as much as it sees of the highlight itself, in
-/// this mirror the widest angle between the rays that the surface reflects.
-void fieldOfView(const Case& c, ExplainStep& step) {
-  if (!c.surface) return;
-  constexpr int kAround = 48;  // points of the contour: opposite ones are never farther than 4 deg from the widest pair
-  const TrainingView& v = *c.out.view;
-  const Eigen::Vector3d eye = v.camera.centreInWorld();
-  std::vector<Eigen::Vector3d> seen, reflected;
-  for (const Pixel& p : resample(v.highlight.contour, kAround)) {
-    const Ray ray = v.camera.ray(p);
-    const Outcome<SurfacePoint> hit = c.surface->firstHit(ray);
-    if (!hit) return;  // the contour leaves the surface: the widest angle would be one of what is left
-    seen.push_back(ray.direction);
-    reflected.push_back(reflect(-ray.direction, facing(*hit, eye).normal));
-  }
-  step.numbers.push_back(one("", "field of view across the highlight, flat mirror", degrees(widestAngle(seen)), "deg"));
-  step.numbers.push_back(one("", "field of view across the highlight, this mirror", degrees(widestAngle(reflected)), "deg"));
-}
-
-ModelTraits::Assumes assumes(const std::string& model) { return modelByName(model).traits().surface; }
-
-void virtualCameraStep(const Case& c, ExplainStep& step) {
-  if (!reached(c, step) || !c.out.view->seen) return;
-  const TrainingView& v = *c.out.view;
-  step.numbers.push_back(point("C", "camera centre", v.camera.centreInWorld()));
-  step.numbers.push_back(point("C_v", "centre of the virtual camera", v.seen->tangentPlane.reflected(v.camera.centreInWorld())));
-  step.numbers.push_back(
-      one("det M", "of the mirror's 3x3 block", v.seen->tangentPlane.reflection().topLeftCorner<3, 3>().determinant()));
-  fieldOfView(c, step);
-  // How far the surface is from a plane within the highlight: the normal's turn against the limit angle.
-  if (!c.surface || !v.seen) return;
-  const Outcome<Curvature> k = c.surface->curvatureAt(v.seen->brightest.point);
-  const double limit = c.fit && c.fit->fit ? c.fit->fit->limitAngle().value_or(0) : 0;
-  const LightEstimate* common = c.common();
-  const double alpha = limit > 0 ? limit : common ? common->limitAngle : 0;
-  if (!k || !(alpha > 0)) return;
-  const double turn = std::max(std::abs(k->k1), std::abs(k->k2)) * radiusOnPlane(v);
-  step.numbers.push_back(one("", "turn of the normal from P_B to the contour", degrees(turn), "deg"));
-  // Said of such models whichever one is explained: that they fail here is why the steps that follow exist.
-  using Assumes = ModelTraits::Assumes;
-  const auto wasComputed = [&](Assumes assumed) {
-    const auto& models = c.inspection.models;
-    return std::any_of(models.begin(), models.end(), [&](const auto& m) { return assumes(m.first) == assumed; });
-  };
-  if (turn > kFlatShare * alpha && wasComputed(Assumes::Plane))
-    step.broken.push_back({"primal-off-plane",
-                           {one("", "turn of the normal", degrees(turn), "deg"), one("", "limit angle", degrees(alpha), "deg")}});
-  if (wasComputed(Assumes::ConstantCurvature)) {
-    double least = std::numeric_limits<double>::infinity(), most = -least;
-    for (const TrainingView& other : c.inspection.views) {
-      if (!other.seen || !other.surface || !c.sharesModel(other.frame)) continue;
-      const Outcome<Curvature> there = other.surface->curvatureAt(other.seen->brightest.point);
-      if (!there) continue;
-      least = std::min({least, there->k1, there->k2});
-      most = std::max({most, there->k1, there->k2});
-    }
-    const double size = std::max(std::abs(least), std::abs(most));
-    if (most > least && size > 0 && most - least > kSameCurvature * size && turn > kFlatShare * alpha)
-      step.broken.push_back({"dual-curvature-varies",
-                             {one("", "smallest curvature seen", least, "1/m"), one("", "largest curvature seen", most, "1/m")}});
   }
 }
 
@@ -223,33 +131,43 @@ void contourStep(const Case& c, ExplainStep& step) {
     step.broken.push_back({"contour-not-elliptic", {one("", "of the contour's size", 100 * share, "%")}});
 }
 
+/// Whether the limit angles differ by more than one angle would explain, and what it comes from.
+void addSpread(const Case& c, double spread, ExplainStep& step) {
+  const int here = endsAtEdge(*c.out.view);
+  const auto& views = c.inspection.views;
+  const auto elsewhere = std::count_if(views.begin(), views.end(), [&](const TrainingView& v) {
+    return v.frame != c.out.frame && v.highlight.light == c.out.light && c.sharesModel(v.frame) && endsAtEdge(v) > 0;
+  });
+  if (here > 0 || (elsewhere > 0 && spread > kSameLimit))
+    step.broken.push_back({"contour-at-edge",
+                           {one("", "of 72 points of this contour", here),
+                            one("", "other training views with such a contour", double(elsewhere))}});
+  else if (spread > kSameLimit)
+    step.broken.push_back({"limit-angle-varies", {one("", "spread of the limit angles", 100 * spread, "%")}});
+}
+
 void limitAngleStep(const Case& c, ExplainStep& step) {
   if (!reached(c, step)) return;
   if (!c.out.view->canonical) {
     step.failure = Failure{Reason::NoLight, "the walk needs the light"};
     return;
   }
-  double least = std::numeric_limits<double>::infinity(), most = 0, sum = 0;
-  int n = 0;
+  std::vector<double> angles;
   std::map<std::string, int> failed;
   for (const DirectionResult& d : c.out.view->canonical->directions) {
-    if (d.limitAngle && !d.failure) {
-      least = std::min(least, *d.limitAngle);
-      most = std::max(most, *d.limitAngle);
-      sum += *d.limitAngle;
-      ++n;
-    } else if (d.failure) {
+    if (d.limitAngle && !d.failure)
+      angles.push_back(*d.limitAngle);
+    else if (d.failure)
       ++failed[nameOf(d.failure->reason)];
-    }
   }
   step.numbers.push_back(one("n", "directions", double(c.out.view->canonical->directions.size())));
-  step.numbers.push_back(one("", "reached the contour", n));
-  if (n > 0) {
-    step.numbers.push_back(one("α_i", "smallest limit angle", degrees(least), "deg"));
-    step.numbers.push_back(one("α_i", "largest limit angle", degrees(most), "deg"));
-    const double mean = sum / n;
-    if (most - least > kSameLimit * mean)
-      step.broken.push_back({"limit-angle-varies", {one("", "spread of the limit angles", 100 * (most - least) / mean, "%")}});
+  step.numbers.push_back(one("", "reached the contour", double(angles.size())));
+  if (!angles.empty()) {
+    const auto [least, most] = std::minmax_element(angles.begin(), angles.end());
+    step.numbers.push_back(one("α_i", "smallest limit angle", degrees(*least), "deg"));
+    step.numbers.push_back(one("α_i", "largest limit angle", degrees(*most), "deg"));
+    const double mean = std::accumulate(angles.begin(), angles.end(), 0.0) / double(angles.size());
+    addSpread(c, (*most - *least) / mean, step);
   }
   for (const auto& [reason, count] : failed) step.broken.push_back({"directions-failed", {one("", reason, count)}});
   addOtherLight(c, step);
@@ -460,12 +378,13 @@ void comparisonStep(const Case& c, ExplainStep& step) {
   if (c.inspection.isTraining(c.out.frame)) step.broken.push_back({"training-frame", {}});
   // What the surface did to the model's assumption was said where the mirror was: this is its price.
   const ModelTraits::Assumes assumed = assumes(c.out.model);
-  const std::string because = assumed == ModelTraits::Assumes::Plane               ? "primal-off-plane"
-                              : assumed == ModelTraits::Assumes::ConstantCurvature ? "dual-curvature-varies"
-                                                                                   : "";
+  std::vector<std::string> because;
+  if (assumed == ModelTraits::Assumes::Plane) because = {"primal-off-plane"};
+  if (assumed == ModelTraits::Assumes::ConstantCurvature) because = {"dual-curvature-varies", "dual-bends-one-way"};
   for (const ExplainStep& earlier : c.out.steps)
     for (const BrokenAssumption& b : earlier.broken)
-      if (b.id == because && m.contourErrorPct > kPricePct) return step.broken.push_back(b);
+      if (m.contourErrorPct > kPricePct && std::find(because.begin(), because.end(), b.id) != because.end())
+        return step.broken.push_back(b);
 }
 /// Says of each number what is too small to mean anything. @param distance  m, to what the camera sees; > 0.
 void setLeast(std::vector<ExplainNumber>& numbers, double distance) {

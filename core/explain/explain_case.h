@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/explain/explain.h"
+#include "core/model/model.h"
 
 // What the steps of an explanation read from, and how they write their numbers. Used by the steps alone.
 namespace glint::explaining {
@@ -35,6 +36,14 @@ struct Case {
   const Light* own() const;
 };
 
+/// Whether the steps have a brightest point to start from; else the step says why not.
+bool reached(const Case& c, ExplainStep& step);
+/// What a model takes the surface for.
+ModelTraits::Assumes assumes(const std::string& model);
+/// How many of 72 points of the contour, equally spaced, lie where the surface ends as the camera sees it: its edge cuts the highlight.
+int endsAtEdge(const TrainingView& view);
+
+void virtualCameraStep(const Case& c, ExplainStep& step);
 void lightStep(const Case& c, ExplainStep& step);
 /// Says of a step that rests on the common light that the model has another one.
 void addOtherLight(const Case& c, ExplainStep& step);

@@ -201,7 +201,11 @@ void ExplainPanel::follow(const QUrl& link) {
   if (scheme == QLatin1String("glossary") || scheme == QLatin1String("method")) return emit readRequested(scheme, path);
   if (scheme == QLatin1String("symbol")) return emit readRequested(QStringLiteral("notation"), {});
   if (!actions_ || scheme != QLatin1String("action")) return;
-  if (QAction* action = actions_->find(path)) action->trigger();
+  if (const QString panel = QStringLiteral("view.panel-"); path.startsWith(panel))
+    return emit panelRequested(path.mid(panel.size()));
+  QAction* action = actions_->find(path);
+  // A link leads to what it names: where that is shown already, it stays.
+  if (action && !(action->isCheckable() && action->isChecked() && !action->actionGroup())) action->trigger();
 }
 
 void ExplainPanel::goTo(int wanted) {

@@ -60,6 +60,7 @@ class ExplainPanel : public QWidget {
   void readRequested(const QString& page, const QString& place);
   void dualityOpened(glint::gui::DualityWindow* window);  ///< every time
   void problem(const QString& oneLine);
+  void panelRequested(const QString& dock);  ///< a text leads to a panel: to be brought to the front
 
  protected:
   void changeEvent(QEvent* e) override;

@@ -146,6 +146,10 @@ void Docks::apply(const Layout& layout) {
   }
   for (const char* front : {"errors", "tree", "parameters"}) at(QLatin1String(front))->raise();
   for (const QString& front : layout.front) at(front)->raise();
+  if (needed_ && needed_()) {  // a lesson that leads to a layout is read on beside it
+    at(kept_)->show();
+    at(kept_)->raise();
+  }
   const int width = window_->width(), height = window_->height(), right = std::min(380, width * 32 / 100),
             left = std::min(260, width * 18 / 100);
   if (room_->narrow)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "gui/window/teaching.h"
 
+#include <QAction>
 #include <QCoreApplication>
 #include <QEvent>
 #include <QLayout>
@@ -32,6 +33,7 @@ Teaching::Teaching(const Parts& parts) : QObject(parts.window), parts_(parts) {
   connect(&explain, &ExplainPanel::look, &parts_.scene, &ScenePanel::look);
   connect(&explain, &ExplainPanel::look, &parts_.frame, &FramePanel::look);
   connect(&explain, &ExplainPanel::readRequested, this, &Teaching::read);
+  connect(&explain, &ExplainPanel::panelRequested, this, [this](const QString& dock) { parts_.docks.bring(dock); });
   connect(&explain.walk(), &WalkPlayer::changed, this, [this] {
     const WalkPlayer& walk = parts_.explain.walk();
     parts_.scene.showWalk(walk.story(), walk.step(), walk.playing());
@@ -95,6 +97,13 @@ void Teaching::addActions(Actions& actions, QMenu* help, QMenu* view) {
     actions.add(QStringLiteral("help.") + QLatin1String(id), help, title, [this, id = QString::fromLatin1(id)] { read(id); },
                 {{}, {}, tip});
   };
+  // Escape leads back from a camera wherever the focus is, unless there is something to stop.
+  if (QAction* stop = actions.find(QStringLiteral("edit.stop")))
+    connect(stop, &QAction::triggered, this, [this, &actions] {
+      for (const char* through : {"view.look-through", "view.look-through-virtual"})
+        if (QAction* eye = actions.find(QLatin1String(through)); eye && eye->isChecked() && !parts_.document.stale())
+          eye->trigger();
+    });
   page("manual", tr("&Manual"), tr("What each part of the window does"));
   page("method", tr("M&ethod"), tr("How Glint gets from photographs to a prediction, with the equations"));
   page("notation", tr("&Notation"), tr("Terms and symbols"));

@@ -10,6 +10,7 @@
 #include <QLabel>
 #include <QListWidget>
 #include <QMessageBox>
+#include <QRegularExpression>
 #include <QSlider>
 #include <QTextBlock>
 #include <QTextBrowser>
@@ -145,6 +146,49 @@ class LessonsTest : public QObject {
     window_->applyLayout("explain");
     QVERIFY(dock->isHidden() || dock->visibleRegion().isEmpty());
     QCOMPARE(window_->dockWidgetArea(dock), Qt::RightDockWidgetArea);  // at its place again
+  }
+
+  /// What a question asks for is seen beside the question, and a link that is clicked twice does not take it away again.
+  void aLinkLeadsToWhatItNamesAndNotAwayFromTheText() {
+    auto* browser = panel_->findChild<QTextBrowser*>("explain.text");
+    const auto click = [&](const QString& link) { emit browser->anchorClicked(QUrl(link)); };
+    for (const Lesson& lesson : lessons()) {
+      open(lesson.id);
+      static const QRegularExpression linked("href='action:([a-z0-9.-]+)'");
+      for (const Lesson::Question& question : lesson.questions) {
+        for (auto it = linked.globalMatch(question.ask + question.answer); it.hasNext();) {
+          const QString id = it.next().captured(1);
+          for (int twice = 0; twice < 2; ++twice) {
+            click("action:" + id);
+            QTRY_VERIFY2(!browser->visibleRegion().isEmpty(), qPrintable(lesson.id + ": " + id));
+            const QAction* action = window_->actions().find(id);
+            QVERIFY2(!action->isCheckable() || action->isChecked(), qPrintable(lesson.id + ": " + id));
+          }
+        }
+      }
+      window_->applyLayout("explain");
+    }
+    // Two frames come with the lines that the question is about, whichever step is shown.
+    open("plane");
+    window_->actions().find("explain.step-comparison")->trigger();
+    QVERIFY(lessonById("plane")->questions.front().ask.contains("action:frame.epipolar-both"));
+    click("action:frame.epipolar-both");
+    QCOMPARE(window_->document().option("frame/side-by-side", std::string()), std::string("on"));
+    QCOMPARE(window_->document().option("frame/epipolar", std::string("both")), std::string("both"));
+  }
+
+  /// As lesson 1 says: from the text, where the focus is after its link was clicked.
+  void escapeLeavesTheVirtualCameraFromTheText() {
+    open("mirror");
+    window_->activateWindow();
+    auto* browser = panel_->findChild<QTextBrowser*>("explain.text");
+    emit browser->anchorClicked(QUrl("action:view.look-through-virtual"));
+    QAction* through = window_->actions().find("view.look-through-virtual");
+    QTRY_VERIFY(through->isChecked() && window_->idle() && !window_->document().stale());
+    browser->setFocus();
+    QTRY_VERIFY(browser->hasFocus());
+    QTest::keyClick(browser, Qt::Key_Escape);
+    QTRY_VERIFY(!through->isChecked());
   }
 
   /// Beside the lesson's steps: the way leads back to them.

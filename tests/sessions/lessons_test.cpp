@@ -69,8 +69,9 @@ TEST(Lessons, MirrorTheVirtualCameraSeesTheLampAtThePeak) {
     ASSERT_TRUE(e.view && e.view->seen);
     const Eigen::Vector3d seen = e.view->seen->virtualCamera.matrix * lamp.homogeneous();
     EXPECT_LT((Pixel(seen.head<2>() / seen.z()) - e.view->highlight.peak).norm(), kContour);
-    EXPECT_NEAR(number(stepOf(e, "virtual-camera"), "field of view across the highlight, this mirror"),
-                number(stepOf(e, "virtual-camera"), "field of view across the highlight, flat mirror"), 1e-9);
+    for (const std::string way : {"in", "across"})
+      EXPECT_NEAR(number(stepOf(e, "virtual-camera"), "field of view " + way + " the plane of incidence, this mirror"),
+                  number(stepOf(e, "virtual-camera"), "field of view " + way + " the plane of incidence, flat mirror"), 1e-9);
   }
 }
 
@@ -134,9 +135,19 @@ TEST(Lessons, BentMirrorItsFieldOfViewFollowsTheMirrorEquation) {
     constexpr double kParaxial = 0.03;  // third-order terms: the highlight spans up to a sixth of the distance
     EXPECT_NEAR(widest / half, 1, kParaxial) << "curvature " << kappa;
     EXPECT_NEAR(std::acos(left.dot(right)) / field, 1, kParaxial) << "curvature " << kappa;
-    const double told = number(stepOf(e, "virtual-camera"), "field of view across the highlight, this mirror");
-    if (kappa >= 1) {
-      EXPECT_NEAR(told * std::numbers::pi / 180 / field, 1, kParaxial) << "across the bend is the widest then";
+    const ExplainStep& step = stepOf(e, "virtual-camera");
+    const std::string across = kappa == 0 ? "across the plane of incidence" : "in the most bent direction";
+    const double told = number(step, "field of view " + across + ", this mirror"),
+                 flat = number(step, "field of view " + across + ", flat mirror");
+    EXPECT_NEAR(told * std::numbers::pi / 180 / field, 1, kParaxial);
+    EXPECT_NEAR(flat * std::numbers::pi / 180 / (2 * half / d), 1, kParaxial) << "the same direction as the bent mirror's";
+    EXPECT_NEAR(number(step, "distance of the camera from P_B"), d, 1e-9);
+    EXPECT_NEAR(number(step, "distance of the light from P_B"), r, 1e-3) << "that light is found, not given";
+    EXPECT_NEAR(std::cos(number(step, "angle between N and the view ray") * std::numbers::pi / 180), cosine, 1e-6);
+    if (kappa == 1) {  // the numbers of the text
+      EXPECT_NEAR(flat, 2.7, 0.05);
+      EXPECT_NEAR(told, 10.2, 0.05);
+      EXPECT_NEAR(d * (1 / d + 2 * kappa * cosine), 3.8, 0.05);
     }
     EXPECT_GT(told, before) << "more curvature, wider field";
     before = told;

@@ -88,15 +88,15 @@ TEST(Explain, OnASphereItSaysWhyPrimalFails) {
   EXPECT_GT(number(stepOf(e, "canonical-ellipse"), "relative to the observed")[1], 1.2);
 }
 
-TEST(Explain, DualFailsWhereTheCurvatureVariesAndTheHighlightIsNotFlat) {
-  const auto varies = [](const AnalyticSpec& surface) {
-    return breaks(stepOf(explain(inspected(surface, {"dual", "canonical"}), 5, 0, "canonical"), "virtual-camera"),
-                  "dual-curvature-varies");
+TEST(Explain, DualIsToldWhetherTheBendDiffersByPlaceOrByDirection) {
+  const auto said = [](const AnalyticSpec& surface) {
+    const ExplainStep step = stepOf(explain(inspected(surface, {"dual", "canonical"}), 5, 0, "canonical"), "virtual-camera");
+    return std::array<bool, 2>{breaks(step, "dual-curvature-varies"), breaks(step, "dual-bends-one-way")};
   };
-  EXPECT_TRUE(varies(cylinder(0.5)));
-  EXPECT_FALSE(varies(sphere(0.5))) << "the same curvature everywhere";
+  EXPECT_EQ(said(cylinder(0.5)), (std::array<bool, 2>{false, true})) << "0 and 2 per metre at every place";
+  EXPECT_EQ(said(sphere(0.5)), (std::array<bool, 2>{false, false})) << "the same curvature everywhere";
   // Radius 100 m: across a highlight of 0.1 m the normal turns by 1e-3 rad, a sixtieth of the limit angle.
-  EXPECT_FALSE(varies(cylinder(100)));
+  EXPECT_EQ(said(cylinder(100)), (std::array<bool, 2>{false, false}));
 }
 
 TEST(Explain, ChoosesTheRichestModelWithAnEllipsoid) {
@@ -492,7 +492,7 @@ TEST(ExplainTexts, EveryStepAndEveryBrokenAssumptionHasItsSentence) {
   EXPECT_EQ(ids, explainSteps());
   // Every id that the code can give, read from the code.
   std::stringstream code;
-  for (const char* name : {"explain.cpp", "light_step.cpp"})
+  for (const char* name : {"explain.cpp", "light_step.cpp", "mirror_step.cpp"})
     code << std::ifstream(std::string(GLINT_SOURCE_DIR "/core/explain/") + name).rdbuf();
   const std::string text = code.str();
   std::set<std::string> used;
