@@ -188,8 +188,9 @@ TEST(ColmapDamage, NumbersOfABinaryFile) {
   EXPECT_THAT(changed("cameras.bin", 12, std::int32_t(-1)), HasSubstr("camera model number -1 is not supported"));
   EXPECT_THAT(changed("cameras.bin", 16, std::uint64_t(1) << 32), HasSubstr("pixels is not supported"));
   EXPECT_THAT(changed("cameras.bin", 32, kNan), HasSubstr("is not a finite number"));
-  for (const auto& [at, value] :
-       {std::pair<std::size_t, double>{12, kNan}, {44, kInfinite}}) {  // quaternion, translation: cost the image
+  // A quaternion and a translation: they cost their image.
+  for (const auto& [at, value] : {std::pair<std::size_t, double>{12, kNan}, {44, kInfinite}}) {
+    const TemporaryFolder folder;
     writeColmapBinary(folder);
     std::string bytes = contentOf(folder / "images.bin");
     std::memcpy(bytes.data() + at, &value, sizeof value);
