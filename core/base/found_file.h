@@ -2,11 +2,49 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
 
 namespace glint {
 
-/// The file under `folder` that shares the longest end of its path with `file` ("a/b/c.ply": FOLDER/a/b/c.ply, then
-/// FOLDER/b/c.ply, then FOLDER/c.ply); empty = none.
+/// Finds files by names that another system wrote: exactly so; else the only file whose name differs in case, in its Unicode form
+/// (fileNameKey) or by backslashes between folders. Lists each folder once, and only where a name is not there exactly. Rights are
+/// the caller's matter.
+class FileFinder {
+ public:
+  enum class Ending {
+    AsNamed,
+    AnyImage,  ///< also the only image of another ending: photographs are converted, and some programs write no ending
+  };
+
+  /// FOLDER/NAME; empty = none, or several that differ from the name in such a way.
+  std::filesystem::path at(const std::filesystem::path& folder, const std::string& name, Ending ending = Ending::AsNamed);
+  /// The file under `folder` that shares the longest end of its path with `file` ("a/b/c.ply": FOLDER/a/b/c.ply, then FOLDER/b/c.ply,
+  /// then FOLDER/c.ply), exactly; else as `at`. Empty = none.
+  std::filesystem::path under(const std::filesystem::path& folder, const std::string& file, Ending ending = Ending::AsNamed);
+
+  /// "8 files have other names ..., the first: 'a.png' is 'a.PNG'": those that were found in spite of case, form or ending. "" = none.
+  std::string differences() const;
+
+ private:
+  struct Folder {
+    std::map<std::u32string, std::vector<std::string>> entries,
+        images;  ///< by the key of the name, of an image's name without ending
+  };
+  const Folder& listed(const std::filesystem::path& folder);
+  std::filesystem::path similar(const std::filesystem::path& folder, const std::string& name, Ending ending);
+  std::string imageLike(const Folder& folder, const std::string& name) const;
+
+  std::map<std::filesystem::path, Folder> folders_;
+  int differing_ = 0;
+  std::string first_;
+};
+
+/// FileFinder().under(folder, file)
 std::filesystem::path sameUnder(const std::filesystem::path& folder, const std::filesystem::path& file);
+
+/// With slashes in place of backslashes.
+std::string slashed(std::string name);
 
 }  // namespace glint

@@ -9,6 +9,7 @@
 #include "core/base/bounded_json.h"
 #include "core/base/number_text.h"
 #include "core/capture/capture.h"
+#include "core/capture/file_names.h"
 #include "core/capture/image_sizes.h"
 #include "core/capture/parts.h"
 #include "core/capture/text_rows.h"
@@ -148,7 +149,8 @@ class BopMotion {
 /// What `read` does, step by step.
 class BopReading {
  public:
-  BopReading(const fs::path& file, const CaptureOptions& options) : options_(options) {
+  BopReading(const fs::path& file, const CaptureOptions& options)
+      : options_(options), names_(options.rights, options.photographs) {
     capture_.kind = "bop";
     capture_.file = fs::absolute(file).lexically_normal();
     capture_.folder = capture_.file.parent_path();
@@ -163,7 +165,10 @@ class BopReading {
     const JsonNode poses = JsonNode::parse(readFile(poseFile, Limit::JsonMegabytes), poseFile.string());
     const std::vector<BopImage> images = imagesOfObject(bopImages(cameras), bopImages(poses));
     for (const BopImage& image : images) addView(image);
+    if (capture_.views.empty()) throw InputError(poseFile.string(), "", "has no finite pose of the object");
     capture::addFew(capture_.warnings, odd_);
+    lost_.tell(kBopPoses, capture::kNoFinitePose, capture_.warnings);
+    names_.tell(capture_.warnings);
     findMesh();
     report();
     return std::move(capture_);
@@ -194,7 +199,13 @@ class BopReading {
       object_ = *objects.begin();
       return;
     }
-    const std::optional<int> chosen = bopId(options_.object);
+    const std::size_t colon = std::min(options_.object.find(':'), options_.object.size());
+    const std::optional<int> chosen = bopId(options_.object.substr(0, colon));
+    if (const auto nth = bopId(options_.object.substr(std::min(colon + 1, options_.object.size()))); nth && *nth > 0)
+      instance_ = std::size_t(*nth);
+    else if (colon < options_.object.size())
+      throw InputError(poseFile, "--object",
+                       io::quoted(options_.object) + " is not OBJECT:N, the N-th one of the object in each image, from 1");
     if (!chosen || !objects.count(*chosen))
       throw InputError(
           poseFile, "--object",
@@ -202,22 +213,42 @@ class BopReading {
     object_ = *chosen;
   }
 
+  /// Which of several that are alike: the files number them in each image anew.
+  [[noreturn]] void askInstance(std::size_t most, const std::string& poseFile) const {
+    std::vector<UndecidedInput::Answer> answers;
+    for (std::size_t i = 1; i <= std::min(most, kBopMostNumbers); ++i) {
+      const std::string n = std::to_string(i);
+      answers.push_back(
+          {std::to_string(object_) + ":" + n, "number " + n + " of object " + std::to_string(object_) + " in each image"});
+    }
+    throw UndecidedInput(poseFile,
+                         "an image shows object " + std::to_string(object_) + " " + std::to_string(most) +
+                             " times; choose one by --object " + std::to_string(object_) +
+                             ":N, the N-th in each image (whether that is the same one throughout, the files do not say)",
+                         UndecidedInput::Question::Object, std::move(answers));
+  }
+
   std::vector<BopImage> imagesOfObject(const std::map<int, JsonNode>& cameras, const std::map<int, JsonNode>& poses) {
     const std::string poseFile = (capture_.folder / kBopPoses).string();
     chooseObject(objectsIn(poses), poseFile);
     std::vector<BopImage> images;
+    std::size_t most = 0;  // entries of the object in an image
     for (const auto& [id, list] : poses) {
       std::vector<std::size_t> entries;
       for (std::size_t i = 0; i < list.size(); ++i)
         if (list.at(i).at("obj_id").integer() == object_) entries.push_back(i);
       if (entries.empty()) continue;
-      if (entries.size() > 1)
-        list.fail("image " + std::to_string(id) + " shows object " + std::to_string(object_) + " " +
-                  std::to_string(entries.size()) + " times; only one of a kind in an image is supported");
+      most = std::max(most, entries.size());
+      if (instance_ > entries.size()) continue;
+      const std::size_t entry = entries[std::max<std::size_t>(instance_, 1) - 1];
       const auto camera = cameras.find(id);
       if (camera == cameras.end()) list.fail(std::string("has no camera in ") + kBopCameras);
-      images.push_back({id, entries.front(), list.at(entries.front()), camera->second});
+      images.push_back({id, entry, list.at(entry), camera->second});
     }
+    if (most > 1 && instance_ == 0) askInstance(most, poseFile);
+    if (images.empty())
+      throw InputError(poseFile, "--object",
+                       io::quoted(options_.object) + ": no image shows the object more than " + std::to_string(most) + " times");
     std::set<int> all;
     for (const auto& [id, node] : cameras) all.insert(id);
     for (const auto& [id, node] : poses) all.insert(id);
@@ -226,10 +257,10 @@ class BopReading {
   }
 
   /// The file of this name without ending, with the first ending that exists; "" = none.
-  fs::path existing(const std::string& name, const std::vector<std::string>& endings, const std::string& place) const {
+  fs::path existing(const std::string& name, const std::vector<std::string>& endings, const std::string& place) {
     std::error_code ignored;  // what cannot be asked about is not there
     for (const std::string& ending : endings) {
-      const fs::path file = resolveInside(capture_.folder, name + ending, options_.rights, capture_.file.string(), place);
+      const fs::path file = names_.other(capture_.folder, name + ending, capture_.file.string(), place);
       if (fs::is_regular_file(file, ignored)) return file;
     }
     return {};
@@ -242,8 +273,7 @@ class BopReading {
     std::error_code ignored;  // what cannot be asked about is not there
     const auto at = [&](const std::string& pattern) {
       std::string name = pattern;
-      return capture::imagePlace(name.replace(name.find('#'), 1, number), {capture_.folder}, options_, capture_.file.string(),
-                                 place);
+      return names_.image(name.replace(name.find('#'), 1, number), {capture_.folder}, capture_.file.string(), place);
     };
     if (!lastName_.empty())
       if (const fs::path file = at(lastName_); fs::is_regular_file(file, ignored)) return file;
@@ -257,6 +287,10 @@ class BopReading {
 
   void addView(const BopImage& image) {
     const std::string number = bopNumber(std::size_t(image.id)), place = image.camera.place();
+    if (capture::isLostPose(image.pose.at("cam_R_m2c")) || capture::isLostPose(image.pose.at("cam_t_m2c"))) {
+      lost_.add(image.pose.place());
+      return;
+    }
     CaptureView view;
     view.image = photograph(number, place);
     view.name = number + view.image.extension().string();
@@ -265,7 +299,8 @@ class BopReading {
     view.depthScale = bopDepthScale(image.camera);
     view.camera = bopCamera(image.camera, sizes_.of(view.image, capture_.file.string(), place));
     view.camera.camFromWorld = bopPose(image.pose.at("cam_R_m2c"), image.pose.at("cam_t_m2c"), odd_);
-    if (image.camera.has("cam_R_w2c") || image.camera.has("cam_t_w2c")) {
+    const auto isKnown = [&](const char* key) { return image.camera.has(key) && !capture::isLostPose(image.camera.at(key)); };
+    if (isKnown("cam_R_w2c") || isKnown("cam_t_w2c")) {
       const Eigen::Isometry3d camFromWorld = bopPose(image.camera.at("cam_R_w2c"), image.camera.at("cam_t_w2c"), odd_);
       motion_.add(camFromWorld.inverse() * view.camera.camFromWorld, view.name);
     }
@@ -324,8 +359,11 @@ class BopReading {
   }
 
   const CaptureOptions& options_;
+  capture::FileNames names_;
+  capture::PassedOver lost_;
   Capture capture_;
   int object_ = 0;
+  std::size_t instance_ = 0;  ///< 1: the first one of the object in each image; 0 = the only one
   std::size_t leftOut_ = 0;
   std::string lastName_;  ///< pattern of the photograph that was found last
   capture::ImageSizes sizes_;

@@ -3,6 +3,7 @@
 
 #include "core/base/atomic_file.h"
 #include "core/base/number_text.h"
+#include "core/capture/file_names.h"
 #include "core/capture/text_rows.h"
 #include "core/geometry/typed_pose.h"
 
@@ -17,6 +18,7 @@ constexpr std::string_view kBundlerMagic = "# Bundle file v";
 struct BundlerCamera {
   std::string place;
   double focal = 0, k1 = 0, k2 = 0;                                ///< focal 0: not registered
+  bool lost = false;                                               ///< its numbers are not finite; focal is 0
   Eigen::Isometry3d camFromWorld = Eigen::Isometry3d::Identity();  ///< ours: y down, z forward
 };
 
@@ -51,6 +53,12 @@ class BundlerWords {
   double number(const std::string& what) {
     advance(what);
     return capture::numberAt(row_, word_, file_);
+  }
+  /// NaN and infinite ones as well: they cost their camera only.
+  double anyNumber(const std::string& what) {
+    advance(what);
+    const std::optional<double> value = io::numberOf(row_.words[word_]);
+    return value && !std::isfinite(*value) ? *value : capture::numberAt(row_, word_, file_);
   }
   Eigen::Vector3d vector(const std::string& what) {
     Eigen::Vector3d v;
@@ -108,13 +116,18 @@ Eigen::Isometry3d bundlerPose(const Eigen::Matrix3d& r, const Eigen::Vector3d& t
 BundlerCamera bundlerCamera(BundlerWords& words, const std::string& what, const std::string& file,
                             std::vector<std::string>& repaired) {
   BundlerCamera camera;
-  camera.focal = words.number(what);
-  camera.place = words.place();
-  camera.k1 = words.number(what);
-  camera.k2 = words.number(what);
-  Eigen::Matrix3d rotation;
-  for (int i = 0; i < 3; ++i) rotation.row(i) = words.vector(what);
-  const Eigen::Vector3d translation = words.vector(what);
+  Eigen::Matrix<double, 15, 1> v;
+  for (Eigen::Index i = 0; i < v.size(); ++i) {
+    v[i] = words.anyNumber(what);
+    if (i == 0) camera.place = words.place();
+  }
+  camera.lost = !v.allFinite();
+  if (camera.lost) return camera;
+  camera.focal = v[0];
+  camera.k1 = v[1];
+  camera.k2 = v[2];
+  const Eigen::Matrix3d rotation = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(v.data() + 3);
+  const Eigen::Vector3d translation = v.tail<3>();
   if (camera.focal == 0) return camera;  // not registered: the rest is zeros
   for (const double x : translation) capture::bounded(x, kFarthest, file, camera.place);
   camera.camFromWorld = bundlerPose(rotation, translation, file, camera.place, repaired);
@@ -172,19 +185,34 @@ BundlerModel readBundler(const fs::path& path) {
   return model;
 }
 
-/// The list of images of a file: named alike ("list.txt" of "bundle.out", "scene.list.txt" of COLMAP's "scene.bundle.out"), else
-/// "list.txt" beside it, else in the folder around `bundle/`, where Bundler was started. Empty = none.
+/// The list of images of a file: named after it ("model.out.list.txt" of "model.out"), or alike ("list.txt" of "bundle.out",
+/// "scene.list.txt" of COLMAP's "scene.bundle.out"), else "list.txt" beside it, else in the folder around `bundle/`, where Bundler was started. Empty = none.
 fs::path bundlerListOf(const fs::path& file) {
   const fs::path folder = file.parent_path();
   std::vector<fs::path> places{folder / "list.txt"};
   std::string name = file.stem().string();
   if (const std::size_t at = name.rfind("bundle"); at != std::string::npos)
     places.insert(places.begin(), folder / (name.replace(at, std::string("bundle").size(), "list") + ".txt"));
+  places.insert(places.begin(), {fs::path(file.string() + ".list.txt"), folder / (file.stem().string() + ".list.txt")});
   if (folder.filename() == "bundle") places.push_back(folder.parent_path() / "list.txt");
   std::error_code ignored;  // what cannot be asked about is not there
   for (const fs::path& p : places)
     if (fs::is_regular_file(p, ignored)) return p;
   return {};
+}
+
+bool isBundlerFile(const fs::path& file) { return capture::firstLineOf(file).rfind(kBundlerMagic, 0) == 0; }
+
+/// bundle.out, also where Bundler put it, else the first other file *.out.
+std::vector<fs::path> bundlerFilesIn(const fs::path& folder) {
+  std::vector<fs::path> files{folder / "bundle.out", folder / "bundle" / "bundle.out"}, others;
+  std::error_code error;  // what cannot be listed holds none
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
+    if (it->path().extension() == ".out" && it->path().filename() != "bundle.out") others.push_back(it->path());
+  std::sort(others.begin(), others.end());
+  files.insert(files.end(), others.begin(), others.end());
+  std::erase_if(files, [](const fs::path& p) { return !isBundlerFile(p); });
+  return files;
 }
 
 /// A line is the name, a flag for fisheye images and a guess of the focal length; both may be missing. Bundler's names have no
@@ -241,12 +269,16 @@ class BundlerReader : public CaptureReader {
   std::string describe() const override { return "Bundler (bundle.out and list.txt)"; }
 
   fs::path recognise(const fs::path& input) const override {
-    const auto isOne = [](const fs::path& p) { return capture::firstLineOf(p).rfind(kBundlerMagic, 0) == 0; };
     std::error_code ignored;  // what cannot be asked about is not there
-    if (!fs::is_directory(input, ignored)) return isOne(input) ? input : fs::path();
-    for (const fs::path& p : {input / "bundle.out", input / "bundle" / "bundle.out"})
-      if (isOne(p) && !bundlerListOf(fs::absolute(p, ignored).lexically_normal()).empty()) return p;
+    if (!fs::is_directory(input, ignored)) return isBundlerFile(input) ? input : fs::path();
+    for (const fs::path& p : bundlerFilesIn(input))
+      if (!bundlerListOf(fs::absolute(p, ignored).lexically_normal()).empty()) return p;
     return {};
+  }
+
+  fs::path incomplete(const fs::path& folder) const override {
+    const std::vector<fs::path> files = bundlerFilesIn(folder);
+    return files.empty() ? fs::path() : files.front();
   }
 
   Capture read(const fs::path& file, const CaptureOptions& options) const override {
@@ -258,8 +290,14 @@ class BundlerReader : public CaptureReader {
     capture.folder = listed.file.parent_path();
     capture.sources = {capture.file, listed.file};
     std::vector<std::string> skipped;
+    capture::FileNames names(options.rights, options.photographs);
+    capture::PassedOver lost;
     for (std::size_t i = 0; i < model.cameras.size(); ++i) {
       const BundlerImage& image = listed.images[i];
+      if (model.cameras[i].lost) {
+        lost.add(model.cameras[i].place);
+        continue;
+      }
       if (model.cameras[i].focal == 0) {
         skipped.push_back(image.name);
         continue;
@@ -269,14 +307,19 @@ class BundlerReader : public CaptureReader {
                          "is marked as a fisheye image, for which Bundler's files have no lens");
       CaptureView view;
       view.name = image.name;
-      view.image = capture::imagePlace(image.name, {capture.folder}, options, listed.file.string(), image.place);
+      view.image = names.image(image.name, {capture.folder}, listed.file.string(), image.place);
       const std::array<int, 2> size = capture::sizeOfImage(view.image, listed.file.string(), image.place);
       view.camera = cameraOfBundler(model.cameras[i], size, file.string());
       capture.views.push_back(std::move(view));
     }
-    if (capture.views.empty()) throw InputError(file.string(), "", "no image is registered: every focal length is 0");
+    if (capture.views.empty())
+      throw InputError(file.string(), "",
+                       lost.number() > 0 ? "no image has a finite pose and a focal length other than 0"
+                                         : "no image is registered: every focal length is 0");
     capture::orderByName(capture);
     describeBundler(model, skipped, capture);
+    lost.tell(capture.file.filename().string(), capture::kNoFinitePose, capture.warnings);
+    names.tell(capture.warnings);
     return capture;
   }
 
@@ -308,7 +351,8 @@ class BundlerReader : public CaptureReader {
     fs::path list = bundlerListOf(bundle);
     if (list.empty())
       throw InputError(bundle.string(), "",
-                       "needs the list of its images, list.txt, beside it (or in the folder around 'bundle')");
+                       "needs the list of its images beside it: list.txt (also in the folder around 'bundle') or " +
+                           bundle.filename().string() + ".list.txt");
     list = resolveInside(list.parent_path(), list.filename().string(), options.rights, bundle.string(), "list of images");
     Listed listed{list, readBundlerList(list)};
     if (listed.images.size() != model.cameras.size())

@@ -17,6 +17,8 @@ const char* UndecidedInput::option() const {
   return "";
 }
 
+std::filesystem::path CaptureReader::incomplete(const std::filesystem::path&) const { return {}; }
+
 std::vector<CaptureTrack> CaptureReader::tracks(const Capture&, const CaptureOptions&) const { return {}; }
 
 namespace {

@@ -96,6 +96,9 @@ class CaptureReader {
   /// The file to read when this reader understands `input` (a file, or a folder in which it looks), by content; an empty path
   /// otherwise. Never throws for an unreadable input.
   virtual std::filesystem::path recognise(const std::filesystem::path& input) const = 0;
+  /// What `recognise` would return for a folder if a file that it needs were there, so that `read` can say which; "" = nothing. Asked
+  /// where no reader recognises the folder.
+  virtual std::filesystem::path incomplete(const std::filesystem::path& folder) const;
   /// Reads what `recognise` returned. InputError with file, place ("line 12", "frames[3].transform_matrix", "byte 120") and reason.
   virtual Capture read(const std::filesystem::path& file, const CaptureOptions& options) const = 0;
   /// The sparse points of what `read` returned; empty where the program has none. InputError as `read`.

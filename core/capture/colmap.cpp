@@ -7,6 +7,7 @@
 
 #include "core/base/atomic_file.h"
 #include "core/capture/colmap_parts.h"
+#include "core/capture/file_names.h"
 #include "io/text_scan.h"
 
 // COLMAP's sparse model. Its poses are ours (world to camera, x right, y down, z forward); pixels differ by half a pixel.
@@ -125,7 +126,13 @@ void addViews(const std::vector<ModelImage>& images, const std::vector<ModelCame
   const std::string file = files("images").string();
   const auto cameraById = indexById(cameras, "cameras", files("cameras").string());
   const std::vector<fs::path> folders{capture.folder / "images", capture.folder, files.folder};
+  FileNames names(options.rights, options.photographs);
+  PassedOver lost;
   for (const ModelImage& image : images) {
+    if (image.lost) {
+      lost.add(image.place);
+      continue;
+    }
     const auto camera = cameraById.find(image.camera);
     if (camera == cameraById.end())
       throw InputError(file, image.place,
@@ -133,12 +140,15 @@ void addViews(const std::vector<ModelImage>& images, const std::vector<ModelCame
                            files("cameras").filename().string() + " does not have");
     CaptureView view;
     view.name = image.name;
-    view.image = imagePlace(image.name, folders, options, file, image.place);
+    view.image = names.image(image.name, folders, file, image.place);
     view.camera = cameras[camera->second].camera;
     view.camera.camFromWorld = image.camFromWorld;
     capture.views.push_back(std::move(view));
   }
+  if (capture.views.empty()) throw InputError(file, "", "has no finite pose");
   orderByName(capture);
+  lost.tell(files("images").filename().string(), kNoFinitePose, capture.warnings);
+  names.tell(capture.warnings);
 }
 
 /// How many points there are, and what their tracks name that is not there. That happens where a person or a program took images

@@ -37,7 +37,9 @@ std::vector<ModelImage> readImagesBinary(std::string_view bytes, const std::stri
     ModelImage image;
     image.place = in.place();
     image.id = in.take<std::uint32_t>();
-    image.camFromWorld = poseOf(in.takeDoubles<7>(), file, image.place, warnings);
+    const std::array<double, 7> pose = in.takeDoubles<7>();
+    image.lost = anyNotFinite(pose);
+    if (!image.lost) image.camFromWorld = poseOf(pose, file, image.place, warnings);
     image.camera = in.take<std::uint32_t>();
     image.name = checkedName(in.takeText(), file, image.place);
     image.pixels = in.takeCount<std::uint64_t>(kPixelBytes, "2D points of an image");

@@ -133,11 +133,33 @@ std::vector<ModelCamera> readCameras(const Files& files) {
   return cameras;
 }
 
+namespace {
+bool isSameImage(const ModelImage& a, const ModelImage& b, std::string_view bytes) {
+  return a.camera == b.camera && a.name == b.name && a.lost == b.lost && a.camFromWorld.matrix() == b.camFromWorld.matrix() &&
+         bytes.substr(a.from, a.size) == bytes.substr(b.from, b.size);
+}
+}  // namespace
+
 std::vector<ModelImage> readImages(const Files& files, std::string_view bytes, std::vector<std::string>& warnings) {
   const std::string file = files("images").string();
   std::vector<ModelImage> images = files.binary ? readImagesBinary(bytes, file, warnings) : readImagesText(bytes, file, warnings);
   if (images.empty()) throw InputError(file, "", "contains no image");
-  return images;
+  std::unordered_map<std::uint32_t, const ModelImage*> first;
+  PassedOver repeated;
+  std::vector<ModelImage> once;
+  once.reserve(images.size());
+  for (ModelImage& image : images) {
+    const auto before = first.find(image.id);
+    const bool again = before != first.end() && isSameImage(*before->second, image, bytes);
+    if (again) {
+      repeated.add(image.place);
+      continue;
+    }
+    once.push_back(std::move(image));
+    first.emplace(once.back().id, &once.back());  // reserved: it does not move
+  }
+  repeated.tell(fs::path(file).filename().string(), kSaidBefore, warnings);
+  return once;
 }
 
 std::vector<Pixel> pixelsOf(const Files& files, std::string_view bytes, const ModelImage& image) {

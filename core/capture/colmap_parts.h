@@ -6,6 +6,7 @@
 // The format: colmap.github.io/format.html.
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -44,6 +45,7 @@ struct ModelImage {
   std::uint32_t id = 0, camera = 0;
   std::string name, place;
   Eigen::Isometry3d camFromWorld = Eigen::Isometry3d::Identity();
+  bool lost = false;               ///< its pose is not finite
   std::size_t pixels = 0;          ///< number of its 2D points, which are not read yet:
   std::size_t from = 0, size = 0;  ///< bytes of the file that hold them
 };
@@ -56,7 +58,8 @@ using EachPoint = std::function<void(const Eigen::Vector3d& point, const std::ve
 // Of both kinds, by Files::binary. `bytes` is the content of the file.
 
 std::vector<ModelCamera> readCameras(const Files& files);
-/// Poses and names; the 2D points are skipped. `warnings`: one line for each quaternion that was not of length 1.
+/// Poses and names; the 2D points are skipped. An image that is there twice, word for word, counts once. `warnings`: one line for each
+/// quaternion that was not of length 1.
 std::vector<ModelImage> readImages(const Files& files, std::string_view bytes, std::vector<std::string>& warnings);
 /// The 2D points of one image, in our pixels.
 std::vector<Pixel> pixelsOf(const Files& files, std::string_view bytes, const ModelImage& image);
@@ -93,7 +96,10 @@ const CameraModel& cameraModelOf(std::string_view name, const std::string& file,
 ModelCamera cameraOf(std::uint32_t id, const CameraModel& model, std::uint64_t width, std::uint64_t height,
                      const std::vector<double>& parameters, const std::string& file, const std::string& place);
 
-/// @param values  QW QX QY QZ TX TY TZ
+inline bool anyNotFinite(const std::array<double, 7>& pose) {
+  return std::any_of(pose.begin(), pose.end(), [](double v) { return !std::isfinite(v); });
+}
+/// @param values  QW QX QY QZ TX TY TZ, finite
 Eigen::Isometry3d poseOf(const std::array<double, 7>& values, const std::string& file, const std::string& place,
                          std::vector<std::string>& warnings);
 /// A name that a file can have.

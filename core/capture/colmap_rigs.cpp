@@ -195,6 +195,7 @@ void compareRigFrame(const RigFrame& frame, const Rigs& all, const std::string& 
       continue;
     }
     const ModelImage& image = images[found->second];
+    if (image.lost) continue;
     const auto mounted = rig->second.find(sensor);
     if (mounted == rig->second.end())
       throw InputError(file, frame.place, "rig " + std::to_string(frame.rig) + " has no camera " + std::to_string(sensor));

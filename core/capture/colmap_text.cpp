@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <array>
+#include <cmath>
 
 #include "core/capture/colmap_parts.h"
 #include "io/text_scan.h"
@@ -57,8 +58,15 @@ ModelImage imageOf(std::string_view line, std::size_t number, const std::string&
                          counted(words, "entry", "entries"));
   image.id = takeNumber32(line, file, number);
   std::array<double, 7> pose{};
-  for (double& v : pose) v = takeNumber(line, file, number);
-  image.camFromWorld = poseOf(pose, file, image.place, warnings);
+  for (double& v : pose) {
+    std::string_view ahead = line;
+    const std::optional<double> value = io::numberOf(io::takeWord(ahead));
+    const bool finite = !value || std::isfinite(*value);
+    v = finite ? takeNumber(line, file, number) : *value;
+    if (!finite) line = ahead;
+  }
+  image.lost = anyNotFinite(pose);
+  if (!image.lost) image.camFromWorld = poseOf(pose, file, image.place, warnings);
   image.camera = takeNumber32(line, file, number);
   image.name = checkedName(withoutBlanksAround(line), file, image.place);  // the rest, for a name may contain blanks
   return image;

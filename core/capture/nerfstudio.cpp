@@ -13,6 +13,7 @@
 #include "core/base/atomic_file.h"
 #include "core/base/bounded_json.h"
 #include "core/base/number_text.h"
+#include "core/capture/file_names.h"
 #include "core/capture/image_sizes.h"
 #include "core/capture/parts.h"
 #include "core/geometry/pose_json.h"
@@ -77,7 +78,8 @@ struct NerfCount {
 
 /// What the frames had, for the report.
 struct NerfTally {
-  NerfCount rounded, otherAngle, arrays;
+  NerfCount rounded, otherAngle, arrays, ownKeys;
+  capture::PassedOver lost;
   std::map<std::string, NerfCount> unknown;
   std::set<std::string> models;
   int middles = 0, angles = 0, ownSizes = 0, depths = 0, floatDepths = 0, masks = 0;
@@ -150,13 +152,15 @@ struct NerfKeys {
   const JsonNode& frame;
 
   std::optional<JsonNode> find(const std::string& key) const {
-    const std::optional<JsonNode> own = frame.find(key), shared = root.find(key);
-    if (own && shared) {
-      const bool numbers = own->isNumber() && shared->isNumber();
-      if (numbers ? own->number() != shared->number() : own->dump() != shared->dump())
-        own->fail("differs from '" + key + "' at the top of the file: programs disagree which one counts");
+    const std::optional<JsonNode> own = frame.find(key);
+    return own ? own : root.find(key);
+  }
+  /// The keys that the frame says otherwise than the top of the file.
+  void tellDifferences(NerfCount& count) const {
+    for (const std::string& key : kNerfCameraKeys) {
+      const std::optional<JsonNode> own = frame.find(key), shared = root.find(key);
+      if (own && shared && own->dump() != shared->dump()) count.add(own->place());
     }
-    return own ? own : shared;
   }
   std::string place(const char* key) const { return frame.place() + "." + key; }
 };
@@ -286,6 +290,7 @@ struct NerfContext {
   fs::path folder;
   double appliedScale = 1;
   std::optional<NerfWorld> undone;  ///< --world original
+  capture::FileNames names;
   capture::ImageSizes sizes;
   NerfTally tally;
 };
@@ -312,12 +317,13 @@ Eigen::Isometry3d nerfPose(const JsonNode& node, NerfContext& context) {
   return worldFromCam.inverse();
 }
 
-/// A path as it is stored, without "./"; one that Windows wrote with slashes.
+/// A path without "./", with slashes also where Windows wrote it.
 std::string nerfPath(const JsonNode& node) {
-  std::string text = node.text();
-  if (text.empty()) node.fail("the path is empty");
-  if (text.find('/') == std::string::npos) std::replace(text.begin(), text.end(), '\\', '/');
-  return fs::path(text).lexically_normal().generic_string();
+  if (node.text().empty()) node.fail("the path is empty");
+  return fs::path(slashed(node.text())).lexically_normal().generic_string();
+}
+fs::path nerfFile(const JsonNode& node, NerfContext& context) {
+  return context.names.other(context.folder, node.text(), node.file(), node.place());
 }
 
 /// Lower case, with its dot.
@@ -325,20 +331,6 @@ std::string nerfEnding(const fs::path& file) {
   std::string ending = file.extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return char(std::tolower(c)); });
   return ending;
-}
-
-/// The original NeRF data leave the ending out.
-fs::path nerfImage(const std::string& name, const JsonNode& node, const NerfContext& context) {
-  std::error_code ignored;  // what cannot be asked about is not there
-  const auto place = [&](const std::string& n) {
-    return capture::imagePlace(n, {context.folder}, context.options, node.file(), node.place());
-  };
-  static const std::set<std::string> endings = nerfWords(".png .jpg .jpeg .exr .tif .tiff .bmp .webp .hdr .ppm");
-  const fs::path named = place(name);
-  if (endings.count(nerfEnding(name)) || fs::is_regular_file(named, ignored)) return named;
-  for (const char* ending : {".png", ".jpg", ".jpeg"})
-    if (const fs::path p = place(name + ending); fs::is_regular_file(p, ignored)) return p;
-  return named;
 }
 
 std::optional<JsonNode> givenNerfPath(const JsonNode& frame, const char* key) {
@@ -358,7 +350,7 @@ void readNerfDepth(const JsonNode& frame, NerfContext& context, CaptureView& vie
     if (!node || !factor || !(factor->number() > 0)) return;
     scale = bounded(*factor, kLargestFactor) / context.appliedScale;
   }
-  const fs::path path = resolveInside(context.folder, nerfPath(*node), context.options.rights, node->file(), node->place());
+  const fs::path path = nerfFile(*node, context);
   const std::string ending = nerfEnding(path);
   if (ending == ".npy" || ending == ".npz") {
     context.tally.arrays.add(node->place());
@@ -381,12 +373,14 @@ CaptureView readNerfFrame(const JsonNode& frame, NerfContext& context) {
   CaptureView view;
   const JsonNode path = frame.at("file_path");
   view.name = nerfPath(path);
-  view.image = nerfImage(view.name, path, context);
-  view.camera = nerfCamera({context.root, frame}, view.image, context.sizes, context.tally);
+  view.image = context.names.image(path.text(), {context.folder}, path.file(), path.place());
+  const NerfKeys keys{context.root, frame};
+  keys.tellDifferences(context.tally.ownKeys);
+  view.camera = nerfCamera(keys, view.image, context.sizes, context.tally);
   view.camera.camFromWorld = nerfPose(frame.at("transform_matrix"), context);
   readNerfDepth(frame, context, view);
   if (const auto n = givenNerfPath(frame, "mask_path")) {
-    view.mask = resolveInside(context.folder, nerfPath(*n), context.options.rights, n->file(), n->place());
+    view.mask = nerfFile(*n, context);
     ++context.tally.masks;
   }
   return view;
@@ -400,17 +394,17 @@ struct NerfPoints {
 };
 
 /// What ply_file_path names.
-std::optional<NerfPoints> nerfPointsOf(const JsonNode& root, const fs::path& folder, const CaptureOptions& options) {
+std::optional<NerfPoints> nerfPointsOf(const JsonNode& root, const fs::path& folder, capture::FileNames& names) {
   const std::optional<JsonNode> node = givenNerfPath(root, "ply_file_path");
   if (!node) return std::nullopt;
-  NerfPoints points{node->text(), resolveInside(folder, nerfPath(*node), options.rights, node->file(), node->place())};
+  NerfPoints points{node->text(), names.other(folder, node->text(), node->file(), node->place())};
   std::error_code ignored;  // what cannot be asked about is not there
   if (!fs::is_regular_file(points.file, ignored)) points.file.clear();
   return points;
 }
 
-void addNerfPoints(const NerfContext& context, Capture& capture) {
-  const std::optional<NerfPoints> points = nerfPointsOf(context.root, context.folder, context.options);
+void addNerfPoints(NerfContext& context, Capture& capture) {
+  const std::optional<NerfPoints> points = nerfPointsOf(context.root, context.folder, context.names);
   if (!points) return;
   if (points->file.empty()) {
     capture.warnings.push_back("ply_file_path: there is no '" + points->named +
@@ -459,6 +453,10 @@ void tellNerfWarnings(const NerfContext& context, Capture& capture) {
     warnings.push_back(tally.rounded.text() + ": not exactly a rotation, replaced by the nearest one");
   if (tally.otherAngle.number > 0)
     warnings.push_back(tally.otherAngle.text() + ": the angle of view says another focal length than fl_x, fl_y, which are used");
+  if (tally.ownKeys.number > 0)
+    warnings.push_back(tally.ownKeys.text() + ": differs from the value at the top of the file; the frame's own one counts");
+  tally.lost.tell(capture.file.filename().string(), capture::kNoFinitePose, warnings);
+  context.names.tell(warnings);
   if (tally.arrays.number > 0) warnings.push_back(tally.arrays.text() + ": depth as a NumPy array is not read, left out");
   std::string placed;
   for (const char* key : {"scale", "offset", "aabb"})
@@ -498,14 +496,28 @@ bool isNerfFile(const fs::path& file) {
   }
 }
 
-/// No other transforms*.json in its folder: those of the original NeRF data are parts of one capture, and one must be named.
-bool isOnlyNerfFile(const fs::path& file) {
-  std::error_code error;
-  for (fs::directory_iterator it(file.parent_path(), error), end; !error && it != end; it.increment(error)) {
-    const fs::path name = it->path().filename();
-    if (name != file.filename() && name.extension() == ".json" && name.string().rfind("transforms", 0) == 0) return false;
-  }
-  return !error;
+/// The files transforms*.json of a folder, the one to read first: transforms.json, else transforms_train.json, else by name. Those of the
+/// original NeRF data are parts of one capture.
+std::vector<fs::path> nerfFilesIn(const fs::path& folder) {
+  std::vector<fs::path> files;
+  std::error_code error;  // what cannot be listed holds none
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
+    if (const std::string name = it->path().filename().string(); name.starts_with("transforms") && name.ends_with(".json"))
+      if (isNerfFile(it->path())) files.push_back(it->path());
+  const auto rank = [](const fs::path& p) { return p.stem() == "transforms" ? 0 : p.stem() == "transforms_train" ? 1 : 2; };
+  std::sort(files.begin(), files.end(),
+            [&](const auto& a, const auto& b) { return std::make_pair(rank(a), a) < std::make_pair(rank(b), b); });
+  return files;
+}
+
+/// The other parts of a capture of the original NeRF data.
+void tellOtherNerfFiles(Capture& capture) {
+  if (capture.file.stem() == "transforms") return;
+  std::string others;
+  for (const fs::path& other : nerfFilesIn(capture.folder))
+    if (other.filename() != capture.file.filename()) others += (others.empty() ? "" : ", ") + other.filename().string();
+  if (!others.empty())
+    capture.warnings.push_back("only " + capture.file.filename().string() + " is read; to read another file, name it: " + others);
 }
 
 class NerfstudioReader final : public CaptureReader {
@@ -517,8 +529,8 @@ class NerfstudioReader final : public CaptureReader {
     std::error_code ignored;  // what cannot be asked about is not there
     if (!fs::is_directory(input, ignored)) return isNerfFile(input) ? input : fs::path();
     if (const fs::path file = input / "transforms.json"; isNerfFile(file)) return file;
-    if (const fs::path file = input / "transforms_train.json"; isNerfFile(file) && isOnlyNerfFile(file)) return file;
-    return {};
+    const std::vector<fs::path> files = nerfFilesIn(input);
+    return files.empty() ? fs::path() : files.front();
   }
 
   Capture read(const fs::path& file, const CaptureOptions& options) const override {
@@ -531,25 +543,35 @@ class NerfstudioReader final : public CaptureReader {
     capture.sources = {capture.file};
     const JsonNode root = JsonNode::parse(readFile(file, Limit::JsonMegabytes), file.string());
     if (root.has("glint_scene")) root.fail("is a scene of ours, not a file of nerfstudio");
-    NerfContext context{root, options, capture.folder, 1, std::nullopt, {}, {}};
+    NerfContext context{root, options, capture.folder, 1, std::nullopt, capture::FileNames(options.rights, options.photographs),
+                        {},   {}};
     checkNerfKeys(root, kNerfTopKeys, context.tally);
     if (const auto n = root.find("applied_scale")) context.appliedScale = positive(*n, kLargestFactor);
     if (const auto n = root.find("applied_transform")) readAppliedTransform(*n);
     if (options.world == "original") context.undone = readOriginalWorld(root, context.appliedScale, capture.warnings);
     const JsonNode frames = root.at("frames");
     if (frames.size() == 0) frames.fail("is empty");
-    for (std::size_t i = 0; i < frames.size(); ++i) capture.views.push_back(readNerfFrame(frames.at(i), context));
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      const JsonNode frame = frames.at(i);
+      if (const auto pose = frame.find("transform_matrix"); pose && capture::isLostPose(*pose))
+        context.tally.lost.add(frame.place());
+      else
+        capture.views.push_back(readNerfFrame(frame, context));
+    }
+    if (capture.views.empty()) frames.fail("have no finite pose");
     capture::orderByName(capture);
     tellNerfFacts(context, capture);
     addNerfPoints(context, capture);
     tellNerfWarnings(context, capture);
+    tellOtherNerfFiles(capture);
     return capture;
   }
 
   /// Of ply_file_path, without observations.
   std::vector<CaptureTrack> tracks(const Capture& capture, const CaptureOptions& options) const override {
     const JsonNode root = JsonNode::parse(readFile(capture.file, Limit::JsonMegabytes), capture.file.string());
-    const std::optional<NerfPoints> points = nerfPointsOf(root, capture.folder, options);
+    capture::FileNames names(options.rights);
+    const std::optional<NerfPoints> points = nerfPointsOf(root, capture.folder, names);
     if (!points || points->file.empty()) return {};
     std::optional<NerfWorld> undone;
     if (options.world == "original") {

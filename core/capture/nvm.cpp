@@ -2,6 +2,7 @@
 // NVM of VisualSFM (Wu, Towards linear-time incremental structure from motion, 3DV 2013): a row per camera, a row per point.
 #include "core/base/atomic_file.h"
 #include "core/base/number_text.h"
+#include "core/capture/file_names.h"
 #include "core/capture/text_rows.h"
 
 namespace glint {
@@ -24,6 +25,7 @@ struct NvmCamera {
   Eigen::Quaterniond camFromWorld = Eigen::Quaterniond::Identity();
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
   double radial = 0;
+  bool lost = false;  ///< its numbers are not finite
 };
 
 struct NvmMeasurement {
@@ -77,6 +79,8 @@ NvmCamera nvmCamera(const Row& row, const std::string& file, std::vector<std::st
   NvmCamera camera;
   camera.name = nvmName(row, kNumbers);
   camera.place = row.place();
+  camera.lost = capture::anyNotFinite(row, first, kNumbers);
+  if (camera.lost) return camera;
   camera.focal = number(0);
   camera.camFromWorld = capture::unitQuaternion(number(1), number(2), number(3), number(4), file, row.place(), warnings);
   camera.centre = capture::placeAt(row, first + 5, file);
@@ -280,17 +284,28 @@ class NvmReader : public CaptureReader {
     capture.folder = capture.file.parent_path();
     capture.sources = {capture.file};
     const NvmModel model = readNvm(file);
+    capture::FileNames names(options.rights, options.photographs);
+    capture::PassedOver lost;
+    std::vector<std::optional<std::size_t>> viewOf;  // of the cameras, in the model's own order
     for (const NvmCamera& from : model.cameras) {
+      viewOf.push_back(from.lost ? std::nullopt : std::optional(capture.views.size()));
+      if (from.lost) {
+        lost.add(from.place);
+        continue;
+      }
       CaptureView view;
       view.name = from.name;
-      view.image = capture::imagePlace(from.name, {capture.folder}, options, file.string(), from.place);
+      view.image = names.image(from.name, {capture.folder}, file.string(), from.place);
       view.camera = cameraOfNvm(from, model.fixed, capture::sizeOfImage(view.image, file.string(), from.place), file.string());
       capture.views.push_back(std::move(view));
     }
-    // Before the views are put into the order of their names: the model's own order.
-    const bool fromCorner = nvmFromCorner(model, [&](std::size_t i) { return &capture.views[i].camera; });
+    if (capture.views.empty()) throw InputError(file.string(), "", "has no finite pose");
+    const bool fromCorner = nvmFromCorner(
+        model, [&](std::size_t i) -> const Camera* { return viewOf[i] ? &capture.views[*viewOf[i]].camera : nullptr; });
     capture::orderByName(capture);
     describeNvm(model, fromCorner, capture);
+    lost.tell(capture.file.filename().string(), capture::kNoFinitePose, capture.warnings);
+    names.tell(capture.warnings);
     return capture;
   }
 

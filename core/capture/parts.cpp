@@ -6,7 +6,6 @@
 
 #include "core/base/atomic_file.h"
 #include "core/base/bounded_json.h"
-#include "core/base/found_file.h"
 #include "core/base/image_header.h"
 #include "core/base/number_text.h"
 #include "io/text_scan.h"
@@ -54,21 +53,6 @@ Camera cameraOf(int width, int height, double fx, double fy, double cx, double c
   return camera;
 }
 
-fs::path imagePlace(const std::string& name, const std::vector<fs::path>& folders, const CaptureOptions& options,
-                    const std::string& file, const std::string& place) {
-  require(!folders.empty(), "imagePlace: no folder");
-  std::error_code ignored;  // what cannot be asked about is not there
-  fs::path below;           // the name without what leads out of a folder that a person named
-  for (const fs::path& part : fs::path(name).relative_path())
-    if (part != "..") below /= part;
-  for (const fs::path& folder : options.photographs)
-    if (fs::path found = sameUnder(fs::absolute(folder), below); !found.empty()) return found;
-  const fs::path first = resolveInside(folders.front(), name, options.rights, file, place);
-  for (const fs::path& folder : folders)
-    if (const fs::path p = resolveInside(folder, name, options.rights, file, place); fs::is_regular_file(p, ignored)) return p;
-  return first;
-}
-
 std::array<int, 2> sizeOfImage(const fs::path& image, const std::string& file, const std::string& place) {
   std::error_code ignored;  // what cannot be asked about is not there
   if (!fs::is_regular_file(image, ignored))
@@ -84,11 +68,44 @@ std::array<int, 2> sizeOfImage(const fs::path& image, const std::string& file, c
 }
 
 void orderByName(Capture& capture) {
-  std::stable_sort(capture.views.begin(), capture.views.end(),
-                   [](const CaptureView& a, const CaptureView& b) { return a.name < b.name; });
-  for (std::size_t i = 1; i < capture.views.size(); ++i)
-    if (capture.views[i].name == capture.views[i - 1].name)
-      throw InputError(capture.file.string(), "", "two images are called '" + capture.views[i].name + "'");
+  std::vector<CaptureView>& views = capture.views;
+  std::stable_sort(views.begin(), views.end(), [](const CaptureView& a, const CaptureView& b) { return a.name < b.name; });
+  PassedOver repeated;
+  const auto same = [&](const CaptureView& a, const CaptureView& b) {
+    if (a.name != b.name) return false;
+    const Camera &c = a.camera, &d = b.camera;
+    if (c.camFromWorld.matrix() != d.camFromWorld.matrix() || c.pixelFromRay != d.pixelFromRay ||
+        c.lens.parameters != d.lens.parameters)
+      throw InputError(capture.file.string(), "", "two images are called '" + a.name + "'");
+    repeated.add("'" + b.name + "'");
+    return true;
+  };
+  views.erase(std::unique(views.begin(), views.end(), same), views.end());
+  repeated.tell(capture.file.filename().string(), "the image is there twice with the same camera", capture.warnings);
+}
+
+void PassedOver::tell(const std::string& file, const std::string& why, std::vector<std::string>& warnings) const {
+  if (number_ == 0) return;
+  warnings.push_back(file + ": " + first_ + (number_ > 1 ? " and " + std::to_string(number_ - 1) + " more" : "") + ": " + why +
+                     (number_ > 1 ? "; they are left out" : "; it is left out"));
+}
+
+bool isLostPose(const JsonNode& pose) {
+  if (!pose.isArray()) return pose.isNull();
+  for (std::size_t i = 0; i < pose.size(); ++i) {
+    const JsonNode row = pose.at(i);
+    if (row.isNull()) return true;
+    for (std::size_t j = 0; row.isArray() && j < row.size(); ++j)
+      if (row.at(j).isNull()) return true;
+  }
+  return false;
+}
+
+bool anyNotFinite(const Row& row, std::size_t word, std::size_t words) {
+  const std::size_t end = std::min(row.words.size(), word + words);
+  for (std::size_t i = word; i < end; ++i)
+    if (const std::optional<double> value = io::numberOf(row.words[i]); value && !std::isfinite(*value)) return true;
+  return false;
 }
 
 double numberAt(const Row& row, std::size_t word, const std::string& file) {

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/json_text.h"
 #include "core/capture/capture.h"
 
 namespace glint::capture {
@@ -29,17 +30,35 @@ double bounded(double value, double most, const std::string& file, const std::st
 Camera cameraOf(int width, int height, double fx, double fy, double cx, double cy, const Lens& lens, const std::string& file,
                 const std::string& place);
 
-/// Where the image of this name is: in the first of `options.photographs` that holds it (by the longest end of its path), else in the
-/// first of `folders` that does, else in the first of `folders`, where it is missing. OutsidePath where the name leaves that folder.
-std::filesystem::path imagePlace(const std::string& name, const std::vector<std::filesystem::path>& folders,
-                                 const CaptureOptions& options, const std::string& file, const std::string& place);
-
 /// Width and height of an image file, without decoding it. InputError where it is missing or no image: programs whose files do not
 /// say the size need it ("the file does not say the size of its images; name their folder by --photographs").
 std::array<int, 2> sizeOfImage(const std::filesystem::path& image, const std::string& file, const std::string& place);
 
-/// Sorts views by name (text order) and refuses two of one name.
+/// Sorts views by name (text order). One that is there twice, with one camera, counts once, with a warning; InputError for two of
+/// one name that differ.
 void orderByName(Capture& capture);
+
+/// Lines or frames of one kind that are passed over: a file may have thousands of them.
+class PassedOver {
+ public:
+  void add(const std::string& place) {
+    if (number_++ == 0) first_ = place;
+  }
+  std::size_t number() const { return number_; }
+  /// Adds "FILE: line 7 and 3 more: WHY; they are left out" where there are any.
+  void tell(const std::string& file, const std::string& why, std::vector<std::string>& warnings) const;
+
+ private:
+  std::size_t number_ = 0;
+  std::string first_;
+};
+/// Why a frame or a line is passed over, for PassedOver::tell().
+inline constexpr const char* kNoFinitePose = "no finite pose (tracking was lost)";
+inline constexpr const char* kSaidBefore = "says the same as a line before";
+
+/// Whether a pose, or a part of it, is null, NaN or infinite (JsonNode reads all of them as null): programs write it where they have lost
+/// the camera.
+bool isLostPose(const JsonNode& pose);
 
 /// The words of one line of a text.
 struct Row {
@@ -50,5 +69,7 @@ struct Row {
 /// The word as a number. InputError where it is missing or not a finite number ("needs 8 numbers, has 7").
 double numberAt(const Row& row, std::size_t word, const std::string& file);
 long long integerAt(const Row& row, std::size_t word, const std::string& file);
+/// Whether one of the words from this one on, at most `words` of them, is NaN or infinite.
+bool anyNotFinite(const Row& row, std::size_t word, std::size_t words);
 
 }  // namespace glint::capture

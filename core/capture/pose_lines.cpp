@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
+#include <map>
 #include <sstream>
 
 #include "core/base/atomic_file.h"
@@ -11,6 +11,7 @@
 #include "core/base/identifier.h"
 #include "core/capture/parts.h"
 #include "core/capture/text_rows.h"
+#include "core/capture/time_pairs.h"
 #include "core/geometry/camera_json.h"
 #include "core/geometry/pose_json.h"
 #include "io/text_scan.h"
@@ -26,6 +27,14 @@ namespace {
   const std::string own = "line 1, ";  // a line has no other
   if (place.compare(0, own.size(), own) == 0) place.erase(0, own.size());
   throw InputError(file, line + (place.empty() ? "" : ": " + place), reason);
+}
+
+bool isSamePose(const PoseLine& a, const PoseLine& b) {
+  if (a.time != b.time || a.cameraFromWorld.matrix() != b.cameraFromWorld.matrix()) return false;
+  if (!a.camera || !b.camera) return !a.camera && !b.camera;
+  const Camera &c = *a.camera, &d = *b.camera;
+  return c.width == d.width && c.height == d.height && c.pixelFromRay == d.pixelFromRay && c.lens.model == d.lens.model &&
+         c.lens.parameters == d.lens.parameters;
 }
 
 }  // namespace
@@ -66,13 +75,15 @@ PoseLine PoseLineReader::fromJson(const std::string& line) {
     const auto id = root.find("id");
     const auto time = root.find("time");
     if (id) id_ = readIdJson(*id);
-    if (time && !time->isNull()) pose.time = bounded(*time, kFarthest);
+    if (time && !time->isNull())
+      pose.time = capture::bounded(capture::secondsOf(time->number()), kFarthest, name_, time->place());
     if (!id && !pose.time) root.fail("needs an id or a time");
     if (!id) id_ = time->dump();
     pose.id = id_;
     refuseFrameGeometry(root);
     const JsonNode matrix = root.at("camera_from_world");
-    if (matrix.isNull()) throw LostPose(name_, place() + ": camera_from_world", "there is no pose (null): tracking was lost");
+    if (capture::isLostPose(matrix))
+      throw LostPose(name_, place() + ": camera_from_world", "there is no finite pose (null): tracking was lost");
     pose.cameraFromWorld = readPoseJson(matrix, &warning_);
     if (!warning_.empty()) warning_ = place() + ": " + warning_;
     if (const auto camera = root.find("camera"); camera && !camera->isNull()) {
@@ -100,13 +111,9 @@ PoseLine PoseLineReader::fromTum(const std::string& line) {
                      "must be JSON {\"id\", \"camera_from_world\"} or the 8 numbers of TUM (time tx ty tz qx qy qz qw), has " +
                          (row.words.size() > kNumbers ? "more than 8" : std::to_string(row.words.size())) + " words");
   PoseLine pose;
-  pose.time = capture::bounded(capture::numberAt(row, 0, name_), kFarthest, name_, place());
+  pose.time = capture::bounded(capture::secondsOf(capture::numberAt(row, 0, name_)), kFarthest, name_, place());
   pose.id = id_ = std::string(row.words.front());
-  const bool isLost = std::any_of(row.words.begin() + 1, row.words.end(), [](std::string_view word) {
-    const std::optional<double> value = io::numberOf(word);
-    return value && !std::isfinite(*value);
-  });
-  if (isLost) throw LostPose(name_, place(), "there is no finite pose: tracking was lost");
+  if (capture::anyNotFinite(row, 1, kNumbers - 1)) throw LostPose(name_, place(), "there is no finite pose: tracking was lost");
   Eigen::Vector4d xyzw;
   for (int i = 0; i < 4; ++i) xyzw[i] = capture::numberAt(row, std::size_t(4 + i), name_);
   std::vector<std::string> odd;
@@ -141,25 +148,30 @@ std::vector<PoseLine> readPoseLines(const std::filesystem::path& file, std::vect
   PoseLineReader reader(text, file.string());
   std::vector<PoseLine> poses;
   std::vector<std::string> odd;
-  std::set<std::string> ids;
-  std::size_t lost = 0;
+  std::map<std::string, std::size_t> ids;  // of `poses`
+  capture::PassedOver lost, repeated;
+  const auto line = [&] { return "line " + std::to_string(reader.line()); };
   while (!reader.ended()) {
     try {
       const std::optional<PoseLine> pose = reader.next();
       if (!pose) break;
-      if (!ids.insert(pose->id).second)
-        throw InputError(file.string(), "line " + std::to_string(reader.line()), "duplicate id " + io::quoted(pose->id));
+      const auto [before, isNew] = ids.emplace(pose->id, poses.size());
+      if (!isNew) {
+        if (!isSamePose(poses[before->second], *pose))
+          throw InputError(file.string(), line(), "duplicate id " + io::quoted(pose->id) + " with another pose");
+        repeated.add(line());
+        continue;
+      }
       if (!reader.warning().empty()) odd.push_back(file.filename().string() + ": " + reader.warning());
       poses.push_back(*pose);
     } catch (const LostPose&) {
-      ++lost;
+      lost.add(line());
     }
   }
-  if (poses.empty()) throw InputError(file.string(), "", lost > 0 ? "has no finite pose" : "has no pose");
+  if (poses.empty()) throw InputError(file.string(), "", lost.number() > 0 ? "has no finite pose" : "has no pose");
   capture::addFew(warnings, odd);
-  if (lost > 0)
-    warnings.push_back(file.filename().string() + ": " + std::to_string(lost) + (lost == 1 ? " line has" : " lines have") +
-                       " no pose (tracking was lost) and " + (lost == 1 ? "is" : "are") + " passed over");
+  lost.tell(file.filename().string(), capture::kNoFinitePose, warnings);
+  repeated.tell(file.filename().string(), capture::kSaidBefore, warnings);
   return poses;
 }
 

@@ -18,7 +18,7 @@ namespace glint {
 /// A camera of a sequence: of a live stream, a video, a folder of photographs. Two kinds of lines, told apart by their first sign:
 ///   {"id": "0007", "time": 1.23, "camera_from_world": [4x4], "camera": {optional}}      JSON, keys as in scene files
 ///   1305031102.1758 tx ty tz qx qy qz qw                                                TUM: camera to world, quaternion w last
-/// Times in seconds; lengths in the unit of the scene.
+/// Times in seconds (others: capture::secondsOf); lengths in the unit of the scene.
 struct PoseLine {
   std::string id;              ///< as the line writes it; where it names none (TUM), the time as it stands there. Never empty
   std::optional<double> time;  ///< s
@@ -73,8 +73,9 @@ class PoseLineReader {
   bool ended_ = false;
 };
 
-/// All poses of a file, in its order. Lines without a pose (LostPose) are passed over and counted in `warnings`.
-/// @throw InputError for the first line that is wrong, for two of one id, and where there is no pose at all
+/// All poses of a file, in its order. Lines without a pose (LostPose) and lines that say the same again are passed over, with a line in
+/// `warnings` for each kind.
+/// @throw InputError for the first line that is wrong, for two poses of one id, and where there is no pose at all
 std::vector<PoseLine> readPoseLines(const std::filesystem::path& file, std::vector<std::string>& warnings);
 
 }  // namespace glint

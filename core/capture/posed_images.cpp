@@ -9,6 +9,8 @@
 
 #include "core/base/atomic_file.h"
 #include "core/base/exif.h"
+#include "core/base/file_name_key.h"
+#include "core/base/found_file.h"
 #include "core/base/number_text.h"
 #include "core/capture/capture.h"
 #include "core/capture/image_sizes.h"
@@ -131,20 +133,32 @@ class PosedPictures {
 
   std::vector<std::size_t> sameId() const {
     std::map<std::string, std::size_t> lines;
-    for (std::size_t i = 0; i < poses_.size(); ++i) lines[poses_[i].id] = i;
-    std::map<std::string, const Picture*> seen;
+    std::map<std::u32string, std::size_t> alike;  // by what is left of names that systems write differently
+    for (std::size_t i = 0; i < poses_.size(); ++i) {
+      lines[poses_[i].id] = i;
+      const auto [other, isNew] = alike.emplace(fileNameKey(fs::path(slashed(poses_[i].id)).filename().string()), i);
+      if (!isNew) other->second = capture::kNoPair;
+    }
+    const auto lineOf = [&](const Picture& p) {
+      for (const std::string& id : {p.name, p.id})
+        if (const auto line = lines.find(id); line != lines.end()) return line->second;
+      for (const std::string& id : {p.name, p.id})
+        if (const auto line = alike.find(fileNameKey(id)); line != alike.end()) return line->second;
+      return capture::kNoPair;
+    };
+    std::map<std::size_t, const Picture*> seen;
     std::vector<std::size_t> pairs(pictures_.size(), capture::kNoPair);
     for (std::size_t i = 0; i < pictures_.size(); ++i) {
-      const auto [other, isNew] = seen.emplace(pictures_[i].id, &pictures_[i]);
-      const auto line = lines.find(pictures_[i].id);
-      if (line == lines.end()) continue;
+      const std::size_t line = lineOf(pictures_[i]);
+      if (line == capture::kNoPair) continue;
+      const auto [other, isNew] = seen.emplace(line, &pictures_[i]);
       if (!isNew)
         throw InputError(capture_.folder.string(), pictures_[i].name,
                          "has the same id as '" + other->second->name + "': which of them a pose is of is not known");
-      pairs[i] = line->second;
+      pairs[i] = line;
     }
     if (std::all_of(pairs.begin(), pairs.end(), [](std::size_t p) { return p == capture::kNoPair; }))
-      refuseToPair("has no pose whose id is the name of an image without its ending (the first image is " +
+      refuseToPair("has no pose whose id is the name of an image, with or without its ending (the first image is " +
                    io::quoted(pictures_.front().name) + ", the first id " + io::quoted(poses_.front().id) + ")");
     return pairs;
   }
@@ -301,7 +315,7 @@ class ImagesReader : public CaptureReader {
     for (const fs::path& image : filesIn(capture.file.parent_path(), looksLikeImageName)) {
       Picture p{image.filename().string(), image.stem().string(), {}, image, {}};
       const std::optional<double> time = io::numberOf(p.id);
-      if (time && std::isfinite(*time)) p.time = time;
+      if (time && std::isfinite(*time)) p.time = capture::secondsOf(*time);
       pictures.push_back(std::move(p));
     }
     if (pictures.empty()) throw InputError(file.string(), "", "is no image of a folder");

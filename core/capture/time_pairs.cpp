@@ -2,11 +2,18 @@
 #include "core/capture/time_pairs.h"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <queue>
 #include <tuple>
 
 namespace glint::capture {
+
+double secondsOf(double time) {
+  constexpr double kMostSeconds = 1e11, kThousand = 1e3;
+  for (double unit = 1;; unit *= kThousand)
+    if (!(std::abs(time) >= kMostSeconds * unit) || unit >= 1e9) return time / unit;
+}
 
 std::vector<std::size_t> timePairs(const std::vector<double>& times, const std::vector<double>& others) {
   struct Moment {

@@ -2,11 +2,13 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <set>
 
 #include "core/base/atomic_file.h"
 #include "core/base/bounded_json.h"
 #include "core/base/number_text.h"
 #include "core/capture/capture.h"
+#include "core/capture/file_names.h"
 #include "core/capture/image_sizes.h"
 #include "core/capture/parts.h"
 #include "core/capture/text_rows.h"
@@ -38,21 +40,28 @@ struct TumPose {
   std::string place;
 };
 
-std::vector<TumImage> readTumImages(const fs::path& file) {
+std::vector<TumImage> readTumImages(const fs::path& file, std::vector<std::string>& warnings) {
   std::vector<TumImage> images;
+  std::set<std::pair<std::string, double>> said;
+  capture::PassedOver repeated;
   const std::string text = readFile(file, Limit::MeshMegabytes);
   capture::RowReader rows(text, file.string());
   while (const auto row = rows.next()) {
     if (row->words.size() != 2)
       throw InputError(file.string(), row->place(),
                        "must be a time and a path without blanks, has " + std::to_string(row->words.size()) + " entries");
-    images.push_back({capture::numberAt(*row, 0, file.string()), std::string(row->words[1]), row->place()});
+    TumImage image{capture::secondsOf(capture::numberAt(*row, 0, file.string())), std::string(row->words[1]), row->place()};
+    if (!said.emplace(image.name, image.time).second)
+      repeated.add(image.place);
+    else
+      images.push_back(std::move(image));
   }
+  repeated.tell(file.filename().string(), capture::kSaidBefore, warnings);
   return images;
 }
 
-/// @param lost  counts the lines that hold NaN: where tracking was lost, as TUM's own tools pass over them
-std::vector<TumPose> readTumPoses(const fs::path& file, std::size_t& lost) {
+/// @param lost  the lines that hold NaN: where tracking was lost, as TUM's own tools pass over them
+std::vector<TumPose> readTumPoses(const fs::path& file, capture::PassedOver& lost) {
   constexpr std::size_t kNumbers = 8;
   std::vector<TumPose> poses;
   const std::string text = readFile(file, Limit::MeshMegabytes);
@@ -62,13 +71,9 @@ std::vector<TumPose> readTumPoses(const fs::path& file, std::size_t& lost) {
       throw InputError(
           file.string(), row->place(),
           "must be 8 numbers (timestamp tx ty tz qx qy qz qw), has " + std::to_string(row->words.size()) + " entries");
-    TumPose pose{capture::numberAt(*row, 0, file.string()), {}, {}, row->place()};
-    const bool isLost = std::any_of(row->words.begin() + 1, row->words.end(), [](std::string_view word) {
-      const std::optional<double> value = io::numberOf(word);
-      return value && !std::isfinite(*value);
-    });
-    if (isLost) {
-      ++lost;
+    TumPose pose{capture::secondsOf(capture::numberAt(*row, 0, file.string())), {}, {}, row->place()};
+    if (capture::anyNotFinite(*row, 1, kNumbers - 1)) {
+      lost.add(row->place());
       continue;
     }
     pose.position = capture::placeAt(*row, 1, file.string());
@@ -91,7 +96,8 @@ std::string tumTime(double seconds) { return formatted("%.6f", seconds); }
 /// What `read` does, step by step.
 class TumReading {
  public:
-  TumReading(const fs::path& file, const CaptureOptions& options) : options_(options) {
+  TumReading(const fs::path& file, const CaptureOptions& options)
+      : options_(options), names_(options.rights, options.photographs) {
     capture_.kind = "tum";
     capture_.file = fs::absolute(file).lexically_normal();
     capture_.folder = capture_.file.parent_path();
@@ -104,14 +110,14 @@ class TumReading {
     if (!options_.camera)
       throw UndecidedInput(file, "TUM files have no intrinsics; name them by --camera fx,fy,cx,cy[,k1,k2,p1,p2,k3]",
                            UndecidedInput::Question::Camera, {});
-    photographs_ = readTumImages(capture_.file);
+    photographs_ = readTumImages(capture_.file, capture_.warnings);
     if (photographs_.empty()) throw InputError(file, "", "names no photograph");
     const fs::path poseFile = source(kTumPoses);
-    std::size_t lost = 0;
+    capture::PassedOver lost;
     poses_ = readTumPoses(poseFile, lost);
     std::error_code ignored;  // what cannot be asked about is not there
     const bool hasDepth = fs::exists(capture_.folder / kTumDepth, ignored);
-    if (hasDepth) depths_ = readTumImages(source(kTumDepth));
+    if (hasDepth) depths_ = readTumImages(source(kTumDepth), capture_.warnings);
     addViews(poseFile.string());
     capture::orderByName(capture_);
     setCameras();
@@ -139,7 +145,7 @@ class TumReading {
       farthestApart_ = std::max(farthestApart_, std::abs(p.time - photograph.time));
       CaptureView view;
       view.name = photograph.name;
-      view.image = capture::imagePlace(photograph.name, {capture_.folder}, options_, file, photograph.place);
+      view.image = names_.image(photograph.name, {capture_.folder}, file, photograph.place);
       Eigen::Isometry3d worldFromCam = Eigen::Isometry3d::Identity();
       worldFromCam.linear() =
           capture::unitQuaternion(p.xyzw[3], p.xyzw[0], p.xyzw[1], p.xyzw[2], poseFile, p.place, odd).toRotationMatrix();
@@ -148,7 +154,7 @@ class TumReading {
       if (depth[i] != capture::kNoPair) {
         // Not where photographs are looked for: sets name both kinds alike ("rgb/0.png", "depth/0.png").
         const TumImage& d = depths_[depth[i]];
-        view.depth = resolveInside(capture_.folder, d.name, options_.rights, depthFile, d.place);
+        view.depth = names_.other(capture_.folder, d.name, depthFile, d.place);
         view.depthScale = kTumDepthScale;
         ++withDepth_;
       }
@@ -195,7 +201,7 @@ class TumReading {
     }
   }
 
-  void report(bool hasDepth, std::size_t lost) {
+  void report(bool hasDepth, const capture::PassedOver& lost) {
     const std::size_t n = capture_.views.size();
     const Camera& camera = capture_.views.front().camera;
     capture_.facts.push_back("TUM RGB-D: " + capture::counted(n, "photograph", "photographs") + " of " +
@@ -219,12 +225,12 @@ class TumReading {
       capture_.warnings.push_back(capture::counted(out, "photograph of ", "photographs of ") +
                                   std::to_string(photographs_.size()) + (out == 1 ? " has" : " have") +
                                   " no pose within 20 ms and " + (out == 1 ? "is left out" : "are left out"));
-    if (lost > 0)
-      capture_.warnings.push_back(std::string(kTumPoses) + ": " + capture::counted(lost, "line holds", "lines hold") +
-                                  " no finite pose (tracking was lost) and " + (lost == 1 ? "is" : "are") + " passed over");
+    lost.tell(kTumPoses, capture::kNoFinitePose, capture_.warnings);
+    names_.tell(capture_.warnings);
   }
 
   const CaptureOptions& options_;
+  capture::FileNames names_;
   Capture capture_;
   std::vector<TumImage> photographs_, depths_;
   std::vector<TumPose> poses_;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 #include "core/base/bounded_json.h"
 #include "core/base/found_file.h"
@@ -49,6 +50,9 @@ UndecidedInput undecidedSurface(const fs::path& file, const std::string& reason,
 
 /// The mesh or cloud to take; "" = the frames' depth maps, or the sparse points.
 fs::path meshOf(const Capture& capture, const InputChoices& choices) {
+  static const std::set<std::string> kWithoutPoints{"bop", "tum", "images",
+                                                    "video"};  // kinds of captures that have no sparse points
+  const bool hasPoints = kWithoutPoints.count(capture.kind) == 0;
   const bool anyDepth = std::any_of(capture.views.begin(), capture.views.end(), [](const auto& v) { return !v.depth.empty(); });
   switch (choices.surface) {
     case InputChoices::Surface::File: return choices.surfaceFile;
@@ -69,20 +73,21 @@ fs::path meshOf(const Capture& capture, const InputChoices& choices) {
                            meshes);
   if (anyDepth) return {};
   throw undecidedSurface(capture.file,
-                         "names no surface, and there is no mesh in " + capture.folder.string() +
-                             "; name one by --surface FILE, or try --surface points (the sparse points)",
+                         "names no surface, and there is no mesh in " + capture.folder.string() + "; name one by --surface FILE" +
+                             (capture.hasScale ? " (in another unit than the capture's: with --surface-units)" : "") +
+                             (hasPoints ? ", or try --surface points (the sparse points)" : ""),
                          {});
 }
 
 /// Names without folder and ending; with the folder where they repeat; as they are where they still do.
 std::vector<std::string> idsOf(const std::vector<CaptureView>& views) {
   std::vector<std::string> ids(views.size());
-  for (std::size_t i = 0; i < views.size(); ++i) ids[i] = fs::path(views[i].name).stem().string();
+  for (std::size_t i = 0; i < views.size(); ++i) ids[i] = fs::path(slashed(views[i].name)).stem().string();
   const auto renameRepeated = [&](const auto& longer) {
     std::map<std::string, int> count;
     for (const std::string& id : ids) ++count[id];
     for (std::size_t i = 0; i < views.size(); ++i)
-      if (count[ids[i]] > 1) ids[i] = longer(fs::path(views[i].name));
+      if (count[ids[i]] > 1) ids[i] = longer(fs::path(slashed(views[i].name)));
   };
   renameRepeated([](fs::path name) { return name.replace_extension().generic_string(); });
   renameRepeated([](const fs::path& name) { return name.generic_string(); });

@@ -12,6 +12,7 @@
 #include "core/base/number_text.h"
 #include "core/scene/corrected_files.h"
 #include "core/scene/geometry_check.h"
+#include "core/scene/image_scale.h"
 #include "core/scene/mesh_file.h"
 #include "core/scene/mesh_placement.h"
 #include "core/scene/scene_reader.h"
@@ -249,7 +250,9 @@ void conclude(const Scene& scene, const SightCheck& sight, ConventionReport& rep
     report.add(line, correction);
   }
   if (depthOff) concludeDepth(scene, depthOff, worstDepth, report);
-  if (bad) report.findings.push_back(formatted("%d of %d frames have a file that cannot be used; first: ", bad, n) + badId);
+  if (bad)
+    report.add(formatted("%d of %d frames have a file that cannot be used; first: ", bad, n) + badId,
+               imageScaleCorrection(scene));
   if (notFinite)
     report.findings.push_back(formatted("%d of %d frames contain NaN or infinite values; first: frame ", notFinite, n) +
                               notFiniteId);

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "core/base/number_text.h"
+#include "core/scene/image_scale.h"
 
 namespace glint {
 namespace {
@@ -16,7 +17,8 @@ constexpr const char* kSimilarityForm =
     "expected mesh-similarity=S,RX,RY,RZ,TX,TY,TZ (from the mesh to the cameras' world: scale, rotation vector in radians, shift "
     "in metres)";
 
-constexpr std::string_view kPrincipalPoint = "principal-point", kFocalLength = "focal-length", kDepthScale = "depth-scale";
+constexpr std::string_view kPrincipalPoint = "principal-point", kFocalLength = "focal-length", kDepthScale = "depth-scale",
+                           kImageScale = "image-scale";
 
 struct ValuedCorrection {
   std::string_view name;
@@ -28,6 +30,7 @@ constexpr ValuedCorrection kValued[] = {
     {kPrincipalPoint, -10, 10, "px, added to cx and cy"},  // more is no other origin of pixels but another image
     {kFocalLength, 0.1, 10, "a factor of fx and fy"},      // beyond that it is another camera
     {kDepthScale, 1e-9, 1e9, "metres per unit of depth"},  // as scene files: more is a typing error
+    {kImageScale, 1.0 / 64, 64, "the size of the photographs in sizes of the cameras' images"},
 };
 
 std::string valued(std::string_view name, double value) { return std::string(name) + "=" + formatted("%.10g", value); }
@@ -58,6 +61,7 @@ void applyGeometry(Scene& scene, const GeometryCorrection& c) {
 }
 
 void applyValue(Scene& scene, std::string_view name, double value) {
+  if (name == kImageScale) return applyImageScale(scene, value);
   bool any = false;
   for (Frame& f : scene.frames) {
     Eigen::Matrix3d k = f.camera.pixelFromRay;

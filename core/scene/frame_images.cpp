@@ -9,9 +9,11 @@
 #include "core/base/atomic_file.h"
 #include "core/base/limits.h"
 #include "core/base/median.h"
+#include "core/base/number_text.h"
 #include "core/base/srgb.h"
 #include "core/scene/decoded_images.h"
 #include "core/scene/image_decode.h"
+#include "core/scene/image_scale.h"
 #include "core/scene/scene.h"
 #include "core/scene/scene_files.h"
 #include "core/surface/depth_noise.h"
@@ -27,8 +29,12 @@ Failure unreadable(const fs::path& file, const std::string& reason) {
 }
 
 std::string wrongSize(std::uint64_t width, std::uint64_t height, const Camera& camera) {
+  constexpr std::uint64_t kMost = 65536;  // px
+  const std::optional<double> scale =
+      width > kMost || height > kMost ? std::nullopt : imageScale(int(width), int(height), camera);
   return "the image has " + std::to_string(width) + " x " + std::to_string(height) + " pixels, the camera " +
-         std::to_string(camera.width) + " x " + std::to_string(camera.height);
+         std::to_string(camera.width) + " x " + std::to_string(camera.height) +
+         (scale ? formatted(" (resized photographs: glint convert INPUT --fix image-scale=%.10g fits the cameras)", *scale) : "");
 }
 
 /// What is wrong with a file as far as its header tells; "" = nothing.
@@ -238,11 +244,29 @@ std::string fileProblem(const fs::path& file, const Camera& camera) {
   }
   return {};
 }
+
+/// The frame's own; else, of a depth map of lower or higher resolution, that of the photograph in that resolution. Nothing: depth is as
+/// of the photograph's camera, or cannot be read.
+std::optional<Camera> depthCameraOf(const Frame& frame) {
+  if (frame.depthCamera || frame.depth.empty()) return frame.depthCamera;
+  try {
+    const ImageHeader header = readImageHeader(readFile(frame.depth, Limit::ImageMegabytes));
+    constexpr std::uint64_t kMost = 65536;  // px
+    if (!header.problem.empty() || header.width > kMost || header.height > kMost) return std::nullopt;
+    const int width = int(header.width), height = int(header.height);
+    if (!imageScale(width, height, frame.camera)) return std::nullopt;
+    Camera camera = resized(frame.camera, width, height);
+    camera.camFromWorld.setIdentity();  // from the frame's camera
+    return camera;
+  } catch (const InputError&) {
+    return std::nullopt;  // it is said where the file is read
+  }
+}
 }  // namespace
 
 std::string frameFileProblem(const Frame& frame, FrameFile kind) {
   switch (kind) {
-    case FrameFile::Depth: return fileProblem(frame.depth, frame.depthCamera.value_or(frame.camera));
+    case FrameFile::Depth: return fileProblem(frame.depth, depthCameraOf(frame).value_or(frame.camera));
     case FrameFile::Normals: return fileProblem(frame.normals, frame.camera);
     case FrameFile::Mask: return fileProblem(frame.mask, frame.camera);
     case FrameFile::Photograph: break;
@@ -269,7 +293,12 @@ Outcome<std::optional<Image>> readMask(const Frame& frame) {
 
 Outcome<std::optional<Image>> readDepth(const Frame& frame) {
   if (frame.depth.empty()) return std::optional<Image>();
-  Outcome<DecodedImage> decoded = decode(frame.depth, frame.depthCamera.value_or(frame.camera));
+  std::optional<Camera> depthCamera = frame.depthCamera;
+  Outcome<DecodedImage> decoded = decode(frame.depth, depthCamera.value_or(frame.camera));
+  if (!decoded && !depthCamera) {
+    depthCamera = depthCameraOf(frame);
+    if (depthCamera) decoded = decode(frame.depth, *depthCamera);
+  }
   if (!decoded) return decoded.failure();
   const cv::Mat& m = *decoded->pixels;
   if (m.channels() != 1)
@@ -278,7 +307,7 @@ Outcome<std::optional<Image>> readDepth(const Frame& frame) {
     return unreadable(frame.depth, "an integer depth image needs depth_scale (metres per unit)");
   const double scale = frame.depthScale > 0 ? frame.depthScale : 1.0;
   Image depth = toImage(m, [&](double v) { return std::isfinite(v) && v > 0 ? static_cast<float>(v * scale) : 0.f; });
-  if (frame.depthCamera) depth = registeredDepth(depth, *frame.depthCamera, frame.camera);
+  if (depthCamera) depth = registeredDepth(depth, *depthCamera, frame.camera);
   return std::optional<Image>(std::move(depth));
 }
 

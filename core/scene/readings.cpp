@@ -159,6 +159,9 @@ Reading chosenReading(const fs::path& input, const InputChoices& choices) {
     return {as, reader.describe(), file};
   }
   std::vector<Reading> readings = readingsOf(input);
+  if (readings.empty())
+    for (const auto& reader : captureReaders())
+      if (fs::path file = reader->incomplete(input); !file.empty()) return {reader->name(), reader->describe(), std::move(file)};
   if (readings.empty()) refuseUnknown(input);
   if (readings.size() > 1) refuseSeveral(input, readings);
   return readings.front();

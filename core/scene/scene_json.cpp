@@ -12,6 +12,7 @@
 #include "core/base/level_range.h"
 #include "core/base/number_text.h"
 #include "core/base/plugin_hint.h"
+#include "core/capture/file_names.h"
 #include "core/geometry/distortion.h"
 #include "core/scene/relinked.h"
 #include "core/scene/scene_files.h"
@@ -237,6 +238,7 @@ struct FrameContext {
   const ReadOptions& options;
   Scene& scene;
   Unknown& unknown;
+  capture::FileNames& names;
 };
 
 Frame readFrame(const JsonNode& node, const FrameContext& context, Json& rest) {
@@ -247,7 +249,7 @@ Frame readFrame(const JsonNode& node, const FrameContext& context, Json& rest) {
   const auto path = [&](const char* key) -> fs::path {
     const auto n = node.find(key);
     if (!n || n->isNull()) return {};
-    return resolveInside(scene.folder, n->text(), context.options.rights(), n->file(), n->place());
+    return context.names.other(scene.folder, n->text(), n->file(), n->place());
   };
   frame.image = path("image");
   if (const auto n = node.find("of_video")) frame.ofVideo = readOfVideo(*n);
@@ -308,7 +310,7 @@ fs::path findMesh(const JsonNode& node, const FrameContext& context) {
   const auto moved = context.options.meshes.find(named);
   const fs::path place = moved != context.options.meshes.end()
                              ? fs::absolute(moved->second).lexically_normal()
-                             : resolveInside(context.scene.folder, named, context.options.rights(), node.file(), node.place());
+                             : context.names.other(context.scene.folder, named, node.file(), node.place());
   fs::path found = isThere(place) ? place : fs::path();
   for (const fs::path& folder : context.options.meshFolders)
     if (found.empty()) found = sameUnder(fs::absolute(folder), place);
@@ -374,7 +376,8 @@ Scene readSceneJson(const std::string& text, const fs::path& file, const ReadOpt
     sharedDepth = readDepthCamera(*n);
     keep(unknown.kept, "depth_camera", unknown.of(*n, depthCameraKeys()));
   }
-  const FrameContext context{shared, sharedDepth, options, scene, unknown};
+  capture::FileNames names(options.rights());
+  const FrameContext context{shared, sharedDepth, options, scene, unknown, names};
 
   Json surfaceRests = Json::object();
   if (const auto n = root.find("surfaces")) {
@@ -418,6 +421,7 @@ Scene readSceneJson(const std::string& text, const fs::path& file, const ReadOpt
     scene.frames.push_back(std::move(frame));
   }
   keep(unknown.kept, "frames", frameRests);
+  names.tell(scene.warnings);
   if (shared && shared->second.isStated())
     if (const auto n =
             std::count_if(scene.frames.begin(), scene.frames.end(), [](const Frame& f) { return !f.response.isStated(); }))

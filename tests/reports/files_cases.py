@@ -1,3 +1,178 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Cases of run.py."""
+"""Cases of run.py: names of files, and folders that are recognised."""
+import json
+import re
+import shutil
+import struct
+import unicodedata
+import zlib
+
 from run import lacks, near, says  # noqa: F401
+
+# Of the same capture without the fault, by the README of each folder.
+WHOLE = {"limit-angle": 0.7935, "canonical": 1.6744}
+POSED = ["./im", "--poses", "./poses.txt", "--surface", "./mesh.ply", "--camera", "400.0,400.0,159.5,119.5"]
+
+
+def edit_transforms(report, change):
+    """Changes every frame of transforms.json."""
+    file = report.folder / "transforms.json"
+    capture = json.loads(file.read_text())
+    for frame in capture["frames"]:
+        change(frame)
+    file.write_text(json.dumps(capture))
+
+
+def case_path_mixed_slashes(report):
+    near(report.errors(), WHOLE)
+
+
+def case_path_mixed_slashes__scene(report):
+    report.glint("convert", ".", "-o", "scene.json")
+    text = (report.folder / "scene.json").read_text()
+    (report.folder / "scene.json").write_text(text.replace("nerf/canister/rgb/", "nerf\\\\canister\\\\rgb/"))
+    assert "canister\\\\rgb/0000.png" in (report.folder / "scene.json").read_text()
+    near(report.errors("scene.json"), WHOLE)
+
+
+def case_path_case(report):
+    near(report.errors(), WHOLE)
+    says(report.info(), "8 files have other names", "'images/IMG_0000.png' is 'images/IMG_0000.PNG'")
+
+
+def case_path_case__folder(report):
+    (report.folder / "images").rename(report.folder / "Images")
+    near(report.errors(), WHOLE)
+
+
+def case_path_case__photographs(report):
+    (report.folder / "images").rename(report.folder / "elsewhere")
+    near(report.errors(".", "--photographs", "elsewhere"), WHOLE)
+
+
+def case_path_case__several(report):
+    """Two files that differ from the name in case: neither is taken."""
+    for image in list((report.folder / "images").iterdir()):
+        shutil.copy(image, image.with_suffix(".Png"))
+    says(report.glint("evaluate", ".", "--models", "limit-angle", "--train", "spread:5", exit_code=3).stderr, "IMG_0000.png", "No such file")
+
+
+def case_path_case__other_ending(report):
+    """Converted photographs: the only image of that name is taken."""
+    edit_transforms(report, lambda f: f.update(file_path=f["file_path"].replace(".png", ".jpeg")))
+    near(report.errors(), WHOLE)
+    says(report.info(), "ending")
+
+
+def case_path_case__unicode(report):
+    """macOS hands out accents apart from their letters; Korean syllables in parts."""
+    for place, name in enumerate(["Größe", "Ångström", "한국어", "Việt", "й"]):
+        copy = report.folder / f"copy{place}"
+        shutil.copytree(report.folder / "images", copy / "images")
+        for file in ["transforms.json", "mesh.ply"]:
+            shutil.copy(report.folder / file, copy)
+        (copy / "images").rename(copy / unicodedata.normalize("NFC", name))
+        text = (copy / "transforms.json").read_text().replace("images/", unicodedata.normalize("NFD", name) + "/")
+        (copy / "transforms.json").write_text(text)
+        near(report.errors(f"copy{place}"), WHOLE)
+
+
+def case_pose_id_with_ending(report):
+    near(report.errors(*POSED), WHOLE)
+
+
+def case_pose_id_with_ending__case_and_folder(report):
+    text = (report.folder / "poses.txt").read_text()
+    (report.folder / "poses.txt").write_text(re.sub(r'"(\d{4})\.png"', r'"im\\\\\1.PNG"', text))
+    near(report.errors(*POSED), WHOLE)
+
+
+def case_nerf_synthetic_folder(report):
+    near(report.errors(), WHOLE)
+    says(report.info(), "only transforms_train.json is read", "transforms_test.json", "transforms_val.json")
+    near(report.errors("transforms_train.json"), WHOLE)
+
+
+def case_nerf_synthetic_folder__without_train(report):
+    (report.folder / "transforms_train.json").rename(report.folder / "transforms_all.json")
+    near(report.errors(), WHOLE)
+
+
+def case_images_downscaled(report):
+    says(report.info(".", "--photographs", "images_2"), "convert INPUT --fix image-scale=0.5", "fix:")
+    report.glint("convert", ".", "--photographs", "images_2", "--fix", "image-scale=0.5", "-o", "half.json")
+    scene = json.loads((report.folder / "half.json").read_text())
+    camera = scene.get("camera") or scene["frames"][0]["camera"]
+    # 320 x 240, f = 400 px, and the middle of the image is the principal point.
+    assert (camera["width"], camera["height"]) == (160, 120), camera
+    for key, value in {"fx": 200, "fy": 200, "cx": 79.5, "cy": 59.5}.items():
+        assert abs(camera[key] - value) < 1e-9, camera
+    errors = report.errors("half.json")
+    assert errors["limit-angle"] < 2 and errors["canonical"] < 4, errors
+
+
+def case_images_downscaled__other_shape(report):
+    """A crop is no resized photograph."""
+    report.glint("convert", ".", "--photographs", "images_2", "-o", "scene.json")
+    text = (report.folder / "scene.json").read_text()
+    (report.folder / "scene.json").write_text(re.sub(r'("height": *)240', r"\g<1>260", text))
+    lacks(report.info("scene.json"), "image-scale")
+
+
+def case_nerfcapture(report):
+    near(report.errors(), WHOLE)
+    says(report.info(), "frames[0].", "more: differs from the value at the top of the file; the frame's own one counts")
+
+
+def case_nerfcapture__depth_of_lower_resolution(report):
+    """As the depth sensors of telephones write it: a plane 1 m away, 160 x 120 of 320 x 240."""
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+    width, height = 160, 120
+    rows = (b"\0" + struct.pack(">H", 1000) * width) * height
+    header = struct.pack(">IIBBBBB", width, height, 16, 0, 0, 0, 0)
+    (report.folder / "depth.png").write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
+    edit_transforms(report, lambda f: f.update(depth_file_path="depth.png"))
+    text = report.info(".", "--surface", "depth")
+    lacks(text, "cannot be used")
+
+
+def case_bundler_without_list(report):
+    done = report.glint("info", ".", exit_code=2)
+    says(done.stderr, "bundle.out: needs the list of its images")
+    lacks(done.stderr, "nothing in this folder is recognised")
+
+
+def case_bundler_without_list__named_after_it(report):
+    names = sorted(p.name for p in (report.folder / "images").iterdir())
+    (report.folder / "bundle.out").rename(report.folder / "model.out")
+    (report.folder / "model.out.list.txt").write_text("".join(f"images/{n}\n" for n in names))
+    near(report.errors(), WHOLE)
+
+
+def case_bop_no_models(report):
+    done = report.glint("evaluate", "test/000001", "--models", "limit-angle", "--train", "spread:5", exit_code=2)
+    says(done.stderr, "--surface FILE", "--surface-units")
+    lacks(done.stderr, "--surface points")
+
+
+def case_bop_no_models__several_instances(report):
+    """Another one of the object stands in front of the first in each image."""
+    scene = report.folder / "test/000001/scene_gt.json"
+    poses = json.loads(scene.read_text())
+    for objects in poses.values():
+        other = dict(objects[0], cam_t_m2c=[objects[0]["cam_t_m2c"][0] + 500, *objects[0]["cam_t_m2c"][1:]])
+        objects.append(other)
+    scene.write_text(json.dumps(poses))
+    number = objects[0]["obj_id"]
+    done = report.glint("info", "test/000001", exit_code=2)
+    says(done.stderr, f"shows object {number} 2 times; choose one by --object {number}:N")
+    cloud = ["--surface", str(report.folder / "mesh.ply")]
+    (report.folder / "mesh.ply").write_text("ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+                                            "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")
+    shifts = []
+    for n in (1, 2):
+        report.glint("convert", "test/000001", "--object", f"{number}:{n}", *cloud, "-o", f"{n}.json", "--allow-outside")
+        shifts.append(json.loads((report.folder / f"{n}.json").read_text())["frames"][0]["camera_from_world"][0][3])
+    assert abs(shifts[1] - shifts[0] - 0.5) < 1e-9, shifts  # mm against m
+    says(report.glint("info", "test/000001", "--object", f"{number}:3", *cloud, exit_code=2).stderr, "no image shows the object more than 2 times")

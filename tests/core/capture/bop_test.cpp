@@ -178,11 +178,19 @@ TEST(BopCapture, SeveralObjectsAreAQuestionWithItsAnswers) {
   }
 }
 
+TEST(BopCapture, APoseThatIsNotFiniteCostsItsImage) {
+  const BopSet whole, set;
+  set.change("scene_gt.json", "[10, 20, 500]", "[10, 20, Infinity]");
+  const Capture capture = readBop(set.scene());
+  EXPECT_EQ(capture.views.size() + 1, readBop(whole.scene()).views.size());
+  EXPECT_THAT(capture.warnings, Contains(HasSubstr("scene_gt.json: 3[1]: no finite pose")));
+}
+
 TEST(BopCapture, TheOnlyObjectNeedsNoChoice) {
   const BopSet set;
   set.change("scene_gt.json", "\"obj_id\": 2", "\"obj_id\": 5");
   EXPECT_THAT(bopError(set.scene(), {}),
-              AllOf(HasSubstr("scene_gt.json: 3: image 3 shows object 5 2 times"), HasSubstr("supported")));
+              AllOf(HasSubstr("scene_gt.json: an image shows object 5 2 times"), HasSubstr("choose one by --object 5:N")));
   set.write("test/000001/scene_gt.json",
             std::string(R"({"3": [{"obj_id": 5, "cam_R_m2c": )") + kBopUnit + R"(, "cam_t_m2c": [0, 0, 400]}], "12": []})");
   EXPECT_EQ(readBop(set.scene(), {}).views.size(), 1u);
@@ -323,7 +331,7 @@ TEST(BopCapture, DamagedEntriesAreNamed) {
            Row{"scene_gt.json", kBopTurned, "[1e300, 0, 0, 0, 0, 0, 0, 0, 0]", "3[1].cam_R_m2c[0]: is larger than"},
            Row{"scene_gt.json", kBopTurned, "[[0, -1, 0], [1, 0, 0], [0, 0, 1]]", "3[1].cam_R_m2c[0]: must be a finite number"},
            Row{"scene_gt.json", "[10, 20, 500]", "[10, 20]", "3[1].cam_t_m2c: must have 3 numbers"},
-           Row{"scene_gt.json", "[10, 20, 500]", "[10, 20, Infinity]", "3[1].cam_t_m2c[2]: must be a finite number"},
+           Row{"scene_gt.json", "[10, 20, 500]", "[10, 20, \"far\"]", "3[1].cam_t_m2c[2]: must be a finite number"},
            Row{"scene_gt.json", "\"obj_id\": 5", "\"obj_id\": 5.5", "3[1].obj_id: must be a whole number"},
            Row{"scene_gt.json", "\"obj_id\": 5", "\"obj_id\": -5", "3[1].obj_id: must not be negative"},
            Row{"scene_gt.json", "{\"3\": [", "{\"7\": {}, \"3\": [", "7: must be a list"},

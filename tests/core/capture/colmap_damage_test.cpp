@@ -74,7 +74,6 @@ INSTANTIATE_TEST_SUITE_P(
         ColmapBadTextRow{"no name", "images.txt", " b.jpg", "", "line 2: ", "has 9 entries"},
         ColmapBadTextRow{"control character", "images.txt", "b.jpg", "b\x1b[2J.jpg", "line 2: ", "control character"},
         ColmapBadTextRow{"zero quaternion", "images.txt", "4 1 0 0 0 ", "4 0 0 0 0 ", "line 4: ", "must not be zero"},
-        ColmapBadTextRow{"infinite quaternion", "images.txt", "4 1 0 0 0 ", "4 inf 0 0 0 ", "line 4: ", "'inf' is not a number"},
         ColmapBadTextRow{"far away", "images.txt", "0 0 5 7", "0 0 5e15 7", "line 4: ", "larger than"},
         ColmapBadTextRow{"negative number", "images.txt", "41 0.7", "-41 0.7", "line 2: ", "'-41' is not a whole number"},
         ColmapBadTextRow{"half a 2D point", "images.txt", "100.5 50.5 3", "100.5 50.5", "line 3: ", "has 5 entries"},
@@ -106,6 +105,25 @@ TEST(ColmapDamage, TwoImagesOfOneName) {
   const TemporaryFolder folder;
   writeColmap(folder, "", kColmapCameras, with(kColmapImages, "b.jpg", "a.jpg"));
   EXPECT_THAT(inputErrorOf([&] { readColmap(folder.path()); }), HasSubstr("two images are called 'a.jpg'"));
+}
+
+TEST(ColmapDamage, APoseThatIsNotFiniteCostsItsImage) {
+  const TemporaryFolder folder;
+  writeColmap(folder, "", kColmapCameras, with(kColmapImages, "4 1 0 0 0 ", "4 inf 0 0 0 "));
+  const Capture capture = kColmapReader->read(folder / "cameras.txt", {});
+  ASSERT_EQ(capture.views.size(), 1u);
+  EXPECT_EQ(capture.views[0].name, "b.jpg");
+  EXPECT_THAT(capture.warnings, Contains(HasSubstr("images.txt: line 4: no finite pose")));
+  for (const CaptureTrack& track : kColmapReader->tracks(capture, {}))
+    for (const auto& seen : track.seen) EXPECT_EQ(seen.view, 0);
+}
+
+TEST(ColmapDamage, AnImageThatIsThereTwiceCountsOnce) {
+  const TemporaryFolder folder;
+  writeColmap(folder, "", kColmapCameras, std::string(kColmapImages) + kColmapImages);
+  const Capture capture = kColmapReader->read(folder / "cameras.txt", {});
+  EXPECT_EQ(capture.views.size(), 2u);
+  EXPECT_THAT(capture.warnings, Contains(HasSubstr("and 1 more: says the same as a line before")));
 }
 
 TEST(ColmapDamage, NoImages) {
@@ -170,8 +188,17 @@ TEST(ColmapDamage, NumbersOfABinaryFile) {
   EXPECT_THAT(changed("cameras.bin", 12, std::int32_t(-1)), HasSubstr("camera model number -1 is not supported"));
   EXPECT_THAT(changed("cameras.bin", 16, std::uint64_t(1) << 32), HasSubstr("pixels is not supported"));
   EXPECT_THAT(changed("cameras.bin", 32, kNan), HasSubstr("is not a finite number"));
-  EXPECT_THAT(changed("images.bin", 12, kNan), HasSubstr("byte 8: "));       // of the quaternion
-  EXPECT_THAT(changed("images.bin", 44, kInfinite), HasSubstr("byte 8: "));  // of the translation
+  // A quaternion and a translation: they cost their image.
+  for (const auto& [at, value] : {std::pair<std::size_t, double>{12, kNan}, {44, kInfinite}}) {
+    const TemporaryFolder folder;
+    writeColmapBinary(folder);
+    std::string bytes = contentOf(folder / "images.bin");
+    std::memcpy(bytes.data() + at, &value, sizeof value);
+    folder.write("images.bin", bytes);
+    const Capture capture = kColmapReader->read(folder / "cameras.bin", {});
+    EXPECT_EQ(capture.views.size(), 1u);
+    EXPECT_THAT(capture.warnings, Contains(HasSubstr("images.bin: byte 8: no finite pose")));
+  }
   EXPECT_THAT(changed("images.bin", 72, '\0'), HasSubstr("the name of the image is missing"));
   EXPECT_THAT(changed("points3D.bin", 16, kNan), HasSubstr("byte 8: is not a finite number"));
 }

@@ -318,7 +318,8 @@ INSTANTIATE_TEST_SUITE_P(
                 "frames[0].mask_path: ", "leaves the folder"},
         BadCase{"no pose", "\"transform_matrix\"", "\"transform\"", "frames[0].transform_matrix: ", "missing"},
         BadCase{"pose of three rows", ",[0,0,0,1]]", "]", "frames[0].transform_matrix: ", "4 rows"},
-        BadCase{"pose with a NaN", "[0,1,0,2]", "[0,NaN,0,2]", "frames[0].transform_matrix[1][1]: ", "finite"},
+        BadCase{"pose with a word", "[0,1,0,2]", "[0,\"x\",0,2]", "frames[0].transform_matrix[1][1]: ", "finite"},
+        BadCase{"only a pose with a NaN", "[0,1,0,2]", "[0,NaN,0,2]", "frames: ", "have no finite pose"},
         BadCase{"pose far away", "[0,1,0,2]", "[0,1,0,1e300]", "frames[0].transform_matrix[1][3]: ", "larger than 1e15"},
         BadCase{"pose mirrored", "[0,1,0,2]", "[0,-1,0,2]", "frames[0].transform_matrix: ", "mirrored"},
         BadCase{"pose scaled", "[[1,0,0,1],[0,1,0,2],[0,0,1,3]", "[[2,0,0,1],[0,2,0,2],[0,0,2,3]",
@@ -335,8 +336,6 @@ INSTANTIATE_TEST_SUITE_P(
         BadCase{"huge image", "\"w\": 64, \"h\": 48", "\"w\": 65536, \"h\": 65536", "frames[0]: ", "image.megapixels"},
         BadCase{"principal point far away", "\"cx\": 32", "\"cx\": 1e20", "frames[0]: ", "larger than"},
         BadCase{"intrinsics as text", "\"cx\": 32", "\"cx\": \"32\"", "cx: ", "must be a finite number"},
-        BadCase{"both and different", "\"file_path\"", "\"fl_x\": 101, \"file_path\"",
-                "frames[0].fl_x: ", "differs from 'fl_x' at the top of the file"},
         BadCase{"unknown model", "{\"w\"", "{\"camera_model\": \"EQUIRECTANGULAR\", \"w\"",
                 "camera_model: ", "'EQUIRECTANGULAR' is not supported"},
         BadCase{"model in lower case", "{\"w\"", "{\"camera_model\": \"opencv\", \"w\"", "camera_model: ", "'opencv'"},
@@ -427,7 +426,7 @@ TEST(Nerfstudio, TwoImagesOfOneNameAreRefused) {
   const std::string pose = kIdentityPose;
   EXPECT_THAT(inputErrorOf([&] {
                 readText(R"({"w": 64, "h": 48, "fl_x": 100, "frames": [{"file_path": "a.png", "transform_matrix": )" + pose +
-                         R"(}, {"file_path": "./a.png", "transform_matrix": )" + pose + "}]}");
+                         R"(}, {"file_path": "./a.png", "fl_x": 90, "transform_matrix": )" + pose + "}]}");
               }),
               HasSubstr("two images are called 'a.png'"));
 }
@@ -521,12 +520,18 @@ TEST(Nerfstudio, IsRecognisedByContent) {
   EXPECT_EQ(nerfstudioReader().recognise(""), fs::path());
 }
 
-TEST(Nerfstudio, TrainingPartIsTakenWhereItIsTheOnlyOne) {
+TEST(Nerfstudio, TheFramesOwnIntrinsicsCount) {
+  const Capture capture = readText(with(minimalTransforms(), "\"file_path\"", "\"fl_x\": 101, \"file_path\""));
+  EXPECT_EQ(capture.views[0].camera.pixelFromRay(0, 0), 101);
+  EXPECT_THAT(capture.warnings, Contains(HasSubstr("frames[0].fl_x: differs from the value at the top of the file")));
+}
+
+TEST(Nerfstudio, TheTrainingPartIsTakenAndTheOthersAreNamed) {
   const TemporaryFolder folder;
   const fs::path train = folder.write("transforms_train.json", minimalTransforms());
   EXPECT_EQ(nerfstudioReader().recognise(folder.path()), train);
   folder.write("transforms_test.json", minimalTransforms());
-  EXPECT_EQ(nerfstudioReader().recognise(folder.path()), fs::path());
+  EXPECT_EQ(nerfstudioReader().recognise(folder.path()), train);
   EXPECT_EQ(nerfstudioReader().recognise(train), train);
   const fs::path whole = folder.write("transforms.json", minimalTransforms());
   EXPECT_EQ(nerfstudioReader().recognise(folder.path()), whole);
