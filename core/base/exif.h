@@ -13,8 +13,8 @@ namespace glint {
 std::optional<double> focalLength35mm(std::string_view file);
 
 /// How a viewer turns the picture, 1 to 8: 1 = as stored (also where the file does not say, or is damaged before it), 3 = by 180 degrees,
-/// 6 = by 90 degrees clockwise, 8 = by 90 degrees counter-clockwise; 2, 4, 5 and 7 also mirror. From 5 on width and height change places. No
-/// reader of Glint applies it. Formats and checks as above.
+/// 6 = by 90 degrees clockwise, 8 = by 90 degrees counter-clockwise; 2, 4, 5 and 7 also mirror. From 5 on width and height change places. Glint
+/// applies no quarter turns; of TIFF files OpenCV applies 2 to 4. Formats and checks as above.
 /// @see CIPA DC-008 (Exif 2.32), 4.6.4: tag 0x0112 in the first IFD.
 int exifOrientation(std::string_view file);
 
