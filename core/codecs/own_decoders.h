@@ -3,9 +3,12 @@
 
 // Internal to libglint-codecs: kinds of files that OpenCV cannot read, by the libraries that it reads the others with.
 
-#include <opencv2/core/mat.hpp>
 #include <optional>
 #include <string>
+
+namespace cv {
+class Mat;
+}
 
 namespace glint {
 
