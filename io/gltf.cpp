@@ -253,7 +253,7 @@ class GltfReader {
   using Vertices = std::pair<std::size_t, std::size_t>;
   static constexpr std::size_t kNone = ~std::size_t(0);
 
-  Vertices verticesOf(const GltfPart& part) const { return {part.positions.number, normals_ ? part.normals->number : kNone}; }
+  Vertices verticesOf(const GltfPart& part) const { return {part.positions.number, part.normals ? part.normals->number : kNone}; }
 
   void readParts(std::size_t mesh) {
     const auto [parts, isNew] = parts_.try_emplace(mesh);
@@ -261,7 +261,7 @@ class GltfReader {
     const JsonNode primitives = data_.root().at("meshes").at(mesh).at("primitives");
     for (std::size_t i = 0; i < primitives.size(); ++i)
       if (std::optional<GltfPart> part = partOf(data_, primitives.at(i))) {
-        normals_ = normals_ && part->normals;
+        normals_ = normals_ || part->normals;
         parts->second.push_back(std::move(*part));
       }
   }
@@ -297,7 +297,8 @@ class GltfReader {
       const auto [first, isNew] = known.try_emplace(verticesOf(part), mesh_.vertices.size());
       if (isNew) {
         addPositions(part.positions, instance);
-        if (normals_) addNormals(*part.normals, turn.normals);
+        if (part.normals) addNormals(*part.normals, turn.normals);
+        if (normals_) mesh_.normals.resize(mesh_.vertices.size(), Vector3d::Zero());  // zero: this part has none
       }
       addTriangles(part, int(first->second), turn.mirrored);
     }
@@ -352,7 +353,7 @@ class GltfReader {
   GltfData data_;
   std::vector<GltfInstance> instances_;
   std::map<std::size_t, std::vector<GltfPart>> parts_;  ///< by the number of the mesh
-  bool normals_ = true;                                 ///< every part has them
+  bool normals_ = false;                                ///< a part has them
   MeshContent mesh_;
 };
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/mesh_builder.h"
 
+#include <algorithm>
+
 #include "core/base/outcome.h"
 
 namespace glint::io {
@@ -40,23 +42,41 @@ CloudContent finished(CloudContent cloud, const std::string& file) {
 
 MeshContent finished(MeshContent mesh, const std::string& file) {
   if (mesh.triangles.empty()) fail(file, "", "the mesh has no faces");
-  if (mesh.normals.empty()) return mesh;
-  std::vector<char> lacking(mesh.vertices.size(), 0);
-  bool any = false;
-  for (std::size_t i = 0; i < mesh.normals.size(); ++i) {
-    Eigen::Vector3d& n = mesh.normals[i];
-    if (madeUnit(n)) continue;
-    lacking[i] = 1;
-    any = true;
-    n = Eigen::Vector3d::UnitZ();  // of a vertex that no triangle has: never asked
-  }
-  if (any)
-    for (const Eigen::Vector3i& t : mesh.triangles)
-      if (lacking[std::size_t(t.x())] || lacking[std::size_t(t.y())] || lacking[std::size_t(t.z())]) {
-        mesh.normals.clear();
-        break;
-      }
+  for (Eigen::Vector3d& n : mesh.normals)
+    if (!madeUnit(n)) n.setZero();
+  const auto has = [&](int vertex) { return !mesh.normals[std::size_t(vertex)].isZero(); };
+  if (!mesh.normals.empty() && std::none_of(mesh.triangles.begin(), mesh.triangles.end(),
+                                            [&](const Eigen::Vector3i& t) { return has(t.x()) || has(t.y()) || has(t.z()); }))
+    mesh.normals.clear();
   return mesh;
+}
+
+void BadVertices::remove(MeshContent& mesh, const std::string& file,
+                         const std::function<std::string(std::size_t, std::size_t)>& placeOf) const {
+  if (found_.empty()) return;
+  constexpr int kGone = -1;
+  std::vector<int> number(mesh.vertices.size());
+  std::size_t kept = 0, bad = 0;
+  for (std::size_t i = 0; i < number.size(); ++i) {
+    const bool gone = bad < found_.size() && found_[bad].vertex == i;
+    number[i] = gone ? kGone - int(bad++) : int(kept++);
+  }
+  for (Eigen::Vector3i& t : mesh.triangles)
+    for (int& corner : t) {
+      const int now = number[std::size_t(corner)];
+      if (now <= kGone) {
+        const Bad& used = found_[std::size_t(kGone - now)];
+        fail(file, placeOf(used.vertex, used.place), badCoordinate(mesh.vertices[used.vertex]));
+      }
+      corner = now;
+    }
+  for (std::size_t i = 0; i < number.size(); ++i) {
+    if (number[i] <= kGone) continue;
+    mesh.vertices[std::size_t(number[i])] = mesh.vertices[i];
+    if (!mesh.normals.empty()) mesh.normals[std::size_t(number[i])] = mesh.normals[i];
+  }
+  mesh.vertices.resize(kept);
+  if (!mesh.normals.empty()) mesh.normals.resize(kept);
 }
 
 }  // namespace glint::io

@@ -13,8 +13,7 @@ namespace {
 
 /// JSON text with the keys of a glTF.
 bool isGltfText(std::string_view bytes) {
-  constexpr std::string_view kMark = "\xef\xbb\xbf";  // of UTF-8, which some editors put in front
-  if (bytes.starts_with(kMark)) bytes.remove_prefix(kMark.size());
+  bytes = io::withoutMark(bytes);
   const std::size_t first = bytes.find_first_not_of(" \t\r\n");
   if (first == std::string_view::npos || bytes[first] != '{') return false;
   const auto has = [&](std::string_view key) { return bytes.find(key) != std::string_view::npos; };
@@ -32,7 +31,7 @@ MeshContent parseMesh(std::string_view bytes, const std::filesystem::path& file)
   std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
   const bool namedStl = extension == ".stl";
   // A binary STL may start with "solid" too; its size follows from its facet count.
-  const bool solid = bytes.starts_with("solid");
+  const bool solid = io::beginsAsStlText(bytes);
   const std::size_t promised = io::stlBytesPromised(bytes);
   if (bytes.starts_with("ply\n") || bytes.starts_with("ply\r")) return parsePly(bytes, name);
   if (promised == bytes.size() && bytes.find('\0') != std::string_view::npos) return parseStlBinary(bytes, name);

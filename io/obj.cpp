@@ -18,6 +18,9 @@ class ObjReader {
   MeshContent read() {
     while (std::optional<std::string_view> line = lines_.next()) statement(whole(*line));
     checkReferences();
+    bad_.remove(mesh_, file_,
+                [](std::size_t vertex, std::size_t line) { return io::lineNo(line) + ", vertex " + std::to_string(vertex); });
+    fan_.cut(mesh_.vertices, cornerNormals_, file_);
     if (mesh_.triangles.empty()) io::fail(file_, "", "is not a mesh: neither PLY, STL nor glTF, and as OBJ it has no faces");
     takeNormals();
     return io::finished(std::move(mesh_), file_);
@@ -57,7 +60,7 @@ class ObjReader {
     if (word == "v") {
       if (++vertices_.count > kMost) bad("more than 2147483647 vertices");
       mesh_.vertices.push_back(three(line, "vertex"));
-      if (const char* reason = io::badCoordinate(mesh_.vertices.back())) bad(std::string("a vertex ") + reason);
+      if (io::badCoordinate(mesh_.vertices.back())) bad_.note(mesh_.vertices.size() - 1, lines_.number());
     } else if (word == "vn") {
       if (++normals_.count > kMost) bad("more than 2147483647 normals");
       normalValues_.push_back(three(line, "normal"));
@@ -85,6 +88,7 @@ class ObjReader {
     fan_.begin();
     for (std::string_view word = io::takeWord(line); !word.empty(); word = io::takeWord(line)) corner(word);
     if (fan_.corners() < 3) bad("a face needs three vertices");
+    fan_.end();
     // The fan has appended corners() - 2 triangles: their normals in the same order.
     for (std::size_t k = 2; k < fan_.corners(); ++k)
       cornerNormals_.emplace_back(faceNormals_[0], faceNormals_[k - 1], faceNormals_[k]);
@@ -131,11 +135,10 @@ class ObjReader {
                      std::to_string(r->count));
   }
 
-  /// One normal per vertex. A vertex that meets a second, different normal (a crease) is doubled.
+  /// One normal per vertex. A vertex that meets a second, different normal (a crease) is doubled. A corner without a normal has that of its
+  /// vertex elsewhere, or none.
   void takeNormals() {
     if (normals_.largest == 0) return;
-    for (const Eigen::Vector3i& t : cornerNormals_)
-      if (t.minCoeff() == kNone) return;  // incomplete: those of the triangles serve better
     mesh_.normals.assign(mesh_.vertices.size(), Vector3d::Zero());
     std::vector<int> first(mesh_.vertices.size(), kNone);
     std::unordered_map<std::uint64_t, int> doubled;  // by vertex and normal
@@ -143,6 +146,7 @@ class ObjReader {
       for (int k = 0; k < 3; ++k) {
         int& vertex = mesh_.triangles[i][k];
         const int n = cornerNormals_[i][k];
+        if (n == kNone) continue;
         const Vector3d& value = normalValues_[std::size_t(n)];
         int& own = first[std::size_t(vertex)];
         if (own == kNone) {
@@ -167,6 +171,7 @@ class ObjReader {
   std::string joined_;
   MeshContent mesh_;
   io::Fan fan_;
+  io::BadVertices bad_;
   std::vector<Vector3d> normalValues_;
   std::vector<int> faceNormals_;                ///< of the corners of the face at hand
   std::vector<Eigen::Vector3i> cornerNormals_;  ///< beside mesh_.triangles

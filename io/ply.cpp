@@ -75,6 +75,10 @@ struct Header {
 
 enum class Wanted { Mesh, Cloud };
 
+/// Strips come as one list or more, with -1 between two strips.
+bool isStrips(std::string_view element) { return element == "tristrips"; }
+bool isFaces(std::string_view element) { return element == "face" || isStrips(element); }
+
 Header readHeader(std::string_view bytes, const std::string& file, Wanted wanted) {
   Header header;
   header.lineEnd = bytes.size() > 4 && bytes[3] == '\r' && bytes[4] != '\n' ? '\r' : '\n';
@@ -106,7 +110,7 @@ Header readHeader(std::string_view bytes, const std::string& file, Wanted wanted
       const std::string_view text = io::takeWord(*line);
       const std::optional<std::int64_t> count = io::integerOf(text);
       if (name.empty() || !count || *count < 0) bad("the PLY element has no count");
-      if (name == "vertex" || name == "face")
+      if (name == "vertex" || isFaces(name))
         for (const Element& e : header.elements)
           if (e.name == name) bad("duplicate element " + io::quoted(name));
       constexpr std::size_t kMostElements = 1000;  // no program writes more: a damaged header
@@ -136,7 +140,7 @@ Header readHeader(std::string_view bytes, const std::string& file, Wanted wanted
         constexpr std::string_view kNames[] = {"x", "y", "z", "nx", "ny", "nz"};
         for (int k = 0; k < kNumbers; ++k)
           if (name == kNames[k]) p.use = k;
-      } else if (element.name == "face" && (name == "vertex_indices" || name == "vertex_index")) {
+      } else if (isFaces(element.name) && (name == "vertex_indices" || name == "vertex_index")) {
         p.use = kCorners;
       }
       if (p.use != kSkipped) {
@@ -154,7 +158,7 @@ Header readHeader(std::string_view bytes, const std::string& file, Wanted wanted
   const Element* face = nullptr;
   for (const Element& e : header.elements) {
     if (e.name == "vertex") vertex = &e;
-    if (e.name == "face") face = &e;
+    if (isFaces(e.name) && (!face || face->count == 0)) face = &e;
     if (e.properties.empty() && e.count > 0) io::fail(file, "header", "element " + io::quoted(e.name) + " has no properties");
   }
   const auto has = [](const Element& e, int use) {
@@ -194,7 +198,11 @@ class BinaryValues {
     rowAt_ = at_;
   }
   void endRow() {}
-  std::string place() const { return placeOf(io::byteNo(rowAt_), *element_, index_); }
+  std::size_t at() const { return rowAt_; }  ///< of the row at hand
+  static std::string placeOf(const char* element, std::size_t index, std::size_t at) {
+    return io::byteNo(at) + ", " + element + " " + std::to_string(index);
+  }
+  std::string place() const { return glint::placeOf(io::byteNo(rowAt_), *element_, index_); }
   double value(Scalar type) {
     const std::size_t size = sizeOf(type);
     if (left() < size) truncated();
@@ -249,7 +257,11 @@ class TextValues {
   void endRow() const {
     if (!word_.empty()) io::fail(file_, place(), "has more values than the header has properties");
   }
-  std::string place() const { return placeOf(io::lineNo(headerLines_ + lines_.number()), *element_, index_); }
+  std::size_t at() const { return headerLines_ + lines_.number(); }
+  static std::string placeOf(const char* element, std::size_t index, std::size_t at) {
+    return io::lineNo(at) + ", " + element + " " + std::to_string(index);
+  }
+  std::string place() const { return glint::placeOf(io::lineNo(at()), *element_, index_); }
   double value(Scalar) {
     const std::optional<double> v = io::numberOf(take());
     if (!v) io::fail(file_, place(), io::quoted(taken_) + " is not a number");
@@ -311,8 +323,12 @@ class PlyBody {
         others(e);
     }
     values_.end();
+    bad_.remove(mesh_, file_, [](std::size_t vertex, std::size_t place) { return Values::placeOf("vertex", vertex, place); });
+    std::vector<Eigen::Vector3i> nothingBeside;
+    fan_.cut(mesh_.vertices, nothingBeside, file_);
     return std::move(mesh_);
   }
+  std::size_t without() const { return bad_.count(); }
 
  private:
   [[noreturn]] void fewerBytes(std::uint64_t count, const std::string& name) const {
@@ -326,7 +342,7 @@ class PlyBody {
     std::size_t least = 0;
     for (const Property& p : e.properties) least += Values::least(p);
     if (least > 0 && e.count > values_.left() / least) {
-      if (e.name == "face") return;  // faces of too few corners, or a cut: the row tells which
+      if (isFaces(e.name)) return;  // faces of too few corners, or a cut: the row tells which
       fewerBytes(e.count, e.name);
     }
   }
@@ -348,19 +364,21 @@ class PlyBody {
       }
       values_.endRow();
       const Vector3d v(row[kX], row[kY], row[kZ]);
-      if (const char* reason = io::badCoordinate(v)) io::fail(file_, values_.place(), reason);
+      if (io::badCoordinate(v)) bad_.note(mesh_.vertices.size(), values_.at());
       mesh_.vertices.push_back(v);
       if (normals) mesh_.normals.emplace_back(row[kNx], row[kNy], row[kNz]);
     }
   }
 
   void others(const Element& e) {
-    const bool faces = e.name == "face";
+    const bool faces = isFaces(e.name), strips = isStrips(e.name);
     for (std::uint64_t i = 0; i < e.count; ++i) {
       values_.beginRow(e, i);
       for (const Property& p : e.properties) {
         const std::uint64_t n = p.counter ? count(*p.counter) : 1;
-        if (p.use == kCorners)
+        if (p.use == kCorners && strips)
+          strip(p, n);
+        else if (p.use == kCorners)
           corners(p, n);
         else
           values_.skip(p.type, n);
@@ -381,12 +399,33 @@ class PlyBody {
   void corners(const Property& p, std::uint64_t n) {
     if (n < 3) io::fail(file_, values_.place(), "has " + std::to_string(n) + " corners; a face needs three");
     fan_.begin();
+    for (std::uint64_t k = 0; k < n; ++k) fan_.add(vertexNumber(values_.value(p.type)));
+    fan_.end();
+  }
+
+  /// Every other triangle of a strip is turned. Those with a corner twice lead from one part to the next.
+  void strip(const Property& p, std::uint64_t n) {
+    int before[2] = {0, 0};
+    std::uint64_t corner = 0;
     for (std::uint64_t k = 0; k < n; ++k) {
       const double v = values_.value(p.type);
-      if (!(v >= 0 && v < double(vertexCount_) && v == std::floor(v)))
-        io::fail(file_, values_.place(), "names vertex " + asText(v) + "; the file has " + std::to_string(vertexCount_));
-      fan_.add(static_cast<int>(v));
+      if (v == -1) {
+        corner = 0;
+        continue;
+      }
+      const int last = vertexNumber(v);
+      if (corner >= 2 && before[0] != before[1] && before[1] != last && last != before[0])
+        mesh_.triangles.emplace_back(before[corner % 2], before[1 - corner % 2], last);
+      before[0] = before[1];
+      before[1] = last;
+      ++corner;
     }
+  }
+
+  int vertexNumber(double v) {
+    if (!(v >= 0 && v < double(vertexCount_) && v == std::floor(v)))
+      io::fail(file_, values_.place(), "names vertex " + asText(v) + "; the file has " + std::to_string(vertexCount_));
+    return static_cast<int>(v);
   }
 
   Values values_;
@@ -394,24 +433,33 @@ class PlyBody {
   const std::string& file_;
   MeshContent mesh_;
   io::Fan fan_;
+  io::BadVertices bad_;
   std::uint64_t vertexCount_ = 0;
 };
 
-MeshContent readPly(std::string_view bytes, const std::string& file, Wanted wanted) {
+/// @param without  takes the number of vertices that no face uses and that are none, such as NaN
+MeshContent readPly(std::string_view bytes, const std::string& file, Wanted wanted, std::size_t& without) {
   const Header header = readHeader(bytes, file, wanted);
-  if (header.format == Header::Format::Text) return PlyBody(TextValues(bytes, header, file), header, file).read();
-  return PlyBody(BinaryValues(bytes, header, file), header, file).read();
+  const auto read = [&](auto values) {
+    PlyBody body(std::move(values), header, file);
+    MeshContent mesh = body.read();
+    without = body.without();
+    return mesh;
+  };
+  return header.format == Header::Format::Text ? read(TextValues(bytes, header, file)) : read(BinaryValues(bytes, header, file));
 }
 
 }  // namespace
 
 MeshContent parsePly(std::string_view bytes, const std::string& file) {
-  return io::finished(readPly(bytes, file, Wanted::Mesh), file);
+  std::size_t without = 0;
+  return io::finished(readPly(bytes, file, Wanted::Mesh, without), file);
 }
 
 CloudContent parsePlyCloud(std::string_view bytes, const std::string& file) {
-  MeshContent mesh = readPly(bytes, file, Wanted::Cloud);
-  return io::finished(CloudContent{std::move(mesh.vertices), std::move(mesh.normals), 0}, file);
+  std::size_t without = 0;
+  MeshContent mesh = readPly(bytes, file, Wanted::Cloud, without);
+  return io::finished(CloudContent{std::move(mesh.vertices), std::move(mesh.normals), without}, file);
 }
 
 }  // namespace glint

@@ -80,6 +80,13 @@ bool sameWord(std::string_view word, std::string_view lower) {
 
 }  // namespace
 
+bool io::beginsAsStlText(std::string_view bytes) {
+  bytes = withoutMark(bytes);
+  bytes.remove_prefix(std::min(bytes.find_first_not_of(" \t\r\n\v\f"), bytes.size()));
+  constexpr std::string_view kFirst = "solid";
+  return sameWord(bytes.substr(0, kFirst.size()), kFirst);
+}
+
 MeshContent parseStlBinary(std::string_view bytes, const std::string& file) {
   const std::size_t promised = io::stlBytesPromised(bytes);
   if (promised == 0)
@@ -109,7 +116,7 @@ MeshContent parseStlBinary(std::string_view bytes, const std::string& file) {
 MeshContent parseStlText(std::string_view bytes, const std::string& file) {
   MeshContent mesh;
   Welder welder(mesh.vertices);
-  io::Lines lines(bytes);
+  io::Lines lines(io::withoutMark(bytes));
   // Statements as they may follow each other; each begins a line.
   enum class Inside { Nothing, Solid, Facet, Loop, LoopDone } inside = Inside::Nothing;
   Vector3d corners[3];

@@ -19,4 +19,7 @@ inline std::size_t stlBytesPromised(std::string_view bytes) {
   return kStlHead + kStlFacet * std::size_t(facets);
 }
 
+/// The first word is "solid", in any case and behind any blanks: a text, unless the size is that of a binary file.
+bool beginsAsStlText(std::string_view bytes);
+
 }  // namespace glint::io

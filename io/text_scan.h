@@ -23,6 +23,12 @@ inline std::string_view takeWord(std::string_view& line) {
   return word;
 }
 
+/// The text behind the mark of UTF-8 that some editors put in front.
+inline std::string_view withoutMark(std::string_view text) {
+  constexpr std::string_view kMark = "\xef\xbb\xbf";
+  return text.starts_with(kMark) ? text.substr(kMark.size()) : text;
+}
+
 /// Lines of a text that end with "\n", "\r\n", or with "\r" alone.
 class Lines {
  public:

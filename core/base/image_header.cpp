@@ -165,36 +165,84 @@ ImageHeader exrHeader(std::string_view bytes, ImageHeader h) {
   return exrBlocksLieInside(bytes, facts->end) ? h : truncated(h);
 }
 
-/// @see TIFF 6.0, 2: a directory of entries (tag, type, count, value).
+/// Where a directory of TIFF begins, and the widths of its numbers. BigTIFF has 8 bytes where TIFF has 4.
+struct TiffKind {
+  unsigned count, entry, value;            ///< bytes: number of entries, an entry, a value in it
+  std::optional<std::uint64_t> directory;  ///< its first byte
+};
+
+/// The tags that matter here; the first of each counts, as for the decoder.
+struct TiffTags {
+  std::optional<std::uint64_t> width, height, channels, tileWidth,
+      tileHeight;  // of strips nothing is asked: "all rows" is often 2^32 - 1
+  std::optional<std::uint64_t> colours, reduced, make, parts, dng;
+  std::optional<std::uint64_t>* at(std::uint64_t tag) {
+    switch (tag) {
+      case 254: return &reduced;
+      case 256: return &width;
+      case 257: return &height;
+      case 262: return &colours;
+      case 271: return &make;
+      case 277: return &channels;
+      case 322: return &tileWidth;
+      case 323: return &tileHeight;
+      case 330: return &parts;
+      case 50706: return &dng;
+      default: return nullptr;
+    }
+  }
+  static bool isSize(std::uint64_t tag) { return tag == 256 || tag == 257 || tag == 277 || tag == 322 || tag == 323; }
+  /// Raw files of cameras are TIFF as well: samples behind a mosaic of colours (or linear, of DNG), DNG's own tag, or a camera's small preview
+  /// before the pixels.
+  bool isRaw() const {
+    constexpr std::uint64_t kMosaic = 32803, kLinearRaw = 34892;
+    return dng || colours == kMosaic || colours == kLinearRaw || (make && parts && reduced.value_or(0) % 2 == 1);
+  }
+};
+
+constexpr const char* kRaw = "the file is a raw file of a camera: develop it to TIFF or PNG first";
+
+/// @see TIFF 6.0, 2: a directory of entries (tag, type, count, value). @see AWare Systems, The BigTIFF File Format Proposal, 2008.
 ImageHeader tiffHeader(std::string_view bytes, ImageHeader h) {
   const NumbersInBytes in(bytes, startsWith(bytes, "MM"));
-  const std::optional<std::uint64_t> directory = in.number(4, 4);
-  const std::optional<std::uint64_t> entries = directory ? in.number(*directory, 2) : std::nullopt;
+  constexpr std::uint64_t kBigTiff = 43;
+  const TiffKind kind = in.number(2, 2) == kBigTiff ? TiffKind{8, 20, 8, in.number(8, 8)} : TiffKind{2, 12, 4, in.number(4, 4)};
+  if (kind.value == 4 && bytes.substr(std::min<std::size_t>(8, bytes.size()), 2) == "CR") return failed(h, kRaw);  // Canon's CR2
+  const std::optional<std::uint64_t> entries = kind.directory ? in.number(*kind.directory, kind.count) : std::nullopt;
   if (!entries) return truncated(h);
-  constexpr std::uint64_t kEntry = 12;  // bytes
-  std::optional<std::uint64_t> width, height, channels, tileWidth,
-      tileHeight;  // of strips nothing is asked: "all rows" is often written as 2^32 - 1
-  const auto first = [](std::optional<std::uint64_t>& tag, std::uint64_t value) {
-    if (!tag) tag = value;  // the decoder ignores a tag that stands there again
-  };
+  TiffTags tags;
   for (std::uint64_t i = 0; i < *entries; ++i) {
-    const std::uint64_t at = *directory + 2 + i * kEntry;
+    const std::uint64_t at = *kind.directory + kind.count + i * kind.entry, valueAt = at + 4 + kind.value;
     const auto tag = in.number(at, 2), type = in.number(at + 2, 2);
-    if (!tag || !type || !in.number(at + 8, 4)) return truncated(h);
-    constexpr std::uint64_t kShort = 3, kLong = 4, kChannels = 277;
-    const bool isSize = *tag == 256 || *tag == 257 || *tag == kChannels || *tag == 322 || *tag == 323;
-    if (!isSize) continue;
+    if (!tag || !type || !in.number(valueAt, kind.value)) return truncated(h);
+    std::optional<std::uint64_t>* const found = tags.at(*tag);
+    if (!found || *found) continue;
+    constexpr std::uint64_t kShort = 3, kLong = 4, kLong8 = 16;
+    const bool whole = *type == kShort || *type == kLong || (*type == kLong8 && kind.value == 8);
     // The decoder takes other types too, of which some stand elsewhere in the file; nobody writes a size so.
-    if (*type != kShort && *type != kLong) return damaged(h, "a size is not a 16- or 32-bit whole number");
-    const std::uint64_t value = *in.number(at + 8, *type == kShort ? 2 : 4);
-    first(*tag == 256 ? width : *tag == 257 ? height : *tag == 322 ? tileWidth : *tag == 323 ? tileHeight : channels, value);
+    if (!whole && TiffTags::isSize(*tag)) return damaged(h, "a size is not a 16- or 32-bit whole number");
+    *found = in.number(valueAt, *type == kShort ? 2 : *type == kLong8 ? kind.value : 4);
   }
-  h.width = width.value_or(0);
-  h.height = height.value_or(0);
-  h.channels = static_cast<int>(std::min<std::uint64_t>(channels.value_or(1), std::numeric_limits<int>::max()));
+  if (tags.isRaw()) return failed(h, kRaw);
+  h.width = tags.width.value_or(0);
+  h.height = tags.height.value_or(0);
+  h.channels = static_cast<int>(std::min<std::uint64_t>(tags.channels.value_or(1), std::numeric_limits<int>::max()));
+  constexpr std::uint64_t kMostPixels = std::numeric_limits<std::int32_t>::max();
   if (h.width == 0 || h.height == 0) return damaged(h, "its size is missing");
-  if (tileWidth && tileHeight && !fitsImage(*tileWidth, *tileHeight, h)) return damaged(h, "its tiles are larger than the image");
+  if (h.width > kMostPixels || h.height > kMostPixels) return damaged(h, "it is too large");
+  if (tags.tileWidth && tags.tileHeight && !fitsImage(*tags.tileWidth, *tags.tileHeight, h))
+    return damaged(h, "its tiles are larger than the image");
   return h;
+}
+
+/// The first bytes of raw files that are no TIFF: Fujifilm, Olympus, Panasonic, Canon (CRW, CR3), Minolta, Sigma.
+bool isOtherRaw(std::string_view bytes) {
+  for (const std::string_view start :
+       {std::string_view("FUJIFILMCCD-RAW"), std::string_view("IIRO"), std::string_view("IIRS"), std::string_view("MMOR"),
+        std::string_view("IIU\0", 4), std::string_view("\0MRM", 4), std::string_view("FOVb")})
+    if (startsWith(bytes, start)) return true;
+  const auto part = [&](std::size_t at, std::size_t length) { return bytes.substr(std::min(at, bytes.size()), length); };
+  return part(6, 8) == "HEAPCCDR" || part(4, 8) == "ftypcrx ";
 }
 
 ImageHeader bmpHeader(std::string_view bytes, ImageHeader h) {
@@ -289,7 +337,8 @@ struct Magic {
   ImageHeader (*read)(std::string_view, ImageHeader);
 };
 
-constexpr std::string_view kPng("\x89PNG\r\n\x1a\n", 8), kLittleTiff("II*\0", 4), kBigTiff("MM\0*", 4);
+constexpr std::string_view kPng("\x89PNG\r\n\x1a\n", 8), kLittleTiff("II*\0", 4), kBigEndianTiff("MM\0*", 4),
+    kLittleBigTiff("II+\0", 4), kBigBigTiff("MM\0+", 4);
 
 }  // namespace
 
@@ -320,7 +369,9 @@ ImageHeader readImageHeader(std::string_view bytes) {
       {ImageFormat::Jpeg, "\xff\xd8", jpegHeader},
       {ImageFormat::Exr, "\x76\x2f\x31\x01", exrHeader},
       {ImageFormat::Tiff, kLittleTiff, tiffHeader},
-      {ImageFormat::Tiff, kBigTiff, tiffHeader},
+      {ImageFormat::Tiff, kBigEndianTiff, tiffHeader},
+      {ImageFormat::Tiff, kLittleBigTiff, tiffHeader},
+      {ImageFormat::Tiff, kBigBigTiff, tiffHeader},
       {ImageFormat::Bmp, "BM", bmpHeader},
       {ImageFormat::Hdr, "#?RADIANCE", hdrHeader},
       {ImageFormat::Hdr, "#?RGBE", hdrHeader},
@@ -336,6 +387,7 @@ ImageHeader readImageHeader(std::string_view bytes) {
     header.format = ImageFormat::Webp;
     return webpHeader(bytes, header);
   }
+  if (isOtherRaw(bytes)) return failed(header, kRaw);
   // P7 (PAM) names its fields in words and is not read here.
   if (bytes.size() > 2 && bytes[0] == 'P' && ((bytes[1] >= '1' && bytes[1] <= '6') || bytes[1] == 'F' || bytes[1] == 'f')) {
     header.format = ImageFormat::Pnm;

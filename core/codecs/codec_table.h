@@ -9,7 +9,7 @@ namespace glint {
 /// What libglint-codecs does, one entry for each function of codecs.h. Internal to core/codecs.
 struct CodecTable {
   const char* version;  ///< GLINT_VERSION of that library: first in every version, so that another one can be told
-  cv::Mat (*decode)(const std::string& bytes);
+  cv::Mat (*decode)(const std::string& bytes, std::string& reason);
   bool (*encode)(const std::string& ending, const cv::Mat& pixels, std::vector<unsigned char>& bytes,
                  const std::vector<int>& parameters);
   std::unique_ptr<VideoDecoder> (*decoder)();

@@ -70,7 +70,7 @@ const CodecTable& codecs() {
 
 void loadCodecs() { codecs(); }
 
-cv::Mat decodeWithOpenCv(const std::string& bytes) { return codecs().decode(bytes); }
+cv::Mat decodeOtherFormat(const std::string& bytes, std::string& reason) { return codecs().decode(bytes, reason); }
 
 bool encodeWithOpenCv(const std::string& ending, const cv::Mat& pixels, std::vector<unsigned char>& bytes,
                       const std::vector<int>& parameters) {

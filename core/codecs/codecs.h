@@ -27,10 +27,13 @@ class CodecsMissing : public std::runtime_error {
 /// Loads what the functions below need, unless that was done. Call it where an exception of theirs would be taken for a damaged file.
 void loadCodecs();
 
-/// All channels in OpenCV's order (blue first), in the file's own depth, as cv::imdecode with IMREAD_UNCHANGED gives them.
-/// @return empty: not an image
-/// @throws cv::Exception  damaged data
-cv::Mat decodeWithOpenCv(const std::string& bytes);
+/// All channels in OpenCV's order (blue first), in the file's own depth, as cv::imdecode with IMREAD_UNCHANGED gives them. TIFF and EXR files that
+/// OpenCV cannot read are decoded by libtiff and OpenEXR themselves, without alpha and half floats as floats: of EXR files one layer
+/// (own_decoders.h).
+/// @param reason  takes why a whole file of a known format is refused
+/// @return empty: refused, or not an image
+/// @throws std::exception  damaged data
+cv::Mat decodeOtherFormat(const std::string& bytes, std::string& reason);
 
 /// The content of a file, as cv::imencode writes it.
 /// @param ending      with its dot: ".png"

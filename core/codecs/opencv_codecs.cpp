@@ -5,11 +5,14 @@
 #include <opencv2/videoio.hpp>
 
 #include "core/codecs/codec_table.h"
+#include "core/codecs/own_decoders.h"
 
 namespace glint {
 namespace {
 
-cv::Mat decode(const std::string& bytes) {
+cv::Mat decode(const std::string& bytes, std::string& reason) {
+  if (std::optional<cv::Mat> own = decodeTiff(bytes, reason)) return *std::move(own);
+  if (std::optional<cv::Mat> own = decodeExrLayer(bytes, reason)) return *std::move(own);
   const cv::Mat view(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data()));
   return cv::imdecode(view, cv::IMREAD_UNCHANGED);
 }

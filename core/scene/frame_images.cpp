@@ -7,6 +7,7 @@
 #include <opencv2/core.hpp>
 
 #include "core/base/atomic_file.h"
+#include "core/base/exif.h"
 #include "core/base/limits.h"
 #include "core/base/median.h"
 #include "core/base/number_text.h"
@@ -37,11 +38,22 @@ std::string wrongSize(std::uint64_t width, std::uint64_t height, const Camera& c
          (scale ? formatted(" (resized photographs: glint convert INPUT --fix image-scale=%.10g fits the cameras)", *scale) : "");
 }
 
+/// Words on EXIF data that would turn the picture into the camera's size: OpenCV, which calibrates, turns it, and COLMAP does not.
+std::string orientationThatFits(const std::string& bytes, const ImageHeader& header, const Camera& camera) {
+  const int orientation = exifOrientation(bytes);
+  constexpr int kFirstOfQuarterTurns = 5;
+  if (orientation < kFirstOfQuarterTurns || header.width != static_cast<std::uint64_t>(camera.height) ||
+      header.height != static_cast<std::uint64_t>(camera.width))
+    return "";
+  return "; turned by its EXIF orientation " + std::to_string(orientation) +
+         ", the sizes agree: turn the files (ImageMagick: mogrify -auto-orient) and give their folder by --photographs";
+}
+
 /// What is wrong with a file as far as its header tells; "" = nothing.
-std::string headerProblem(const ImageHeader& header, const Camera& camera) {
+std::string headerProblem(const std::string& bytes, const ImageHeader& header, const Camera& camera) {
   if (!header.problem.empty()) return header.problem;
   if (header.width != static_cast<std::uint64_t>(camera.width) || header.height != static_cast<std::uint64_t>(camera.height))
-    return wrongSize(header.width, header.height, camera);
+    return wrongSize(header.width, header.height, camera) + orientationThatFits(bytes, header, camera);
   constexpr int kMostChannels = 4;
   if (header.channels > kMostChannels)
     return "the image has " + std::to_string(header.channels) + " channels, expected 1, 3 or 4";
@@ -56,7 +68,7 @@ Outcome<DecodedImage> decodeFile(const fs::path& file, const Camera& camera) {
   try {
     bytes = readFile(file, Limit::ImageMegabytes);
     header = readImageHeader(bytes);
-    if (const std::string problem = headerProblem(header, camera); !problem.empty()) return unreadable(file, problem);
+    if (const std::string problem = headerProblem(bytes, header, camera); !problem.empty()) return unreadable(file, problem);
     requireWithin(Limit::ImageMegapixels, double(header.width) * double(header.height) / kMega, file.string());
   } catch (const InputError& e) {
     return Failure{Reason::FrameUnreadable, e.what()};
@@ -237,7 +249,8 @@ namespace {
 std::string fileProblem(const fs::path& file, const Camera& camera) {
   if (file.empty()) return {};
   try {
-    const std::string problem = headerProblem(readImageHeader(readFile(file, Limit::ImageMegabytes)), camera);
+    const std::string bytes = readFile(file, Limit::ImageMegabytes);
+    const std::string problem = headerProblem(bytes, readImageHeader(bytes), camera);
     if (!problem.empty()) return file.string() + ": " + problem;
   } catch (const InputError& e) {
     return e.what();

@@ -233,12 +233,14 @@ Outcome<cv::Mat> decodeOther(const std::string& bytes) {
   (void)quiet;
   loadCodecs();
   cv::Mat m;
+  std::string reason;
   try {
     const QuietCerr guard;
-    m = decodeWithOpenCv(bytes);
+    m = decodeOtherFormat(bytes, reason);
   } catch (const std::exception&) {
     return undecodable("truncated or damaged");
   }
+  if (!reason.empty()) return Failure{Reason::FrameUnreadable, reason};
   if (m.empty()) return undecodable("not an image, truncated or damaged");
   if (m.channels() != 1 && m.channels() != 3 && m.channels() != 4)
     return undecodable("it has " + std::to_string(m.channels()) + " channels, expected 1, 3 or 4");

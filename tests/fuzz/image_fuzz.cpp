@@ -17,6 +17,7 @@ ImageHeader checkedHeader(const std::string& bytes) {
   if (!header.problem.empty() && (header.width != 0 || header.height != 0))
     throw Finding{"a size beside the problem " + header.problem};
   if (header.channels < 0) throw Finding{"a negative number of channels"};
+  if (const int turn = exifOrientation(bytes); turn < 1 || turn > 8) throw Finding{"an orientation that EXIF does not have"};
   if (const std::optional<double> focal = focalLength35mm(bytes); focal && !(*focal >= 1 && *focal <= 65535))
     throw Finding{"a focal length that no EXIF number can be"};
   return header;

@@ -302,11 +302,16 @@ TEST(Gltf, PrimitivesWithTheSamePositionsShareTheirVertices) {
   EXPECT_EQ(crease.vertices.size(), 8u);
   EXPECT_THAT(crease.triangles, ElementsAre(Vector3i(0, 1, 2), Vector3i(5, 7, 6)));
   EXPECT_EQ(crease.normals[5], Vector3d(0, 0, -1));
-  // One primitive without normals leaves the mesh without.
-  const MeshContent half = primitives(R"(,"NORMAL":1)", "");
-  EXPECT_TRUE(half.normals.empty());
-  EXPECT_TRUE(primitives("", R"(,"NORMAL":1)").normals.empty());
-  EXPECT_EQ(half.vertices.size(), 4u);
+  // A primitive without normals costs its own vertices theirs, and no other's.
+  const MeshContent first = primitives(R"(,"NORMAL":1)", ""), second = primitives("", R"(,"NORMAL":1)");
+  ASSERT_EQ(first.normals.size(), 8u);
+  ASSERT_EQ(second.normals.size(), 8u);
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(first.normals[i], Vector3d(0, 0, 1));
+    EXPECT_EQ(first.normals[4 + i], Vector3d(0, 0, 0));
+    EXPECT_EQ(second.normals[i], Vector3d(0, 0, 0));
+    EXPECT_EQ(second.normals[4 + i], Vector3d(0, 0, 1));
+  }
 }
 
 TEST(Gltf, PointsAndLinesAreSkipped) {

@@ -3,9 +3,13 @@
 
 #include <gmock/gmock.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
+#include <chrono>
 #include <cmath>
 #include <locale>
+#include <set>
 
 #include "tests/core/scene/scene_fixture.h"
 #include "tests/io/mesh_texts.h"
@@ -159,9 +163,13 @@ TEST(MeshReader, NormalsOfPlyAreTakenAndNormalised) {
   const MeshContent mesh = parsed(plyTextWithNormals());
   ASSERT_EQ(mesh.normals.size(), 4u);
   for (const Vector3d& n : mesh.normals) EXPECT_EQ(n, Vector3d(0, 0, 1));
-  // Without one at a triangle's vertex there are none; one that is missing at a vertex of no triangle is no loss.
+  // One that is missing costs its vertex, and no other.
   for (const char* bad : {"0 0 0", "nan 0 1", "inf 0 0"}) {
-    EXPECT_TRUE(parsed(with(plyTextWithNormals(), "1 1 0 0 0 1 0", std::string("1 1 0 ") + bad + " 0")).normals.empty()) << bad;
+    const MeshContent one = parsed(with(plyTextWithNormals(), "1 1 0 0 0 1 0", std::string("1 1 0 ") + bad + " 0"));
+    ASSERT_EQ(one.normals.size(), 4u) << bad;
+    int zero = 0;
+    for (const Vector3d& n : one.normals) zero += n == Vector3d(0, 0, 0);
+    EXPECT_EQ(zero, 1) << bad;
     const std::string lonely =
         with(with(plyTextWithNormals(), "vertex 4", "vertex 5"), "\n4 0 1 2 3", "\n5 5 5 " + std::string(bad) + " 0\n4 0 1 2 3");
     EXPECT_EQ(parsed(lonely).normals.size(), 5u) << bad;
@@ -172,6 +180,155 @@ TEST(MeshReader, NormalsOfPlyAreTakenAndNormalised) {
 TEST(MeshReader, PolygonsBecomeFans) {
   const MeshContent mesh = parsed("v 0 0 0\nv 1 0 0\nv 2 1 0\nv 1 2 0\nv 0 1 0\nf 3 4 5 1 2\n");
   EXPECT_THAT(mesh.triangles, ElementsAre(Vector3i(2, 3, 4), Vector3i(2, 4, 0), Vector3i(2, 0, 1)));
+}
+
+/// Twice the signed area of a triangle of a flat mesh, seen from above.
+double areaFromAbove(const MeshContent& mesh, const Vector3i& t) {
+  const auto at = [&](int k) -> const Vector3d& { return mesh.vertices[std::size_t(t[k])]; };
+  return (at(1) - at(0)).cross(at(2) - at(0)).z();
+}
+
+/// How often triangles of a flat mesh cover a place.
+int coversOf(const MeshContent& mesh, const Vector3d& place) {
+  int covers = 0;
+  for (const Vector3i& t : mesh.triangles) {
+    bool inside = true;
+    for (int k = 0; k < 3; ++k) {
+      const Vector3d &a = mesh.vertices[std::size_t(t[k])], &b = mesh.vertices[std::size_t(t[(k + 1) % 3])];
+      inside = inside && (b - a).cross(place - a).z() > 0;
+    }
+    covers += inside;
+  }
+  return covers;
+}
+
+/// Whether a polygon surrounds a place, by the crossings of its outline with a line to the right.
+bool surrounds(const std::vector<std::array<double, 2>>& outline, const Vector3d& place) {
+  bool inside = false;
+  for (std::size_t i = 0, j = outline.size() - 1; i < outline.size(); j = i++) {
+    const auto &a = outline[i], &b = outline[j];
+    if ((a[1] > place.y()) != (b[1] > place.y()) && place.x() < (b[0] - a[0]) * (place.y() - a[1]) / (b[1] - a[1]) + a[0])
+      inside = !inside;
+  }
+  return inside;
+}
+
+TEST(MeshReader, ConcavePolygonsAreCutInsideThemselves) {
+  using Outline = std::vector<std::array<double, 2>>;
+  Outline star, spiral;
+  for (int i = 0; i < 20; ++i)
+    star.push_back({(i % 2 ? 1 : 2.5) * std::cos(i * 0.1 * M_PI), (i % 2 ? 1 : 2.5) * std::sin(i * 0.1 * M_PI)});
+  for (int i = 0; i <= 30; ++i) spiral.push_back({(1 + 0.05 * i) * std::cos(0.3 * i), (1 + 0.05 * i) * std::sin(0.3 * i)});
+  for (int i = 30; i >= 0; --i) spiral.push_back({(0.9 + 0.05 * i) * std::cos(0.3 * i), (0.9 + 0.05 * i) * std::sin(0.3 * i)});
+  const std::vector<Outline> outlines = {
+      {{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}},                                  // an L
+      {{0, 0}, {2, -1}, {0.5, 0}, {2, 1}},                                               // an arrow
+      {{0, 0}, {3, 0}, {3, 3}, {0, 3}, {0, 0}, {1, 1}, {1, 2}, {2, 2}, {2, 1}, {1, 1}},  // a hole
+      star,
+      spiral};
+  for (const Outline& outline : outlines)
+    for (std::size_t first = 0; first < outline.size(); ++first)
+      for (const bool ply : {false, true}) {
+        std::string points, face;
+        for (std::size_t i = 0; i < outline.size(); ++i) {
+          const auto& p = outline[(first + i) % outline.size()];
+          points += (ply ? "" : "v ") + std::to_string(p[0]) + " " + std::to_string(p[1]) + " 0\n";
+          face += " " + std::to_string(ply ? i : i + 1);
+        }
+        const std::string n = std::to_string(outline.size());
+        const MeshContent mesh = ply ? parsed("ply\nformat ascii 1.0\nelement vertex " + n +
+                                              "\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty "
+                                              "list uchar int vertex_indices\nend_header\n" +
+                                              points + n + face + "\n")
+                                     : parsed("f" + face + "\n" + points);
+        ASSERT_EQ(mesh.triangles.size(), outline.size() - 2);
+        for (const Vector3i& t : mesh.triangles) EXPECT_GE(areaFromAbove(mesh, t), -1e-9);
+        for (double x = -2.963; x < 3; x += 0.31)
+          for (double y = -2.957; y < 3; y += 0.31)
+            EXPECT_EQ(coversOf(mesh, {x, y, 0}), int(surrounds(outline, {x, y, 0})))
+                << n << " corners from " << first << ", " << x << " " << y;
+      }
+}
+
+TEST(MeshReader, CornersKeepTheirNormalsWhenAPolygonIsCut) {
+  std::string text = "v 2 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\nv 0 0 0\nv 2 0 0\n";
+  for (int i = 1; i <= 6; ++i) text += "vn 0 " + std::to_string(i) + " 1\n";
+  const MeshContent mesh = parsed(text + "f 1//1 2//2 3//3 4//4 5//5 6//6\n");
+  ASSERT_EQ(mesh.normals.size(), 6u);
+  for (int i = 0; i < 6; ++i) EXPECT_EQ(mesh.normals[std::size_t(i)], Vector3d(0, i + 1, 1).normalized());
+}
+
+TEST(MeshReader, PolygonsWithoutAreaAndCrossingOutlinesKeepAllTheirCorners) {
+  for (const char* points : {"v 0 0 0\nv 1 0 0\nv 2 0 0\nv 3 0 0\nv 4 0 0\n", "v 1 1 1\nv 1 1 1\nv 1 1 1\nv 1 1 1\nv 1 1 1\n",
+                             "v 0 0 0\nv 1 1 0\nv 1 0 0\nv 0 1 0\nv -1 -3 0\n"}) {
+    const MeshContent mesh = parsed(std::string(points) + "f 1 2 3 4 5\n");
+    std::set<int> used;
+    for (const Vector3i& t : mesh.triangles) used.insert(t.begin(), t.end());
+    EXPECT_EQ(mesh.triangles.size(), 3u);
+    EXPECT_EQ(used.size(), 5u) << points;
+  }
+}
+
+TEST(MeshReader, HugeConcavePolygonsAreRefusedInSeconds) {
+  // A comb of 150,000 teeth, whose tips come so that hardly a corner is an ear.
+  std::string points, face = "f";
+  const int teeth = 150000;
+  for (int i = 0; i < teeth; ++i) {
+    const double angle = 2 * M_PI * i / teeth, radius = i % 2 ? 1 : 1.0001 + 0.5 * (i % 7);
+    points += "v " + std::to_string(radius * std::cos(angle)) + " " + std::to_string(radius * std::sin(angle)) + " 0\n";
+    face += " " + std::to_string(i + 1);
+  }
+  const auto begun = std::chrono::steady_clock::now();
+  try {
+    parsed(points + face + "\n");
+  } catch (const InputError& e) {
+    EXPECT_THAT(e.what(), HasSubstr("cut the mesh into triangles"));
+  }
+  EXPECT_LT(std::chrono::steady_clock::now() - begun, std::chrono::seconds(120));
+}
+
+TEST(MeshReader, VerticesThatNoFaceUsesMayBeNaN) {
+  for (const char* bad : {"nan nan nan", "1 inf 0", "1e31 0 0"}) {
+    const std::string ply = with(with(plyTextWithNormals(), "vertex 4", "vertex 5"), "end_header\n",
+                                 std::string("end_header\n") + bad + " 0 0 1 255\n");
+    // The vertices move on by one: so do the numbers of the face.
+    const MeshContent mesh = parsed(with(ply, "\n4 0 1 2 3", "\n4 1 2 3 4"));
+    EXPECT_EQ(mesh.vertices.size(), 4u);
+    expectSquare(mesh, bad);
+    const MeshContent obj = parsed(std::string("v ") + bad + "\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nf 2//1 3//1 4//1\n");
+    EXPECT_THAT(obj.triangles, ElementsAre(Vector3i(0, 1, 2)));
+    EXPECT_EQ(obj.normals.size(), 3u);
+    try {
+      parsed(std::string("v 0 0 0\nv 1 0 0\nv ") + bad + "\nf 1 2 3\n");
+      ADD_FAILURE() << bad;
+    } catch (const InputError& e) {
+      EXPECT_THAT(e.what(), HasSubstr("line 3, vertex 2: is "));
+    }
+  }
+}
+
+TEST(MeshReader, TriangleStripsOfPly) {
+  const std::string head =
+      "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\nproperty float z\nelement tristrips "
+      "1\nproperty list int int "
+      "vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 2 0\n1 2 0\n";
+  // Each strip begins with the winding of its first triangle; corners that stand twice make no triangle.
+  const MeshContent mesh = parsed(head + "10 0 1 2 3 -1 2 3 4 4 5\n");
+  EXPECT_THAT(mesh.triangles, ElementsAre(Vector3i(0, 1, 2), Vector3i(2, 1, 3), Vector3i(2, 3, 4)));
+  const MeshContent whole = parsed(head + "6 0 1 2 3 4 5\n");
+  ASSERT_EQ(whole.triangles.size(), 4u);
+  for (const Vector3i& t : whole.triangles) EXPECT_GT(areaFromAbove(whole, t), 0);
+  EXPECT_THROW(parsed(head + "3 0 1 6\n"), InputError);
+  EXPECT_THROW(parsed(head + "3 0 1 -2\n"), InputError);
+  EXPECT_THROW(parsed(head + "4 0 -1 1 2\n"), InputError);  // no triangle
+}
+
+TEST(MeshReader, TextStlBeginsWithBlanksOrCapitals) {
+  std::string capitals = stlText();
+  std::transform(capitals.begin(), capitals.end(), capitals.begin(), [](unsigned char c) { return std::toupper(c); });
+  for (const std::string& text :
+       {" " + stlText(), "\n\r\n\t " + stlText(), capitals, "  " + capitals, "\xef\xbb\xbf" + stlText()})
+    expectSquare(parsed(text), text.substr(0, 20).c_str());
 }
 
 TEST(MeshReader, NormalsOfObj) {
@@ -186,8 +343,13 @@ TEST(MeshReader, NormalsOfObj) {
   EXPECT_THAT(crease.triangles, ElementsAre(Vector3i(0, 1, 2), Vector3i(4, 5, 3), Vector3i(5, 4, 6)));
   EXPECT_EQ(crease.vertices[4], crease.vertices[0]);
   EXPECT_EQ(crease.normals[4], Vector3d(1, 0, 0));
-  // A corner without a normal leaves the mesh without.
-  EXPECT_TRUE(parsed(points + "f 1//1 2//1 3\n").normals.empty());
+  // A corner without a normal costs its vertex, and no other; it may have one elsewhere.
+  const MeshContent half = parsed(points + "f 1//1 2//1 3\nf 2 1 4//2\n");
+  ASSERT_EQ(half.normals.size(), 4u);
+  EXPECT_EQ(half.normals[1], Vector3d(0, 0, 1));
+  EXPECT_EQ(half.normals[2], Vector3d(0, 0, 0));
+  EXPECT_EQ(half.normals[3], Vector3d(1, 0, 0));
+  EXPECT_TRUE(parsed(points + "f 1 2 3\n").normals.empty());
   // A face may name what comes later in the file.
   EXPECT_EQ(parsed("f 1//1 2//1 3//1\n" + points).triangles.size(), 1u);
 }
@@ -277,7 +439,7 @@ TEST(MeshReader, DamageIsNamedWithItsPlace) {
       {with(obj, "f -4//-1", "f"), "line 12: a face needs three vertices"},
       {with(obj, "v 1 1 0", "v 1 1"), "line 6: a vertex needs three numbers"},
       {with(obj, "v 1 1 0", "v 1 1 0 red"), "line 6: 'red' is not a number"},
-      {with(obj, "v 1 1 0", "v 1 inf 0"), "line 6: a vertex is not finite"},
+      {with(obj, "v 1 1 0", "v 1 inf 0"), "line 6, vertex 2: is not finite"},
       {"v 1 2 3\n", "as OBJ it has no faces"},
       {with(stl, "vertex 1 1 0", "vertex 1 1"), "line 6: a vertex needs three numbers"},
       {with(stl, "vertex 1 1 0", "vertex 1 1 0 0"), "line 6: unexpected '0' after a vertex"},

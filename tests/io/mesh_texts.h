@@ -114,7 +114,7 @@ inline std::string brokenPromise(const MeshContent& mesh) {
   for (const Eigen::Vector3d& v : mesh.vertices)
     if (!v.allFinite() || !(v.cwiseAbs().maxCoeff() <= 1e30)) return "a vertex that is not finite";
   for (const Eigen::Vector3d& n : mesh.normals)
-    if (!(std::abs(n.norm() - 1) <= 1e-12)) return "a normal that is not of length 1";
+    if (!n.isZero(0) && !(std::abs(n.norm() - 1) <= 1e-12)) return "a normal that is neither of length 1 nor zero";
   const int count = static_cast<int>(mesh.vertices.size());
   for (const Eigen::Vector3i& t : mesh.triangles)
     if (t.minCoeff() < 0 || t.maxCoeff() >= count) return "a corner out of range";

@@ -9,12 +9,15 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 
+#include "core/base/atomic_file.h"
+#include "core/base/limits.h"
 #include "tests/core/scene/scene_fixture.h"
 
 namespace glint {
 namespace {
 using namespace testing_support;
 using testing::HasSubstr;
+using testing::Not;
 
 /// Smooth colours with some noise, so that every coder has something to do.
 cv::Mat ramp(int type, double largest) {
@@ -173,6 +176,69 @@ TEST(ImageHeader, WhatIsNoImageIsSaid) {
   EXPECT_THAT(readImageHeader("P7\nWIDTH 4\n").problem, HasSubstr("not a supported image"));
   for (const char* start : {"\x89PNG\r\n\x1a\n", "\xff\xd8", "BM", "P6\n", "#?RADIANCE\n", "II*"})
     EXPECT_NE(readImageHeader(start).problem, "") << start;
+}
+
+std::string corpus(const char* name) {
+  return readFile(std::filesystem::path(GLINT_SOURCE_DIR) / "tests/fuzz/corpus/image" / name, Limit::ImageMegabytes);
+}
+
+/// Files written byte by byte after their specifications, 7 x 5 px, whose value is 1000 channel + 100 row + 10 column.
+TEST(ImageDecode, KindsThatOpenCvCannotRead) {
+  struct Case {
+    const char* name;
+    int type;
+    double factor;
+  };
+  for (const Case& c : {Case{"planar16.tiff", CV_16UC3, 1}, Case{"planar_float.tiff", CV_32FC3, 1},
+                        Case{"half.tiff", CV_32FC3, 1}, Case{"big16.tiff", CV_16UC3, 1}, Case{"big_grey.tiff", CV_8UC1, 0.1},
+                        Case{"layers.exr", CV_32FC3, 1}, Case{"depth_v.exr", CV_32FC1, 1}}) {
+    const Outcome<cv::Mat> read = decoded(corpus(c.name));
+    ASSERT_TRUE(read) << c.name << ": " << read.failure().message();
+    ASSERT_EQ(read->type(), c.type) << c.name;
+    ASSERT_EQ(read->size(), cv::Size(7, 5)) << c.name;
+    cv::Mat expected(5, 7, CV_MAKETYPE(CV_64F, read->channels())), found;
+    for (int y = 0; y < 5; ++y)
+      for (int x = 0; x < expected.cols * expected.channels(); ++x)
+        expected.ptr<double>(y)[x] = c.factor * (1000 * (x % expected.channels()) + 100 * y + 10 * (x / expected.channels()));
+    read->convertTo(found, CV_64F);
+    EXPECT_LE(cv::norm(found, expected, cv::NORM_INF), 0.5 * (std::string_view(c.name) == "half.tiff"))
+        << c.name;  // halves step by 1 up to 2048
+  }
+}
+
+TEST(ImageDecode, AnExrFileWithoutColoursOrDepthNamesItsChannels) {
+  const Outcome<cv::Mat> read = decoded(corpus("normals.exr"));
+  ASSERT_FALSE(read);
+  EXPECT_THAT(read.failure().message(), HasSubstr("the EXR has the channels Normal.W, Normal.X, Normal.Y2; needed are"));
+}
+
+TEST(ImageDecode, ACutFileIsRefused) {
+  for (const char* name : {"planar16.tiff", "half.tiff", "big16.tiff", "layers.exr", "depth_v.exr"}) {
+    const std::string whole = corpus(name);
+    for (std::size_t size = 0; size + 1 < whole.size(); size += 13)
+      EXPECT_FALSE(decoded(whole.substr(0, size))) << name << " " << size;
+  }
+}
+
+TEST(ImageHeader, RawFilesOfCamerasAreNamed) {
+  using namespace std::string_literals;
+  const auto tiff = [](const std::string& entries, char count) {
+    return "II*\0\x08\0\0\0"s + count + "\0"s + entries + "\0\0\0\0"s + std::string(64, '\0');
+  };
+  const std::string mosaic = "\x06\x01\x03\0\x01\0\0\0\x23\x80\0\0"s, dng = "\x12\xc6\x01\0\x04\0\0\0\x01\x04\0\0"s,
+                    preview = "\xfe\0\x04\0\x01\0\0\0\x01\0\0\0"s, make = "\x0f\x01\x02\0\x06\0\0\0\x40\0\0\0"s,
+                    parts = "\x4a\x01\x04\0\x02\0\0\0\x40\0\0\0"s;
+  const std::vector<std::string> files{tiff(mosaic, 1),
+                                       tiff(dng, 1),
+                                       tiff(preview + make + parts, 3),
+                                       "II*\0\x10\0\0\0CR\2\0"s,
+                                       "FUJIFILMCCD-RAW 0201"s,
+                                       "IIRO\x08\0\0\0"s,
+                                       "IIU\0\x08\0\0\0"s,
+                                       "\0\0\0\x18"
+                                       "ftypcrx \0\0\0\1"s};
+  for (const std::string& file : files) EXPECT_THAT(readImageHeader(file).problem, HasSubstr("a raw file of a camera"));
+  EXPECT_THAT(readImageHeader(tiff(preview, 1)).problem, Not(HasSubstr("raw")));
 }
 
 }  // namespace

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+// Internal to libglint-codecs: kinds of files that OpenCV cannot read, by the libraries that it reads the others with.
+
+#include <optional>
+#include <string>
+
+namespace cv {
+class Mat;
+}
+
+namespace glint {
+
+/// BigTIFF; TIFF with half floats, with an orientation of a quarter turn (not applied, while OpenCV does), or with more than 8 bits in separate planes, of which OpenCV 4.6 makes three narrow pictures.
+/// @param reason  takes why a file of this kind is refused; the picture is then empty
+/// @return blue first, 1 or 3 channels, half floats as floats; nothing: a file for OpenCV
+/// @throws std::runtime_error  damaged data
+std::optional<cv::Mat> decodeTiff(const std::string& bytes, std::string& reason);
+
+/// EXR files whose channels all belong to layers: the one layer with R, G and B (the one named Combined, where there are several), else the
+/// one channel that is depth (Z or V) or luminance (Y).
+/// @param reason, return  as above; floats. Of several parts, the first
+/// @throws std::exception  damaged data
+std::optional<cv::Mat> decodeExrLayer(const std::string& bytes, std::string& reason);
+
+}  // namespace glint
