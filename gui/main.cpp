@@ -88,6 +88,11 @@ void printProblems(const glint::gui::MainWindow& window) {
                    [](const QString& line) { glint::gui::printErrorLine(line.toStdString()); });
 }
 
+/// A picture looks the same for everybody, a window as its user left it.
+glint::gui::Theme themeOfStart(const glint::gui::CommandLine& command) {
+  return command.theme.value_or(command.screenshot.isEmpty() ? glint::gui::keptTheme() : glint::gui::Theme::Dark);
+}
+
 bool starting = true;  ///< What Qt cannot do until its first window is the user's business, and no fault of the program.
 
 int run(int argc, char** argv) {
@@ -122,18 +127,15 @@ int run(int argc, char** argv) {
   QApplication app(qtArgc, argv);
   starting = false;
   display.reset();  // Qt has its own
-  // Qt has taken over the user's locale for the whole process. Numbers have a point here, also those that libraries read and
-  // write.
+  // Qt has taken over the user's locale for the whole process; also what libraries read and write has a point in numbers.
   std::setlocale(LC_NUMERIC, "C");
   QApplication::setOrganizationName(QStringLiteral("Glint"));
   QApplication::setApplicationName(QStringLiteral("glint-inspector"));
   QApplication::setApplicationVersion(QStringLiteral(GLINT_VERSION));
   QLocale::setDefault(QLocale::c());  // numbers have a point everywhere
   installInputRules(app);
-  // A picture looks the same for everybody.
-  const Theme theme = command.theme.value_or(command.screenshot.isEmpty() ? keptTheme() : Theme::Dark);
+  const Theme theme = themeOfStart(command);
   applyTheme(app, theme);
-
   MainWindow window(coreEngine());
   if (command.run == QStringList{QStringLiteral("list")}) return printActions(window);
   if (!command.run.isEmpty() && command.screenshot.isEmpty()) printProblems(window);  // a script may be waiting for it

@@ -60,6 +60,20 @@ Relinked withFoldersOf(Relinked instead, const Recovery& recovery, const Session
   if (!session.request.truthFolder.empty()) instead.folders.emplace_back(session.request.truthFolder);
   return instead;
 }
+
+/// A scene file or a capture, which says nothing about what was on screen.
+void openScene(Opened& opened, const std::string& path, const Relinked& instead) {
+  ReadOptions options;
+  options.meshes = instead.meshes;
+  options.meshFolders = instead.meshFolders;
+  options.folders = instead.folders;
+  options.choices = instead.choices;
+  opened.scene = std::make_shared<const Scene>(readScene(path, options));
+  // A short scene opens too: the default would ask for more frames than there are.
+  if (const int frames = int(opened.scene->frames.size()); frames < kDefaultTraining)
+    opened.request.train = "first:" + std::to_string(frames);
+  opened.selection.frame = firstHeldOut(*opened.scene, opened.request);
+}
 }  // namespace
 
 Opened openInput(const std::string& path, const Relinked& instead) {
@@ -70,16 +84,7 @@ Opened openInput(const std::string& path, const Relinked& instead) {
   const fs::path session = sessionAt(path);
   const std::string inside = fs::path(path).extension() == ".png" ? sessionInFigure(exactQString(path)).toStdString() : "";
   if (session.empty() && inside.empty()) {
-    ReadOptions options;
-    options.meshes = instead.meshes;
-    options.meshFolders = instead.meshFolders;
-    options.folders = instead.folders;
-    options.choices = instead.choices;
-    opened.scene = std::make_shared<const Scene>(readScene(path, options));
-    // A short scene opens too: the default would ask for more frames than there are.
-    const int frames = int(opened.scene->frames.size());
-    if (frames < kDefaultTraining) opened.request.train = "first:" + std::to_string(frames);
-    opened.selection.frame = firstHeldOut(*opened.scene, opened.request);
+    openScene(opened, path, instead);
     return opened;
   }
   if (!session.empty()) removeAbandonedTemporaries(session.parent_path());  // of a program that was killed while it saved

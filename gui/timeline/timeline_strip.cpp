@@ -467,7 +467,7 @@ QString TimelineStrip::lightTip(int row, int frame) const {
 
 QString TimelineStrip::toolTip(int frame) const {
   const Frame& f = document_.scene()->frames[std::size_t(frame)];
-  QString text = tr("Frame %1, %2 (Ctrl+click or the menu changes that)").arg(nameText(f.id), roleName(document_.role(frame)));
+  QString text = tr("Frame %1, %2").arg(nameText(f.id), roleName(document_.role(frame)));
   if (unreadable_.contains(frame)) text += tr("\nno photograph: %1").arg(unreadable_.value(frame));
   if (!data_.lights.empty()) {
     std::vector<std::string> on;
@@ -485,6 +485,7 @@ QString TimelineStrip::toolTip(int frame) const {
     if (const std::string& spurious = series.spuriousWords[std::size_t(frame)]; !spurious.empty())
       text += (series.reason[std::size_t(frame)].empty() && !pct ? QString() : QStringLiteral("; ")) + toQString(spurious);
   }
+  text += tr("\nCtrl+click gives the next role");
   return text;
 }
 

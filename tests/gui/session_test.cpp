@@ -50,8 +50,7 @@ class SessionTest : public QObject {
   /// What a model predicts is seen at once, unless a session remembers another frame.
   void aHeldOutFrameIsShownFirst() {
     const QTemporaryDir copy;  // what is written beside a session is not to lie in the sources
-    std::filesystem::copy(GLINT_SOURCE_DIR "/sessions/vase", copy.path().toStdString(),
-                          std::filesystem::copy_options::recursive);
+    std::filesystem::copy(GLINT_SOURCE_DIR "/sessions/vase", copy.path().toStdString(), std::filesystem::copy_options::recursive);
     Opened opened = openInput(copy.filePath(QStringLiteral("scene.json")).toStdString(), {});
     const std::vector<int> train = parseTrainSpec(opened.request.train, *opened.scene).frames;
     QCOMPARE(opened.selection.frame, int(train.size()));  // "first:6"
