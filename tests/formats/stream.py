@@ -74,14 +74,14 @@ def main():
 
     wrong = [(b"{\"id\": \"7\", \"camera_from_world\": 5}\n", "7", "camera_from_world"), (b"{\"id\": \n", None, "not valid JSON"),
              (b"1 2 3\n", None, "8 numbers"), (b"\xff\xfe\x00{}\n", None, "standard input: line"),
-             (json.dumps(dict(pose, camera_from_world=[[float("nan")] * 4] * 4)).encode() + b"\n", "live", "finite"),
              (b"{" + b" " * 70000 + b"}\n", None, "longer than"), (b"[" * 60000 + b"\n", None, "line"),
              (b"{\"a\":" * 9000 + b"\n", None, "nested deeper"), (json.dumps(dict(pose, id="x\x1b[31m")).encode() + b"\n", None, "control")]
     for line, known, reason in wrong:
         answer = ask(process, line)
         check(answer["status"] == "error" and answer["id"] == known and reason in answer["reason"] and answer["line"] > 0 and
               not answer["highlights"], "%s: %s" % (line[:40], answer))
-    for line in (b"3.5 nan nan nan nan nan nan nan\n", json.dumps(dict(pose, camera_from_world=None)).encode() + b"\n"):
+    for line in (b"3.5 nan nan nan nan nan nan nan\n", json.dumps(dict(pose, camera_from_world=None)).encode() + b"\n",
+                 json.dumps(dict(pose, camera_from_world=[[float("nan")] * 4] * 4)).encode() + b"\n"):
         answer = ask(process, line)
         check(answer["status"] == "failed" and "tracking was lost" in answer["reason"], "lost: %s" % answer)
     check(ask(process, pose)["status"] == "ok", "the stream goes on")

@@ -16,21 +16,18 @@ DEFAULT_KINDS = {"ELLIPSOIDS", "LIGHTS", "PLANES", "CONTOURS", "MATERIAL"}
 NO_HIGHLIGHT = 3  # exit code: the data cannot answer
 
 
-def absolute(path, what):
-    """A path of the panel, absolute; InputError else. It is stored in the .blend file, whose author must not be able to write an option there."""
+def absolute(path):
+    """A path of the panel, absolute: it is stored in the .blend file, whose author must not be able to write an option of `glint` there."""
     if path.startswith("//") and not bpy.data.filepath:
         raise InputError(path, "", "is relative to the .blend file, which is not saved yet")
-    found = bpy.path.abspath(path)
-    if not os.path.isabs(found):
-        raise InputError(what, path, "must be an absolute path, or begin with // for the folder of the .blend file")
-    return found
+    return os.path.abspath(bpy.path.abspath(path))
 
 
 def folder_of(settings):
     """The folder of the run, absolute; InputError where the user has not said one."""
     if not settings.folder:
         raise InputError("folder", "", "choose the folder of the run")
-    path = absolute(settings.folder, "folder")
+    path = absolute(settings.folder)
     try:
         os.makedirs(path, exist_ok=True)
     except OSError as e:
@@ -121,7 +118,7 @@ class GLINT_OT_run(bpy.types.Operator):
         if settings.origin == "BLENDER":
             path, warnings = export_for_run(context, folder)
         else:
-            path = absolute(settings.input, "scene")
+            path = absolute(settings.input)
         self.folder, self.scene_path = folder, path
         if found is None:
             models, values = asked_of(settings)
