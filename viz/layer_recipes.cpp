@@ -80,11 +80,10 @@ std::vector<std::string> addPluginLayers() {
 const std::vector<LayerRecipe>& layerRecipes() { return registered(); }
 
 const std::vector<Layer>& sceneLayers() {
-  static const std::vector<Layer> layers = [] {
-    std::vector<Layer> result;
-    for (const LayerRecipe& recipe : layerRecipes()) result.push_back(recipe.layer);
-    return result;
-  }();
+  // The pages of a command line ask before its plugins are loaded, too; nothing is added after a program's start.
+  static std::vector<Layer> layers;
+  const std::vector<LayerRecipe>& recipes = layerRecipes();
+  for (std::size_t i = layers.size(); i < recipes.size(); ++i) layers.push_back(recipes[i].layer);
   return layers;
 }
 

@@ -5,6 +5,7 @@ import os
 import shutil
 import stat
 import sys
+import tempfile
 import time
 import unittest
 
