@@ -20,7 +20,8 @@ std::optional<cv::Mat> decodeTiff(const std::string& bytes, std::string& reason)
 
 /// EXR files whose channels all belong to layers: the one layer with R, G and B (the one named Combined, where there are several), else the
 /// one channel that is depth (Z or V) or luminance (Y).
-/// @param reason, return  as above; floats. Of several parts, the first
+/// @param reason  as above
+/// @return floats of the first part, blue first, 1 or 3 channels; nothing: a file for OpenCV
 /// @throws std::exception  damaged data
 std::optional<cv::Mat> decodeExrLayer(const std::string& bytes, std::string& reason);
 

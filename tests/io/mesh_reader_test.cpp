@@ -11,6 +11,7 @@
 #include <locale>
 #include <set>
 
+#include "core/base/shortest_text.h"
 #include "tests/core/scene/scene_fixture.h"
 #include "tests/io/mesh_texts.h"
 
@@ -232,7 +233,7 @@ TEST(MeshReader, ConcavePolygonsAreCutInsideThemselves) {
         std::string points, face;
         for (std::size_t i = 0; i < outline.size(); ++i) {
           const auto& p = outline[(first + i) % outline.size()];
-          points += (ply ? "" : "v ") + std::to_string(p[0]) + " " + std::to_string(p[1]) + " 0\n";
+          points += (ply ? "" : "v ") + shortestText(p[0]) + " " + shortestText(p[1]) + " 0\n";
           face += " " + std::to_string(ply ? i : i + 1);
         }
         const std::string n = std::to_string(outline.size());
@@ -275,7 +276,7 @@ TEST(MeshReader, HugeConcavePolygonsAreRefusedInSeconds) {
   const int teeth = 150000;
   for (int i = 0; i < teeth; ++i) {
     const double angle = 2 * M_PI * i / teeth, radius = i % 2 ? 1 : 1.0001 + 0.5 * (i % 7);
-    points += "v " + std::to_string(radius * std::cos(angle)) + " " + std::to_string(radius * std::sin(angle)) + " 0\n";
+    points += "v " + shortestText(radius * std::cos(angle)) + " " + shortestText(radius * std::sin(angle)) + " 0\n";
     face += " " + std::to_string(i + 1);
   }
   const auto begun = std::chrono::steady_clock::now();
