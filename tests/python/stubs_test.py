@@ -85,6 +85,7 @@ def made(package):
     sys.path.insert(0, package)
     text = mended(text).replace("glint._glint.", "")
     text = re.sub(r"^from typing import .*\n", "", text, flags=re.M)
+    text = re.sub(r"^ *def __reduce(_ex)?__\(.*\n", "", text, flags=re.M)  # they refuse what object promises: that is no other signature
     text = re.sub(r"\b(\w+)\[(\d+)\]", r"List[\1]", text)  # a C++ array of two numbers
     text = re.sub(r": ClassVar\[str\] = \.\.\.", ": str", text)  # of exceptions: every instance has its own
     text = text.replace("\nclass ", "\n__version__: str\n\nclass ", 1)
