@@ -33,7 +33,6 @@ Command tradeoffCommand() {
   struct Arguments : InspectionArguments {
     std::string budget, maxError, json, html, out, work, shard;
     int repeats = 5, maxTrials = SearchOptions{}.maxTrials;
-    bool keepSession = false;
   };
   const auto a = std::make_shared<Arguments>();
   Command c;
@@ -44,12 +43,12 @@ Command tradeoffCommand() {
       "rest on all frames. Prints error, time per frame, fit time and memory of each, marks those that no other beats in both\n"
       "error and time, and chooses one: the most accurate within --budget-us, the fastest within --max-error-pct, else the\n"
       "balanced preset. Unfinished work is kept in FILE.work beside the first output file; the same command resumes from it.\n"
-      "If INPUT is a session, the result is stored in it for the inspector and --preset (except with --keep-session).";
+      "The session that -o writes has the result, too: for the inspector and --preset. INPUT stays as it is.";
   c.examples =
       "  glint tradeoff scene.json --html tradeoff.html\n"
       "  glint tradeoff scene.json --budget-us 100 -o fast.glint   a session with the chosen settings\n"
       "  glint tradeoff run.glint --max-error-pct 0.5 --json -\n"
-      "  glint evaluate run.glint --preset fast\n"
+      "  glint evaluate fast.glint --preset fast\n"
       "  glint tradeoff scene.json --shard 3/20 --json part-3.json\n";
   c.declare = [a](Options& o) {
     a->declare(o, "Models to compare (default: the session's, else all)");
@@ -63,7 +62,6 @@ Command tradeoffCommand() {
     o.option(a->maxTrials, "--max-trials", "N", "Maximum number of settings tried on a few frames");
     o.option(a->shard, "--shard", "i/n",
              "Measure every n-th of a fixed list of settings, from the i-th on; --json FILE is a part for `glint merge`");
-    o.flag(a->keepSession, "--keep-session", "Do not store the result in the session INPUT");
   };
   c.run = [a](const Context& context) -> int {
     if (a->models == "auto")
@@ -125,12 +123,6 @@ Command tradeoffCommand() {
       session.tradeoff = t;
       writeSession(session, a->out);
       context.wrote(a->out);
-    }
-    if (isSession && !a->keepSession) {
-      Session session = readSession(a->input);
-      session.tradeoff = t;
-      writeSession(session, a->input);
-      context.wrote(a->input);
     }
     std::error_code ignored;
     if (!options.workFile.empty()) std::filesystem::remove(options.workFile, ignored);

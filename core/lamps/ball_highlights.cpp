@@ -40,6 +40,9 @@ constexpr double kShapeShare =
 constexpr double kLeastPeakSigmaPx = 0.05;
 constexpr int kCropMargin = 8;  // px around a core
 
+constexpr std::size_t kInOneOf = 4;  // photographs a still reflection may be missing: hidden, or under a shadow
+constexpr int kStillMargin = 2;      // px around a still reflection: what smoothing and a JPEG make of its edge
+
 /// Something bright: its deepest place inside, and how deep that is.
 struct Candidate {
   int label = 0;
@@ -66,7 +69,8 @@ struct Core {
 
 double lightOfCode(double code) { return linearFromSrgb(std::clamp(code / 255, 0.0, 1.0)); }
 
-BallView lookAt(const Image& photograph, const Eigen::Vector2d& corner, const BallOutline& ball) {
+BallView lookAt(const Image& photograph, const Eigen::Vector2d& corner, const BallOutline& ball,
+                const StillReflections& still = {}) {
   const Eigen::Vector2d centre = ball.centre - corner;
   const auto within = [](double v, int size) { return static_cast<int>(std::clamp(v, 0.0, static_cast<double>(size))); };
   const int x0 = within(std::floor(centre.x() - ball.radius), photograph.width),
@@ -87,7 +91,7 @@ BallView lookAt(const Image& photograph, const Eigen::Vector2d& corner, const Ba
   for (int y = y0; y < y1; ++y)
     for (int x = x0; x < x1; ++x) {
       float& v = smooth.at<float>(y - y0, x - x0);
-      if ((Eigen::Vector2d(x, y) - centre).norm() < ball.radius)
+      if ((Eigen::Vector2d(x, y) - centre).norm() < ball.radius && !still.cover(Eigen::Vector2d(x, y) + corner))
         inside.push_back(v);
       else
         v = 0;
@@ -291,17 +295,73 @@ std::vector<DroppedHighlight> droppedHighlights(const BallView& view, const std:
   return result;
 }
 
+/// Whether a part of what is bright reaches a reflection that stays.
+bool touches(const BallView& view, const cv::Mat& labels, const Candidate& lamp, const StillReflections& still) {
+  if (still.mask.empty()) return false;
+  for (int y = lamp.box.y; y < lamp.box.y + lamp.box.height; ++y)
+    for (int x = lamp.box.x; x < lamp.box.x + lamp.box.width; ++x)
+      for (int side = 0; labels.at<int>(y, x) == lamp.label && side < 4; ++side)
+        if (still.cover(view.corner + Eigen::Vector2d(x + (side == 0) - (side == 1), y + (side == 2) - (side == 3)))) return true;
+  return false;
+}
+
 }  // namespace
 
+bool StillReflections::cover(const Eigen::Vector2d& place) const {
+  const int x = static_cast<int>(std::lround(place.x() - corner.x())), y = static_cast<int>(std::lround(place.y() - corner.y()));
+  return x >= 0 && y >= 0 && x < mask.width && y < mask.height && mask.at(x, y) > 0;
+}
+
+StillReflections stillReflections(std::span<const Image> photographs, const Eigen::Vector2d& corner, const BallOutline& ball) {
+  StillReflections result;
+  std::vector<BallView> views;
+  std::vector<double> tops;
+  for (const Image& p : photographs) {
+    if (std::any_of(p.data.begin(), p.data.end(), [](float v) { return !std::isfinite(v); })) continue;
+    if (BallView view = lookAt(p, corner, ball); !view.values.empty()) tops.push_back(view.top), views.push_back(std::move(view));
+  }
+  if (views.size() < 2) return result;
+  cv::Mat stays(views[0].values.size(), CV_32F);  // what three of four photographs are at least as bright as
+  std::vector<float> here(views.size()), inside;
+  for (int y = 0; y < stays.rows; ++y)
+    for (int x = 0; x < stays.cols; ++x) {
+      std::transform(views.begin(), views.end(), here.begin(), [&](const BallView& v) { return v.values.at<float>(y, x); });
+      stays.at<float>(y, x) = ranked(here, here.size() / kInOneOf);
+      if (stays.at<float>(y, x) > 0) inside.push_back(stays.at<float>(y, x));
+    }
+  if (inside.empty()) return result;
+  const double usual = lightOfCode(ranked(inside, inside.size() * 3 / 4)), core = std::max(kLeastTop, kDim * upperMedian(tops));
+  cv::Mat out(stays.size(), CV_8U), labels, places, boxes;
+  for (int y = 0; y < stays.rows; ++y)
+    for (int x = 0; x < stays.cols; ++x)
+      out.at<unsigned char>(y, x) = lightOfCode(stays.at<float>(y, x)) >= kStandsOut * usual ? 255 : 0;
+  const int count = cv::connectedComponentsWithStats(out, labels, boxes, places, 8);
+  cv::Mat mask = cv::Mat::zeros(stays.size(), CV_8U);
+  for (int k = 1; k < count; ++k) {
+    double brightest = 0;
+    cv::minMaxLoc(stays, nullptr, &brightest, nullptr, nullptr, labels == k);
+    if (brightest < core || boxes.at<int>(k, cv::CC_STAT_AREA) < kLeastArea) continue;
+    mask.setTo(255, labels == k);
+    result.places.push_back(views[0].corner + Eigen::Vector2d(places.at<double>(k, 0), places.at<double>(k, 1)));
+  }
+  if (result.places.empty()) return result;
+  cv::dilate(mask, mask, {}, {-1, -1}, kStillMargin);
+  result.corner = views[0].corner;
+  result.mask = Image(mask.cols, mask.rows, 1);
+  for (int y = 0; y < mask.rows; ++y)
+    for (int x = 0; x < mask.cols; ++x) result.mask.at(x, y) = mask.at<unsigned char>(y, x);
+  return result;
+}
+
 Outcome<LampObservation> findLampHighlight(const Image& photograph, const Eigen::Vector2d& corner,
-                                           std::span<const BallOutline> balls, std::size_t which) {
+                                           std::span<const BallOutline> balls, std::size_t which, const StillReflections& still) {
   require(!photograph.empty() && (photograph.channels == 1 || photograph.channels == 3) && which < balls.size(),
           "findLampHighlight: a photograph with 1 or 3 channels, and one of the balls");
   for (const BallOutline& b : balls)
     require(b.centre.allFinite() && b.radius > 0 && std::isfinite(b.radius), "findLampHighlight: outlines with a radius above 0");
   for (const float v : photograph.data)
     if (!std::isfinite(v)) return Failure{Reason::NotFinite, "a pixel of the photograph"};
-  const BallView view = lookAt(photograph, corner, balls[which]);
+  const BallView view = lookAt(photograph, corner, balls[which], still);
   if (view.values.empty()) return Failure{Reason::OutsideImage, "the ball lies outside of its photograph"};
   if (view.top < kLeastTop || lightOfCode(view.top) < kStandsOut * lightOfCode(view.usual))
     return Failure{Reason::NoHighlight, "nothing on the ball stands out from the rest"};
@@ -309,11 +369,15 @@ Outcome<LampObservation> findLampHighlight(const Image& photograph, const Eigen:
   const cv::Mat labels = brightParts(view.values, kBright * view.top, count);
   const std::vector<Candidate> bright = candidates(view, kBright * view.top, labels, count);
   if (bright.empty()) return Failure{Reason::NoHighlight, "what stands out on the ball is smaller than four pixels"};
+  if (touches(view, labels, bright[0], still))
+    return Failure{Reason::NoHighlight, "the largest highlight, at " + placeText(bright[0].place + view.corner) +
+                                            ", touches a reflection that does not move between photographs"};
   if (const auto why = objection(view, bright, balls, which, photograph, corner)) return *why;
   LampObservation result = measurePeak(view, bright[0], view.top >= kClippedCode);
   if (!result.peak.allFinite() || !result.covariance.allFinite()) return Failure{Reason::NotFinite, "the highlight's place"};
   result.object = which;
   result.dropped = droppedHighlights(view, bright, balls, which);
+  for (const Eigen::Vector2d& place : still.places) result.dropped.push_back({place, "does not move between photographs"});
   return result;
 }
 

@@ -9,6 +9,20 @@
 
 namespace glint {
 
+/// Bright reflections on one ball that stay where they are from photograph to photograph, such as a window's: none of them is that of the lamp of each.
+struct StillReflections {
+  Image mask;                                        ///< one channel, above 0 on them and close around; empty = there are none
+  Eigen::Vector2d corner = Eigen::Vector2d::Zero();  ///< of its first pixel in the shot
+  std::vector<Eigen::Vector2d> places;               ///< their middles in the shot
+
+  /// Whether they cover this pixel of the shot.
+  bool cover(const Eigen::Vector2d& place) const;
+};
+
+/// What is bright in three of four photographs. A lamp that moves is at no place in so many.
+/// @param photographs  of one size, as for findLampHighlight(); of fewer than two there is nothing to say. @param corner,ball  as there
+StillReflections stillReflections(std::span<const Image> photographs, const Eigen::Vector2d& corner, const BallOutline& ball);
+
 /// The reflection of the lamp on a mirror ball.
 ///
 /// The lamp's image is usually clipped, and scratches, dust and the lens surround it with streaks and stars. So its place is not where the light's mean lies,
@@ -20,10 +34,12 @@ namespace glint {
 /// @param photograph  8-bit values 0 to 255 as float, 1 or 3 channels.
 /// @param corner      the place of its first pixel in the shot.
 /// @param balls       the outlines of all balls in the shot. @param which  the ball to look at.
+/// @param still       what is not looked at.
 /// @return  `frame` stays empty. The covariance has the scatter of the levels and the shape of the core, longer along a streak; it knows nothing of the outline.
 ///          NoHighlight: nothing stands out; two that are equal; the largest lies where another ball is reflected, or at the outline; Clipped: as wide as a
 ///          fifth of the ball's radius, so that the light has no single place; OutsideImage: cut by the photograph's border; NotFinite.
 Outcome<LampObservation> findLampHighlight(const Image& photograph, const Eigen::Vector2d& corner,
-                                           std::span<const BallOutline> balls, std::size_t which);
+                                           std::span<const BallOutline> balls, std::size_t which,
+                                           const StillReflections& still = {});
 
 }  // namespace glint

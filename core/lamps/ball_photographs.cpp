@@ -78,6 +78,22 @@ fs::path folderOf(const fs::path& input, const NamedBall& ball) {
   return here ? as : in;
 }
 
+/// Folders beside those that balls name, with photographs of the same names.
+std::vector<std::string> foldersLeftOut(const std::vector<fs::path>& used, const std::vector<Shot>& shots) {
+  std::set<fs::path> named, parents, found;
+  std::error_code ignored;  // what cannot be asked about is not there
+  for (const fs::path& folder : used) named.insert(fs::weakly_canonical(folder, ignored));
+  for (const fs::path& folder : named) parents.insert(folder.parent_path());
+  for (const fs::path& parent : parents)
+    for (const fs::directory_entry& entry : fs::directory_iterator(parent, ignored))
+      if (entry.is_directory(ignored) && !named.count(entry.path()) &&
+          std::any_of(shots.begin(), shots.end(), [&](const Shot& s) { return fs::exists(entry.path() / s.name, ignored); }))
+        found.insert(entry.path());
+  std::vector<std::string> names;
+  for (const fs::path& folder : found) names.push_back(folder.filename().string());
+  return names;
+}
+
 Failure unreadableShot(const fs::path& file, const std::string& reason) {
   return Failure{Reason::FrameUnreadable, file.filename().string() + ": " + reason};
 }
@@ -147,7 +163,7 @@ class ShotReader {
     for (const RefinedOutline& o : photographs.balls) found_.push_back(o.outline);
     const std::vector<Seen> seen = highlights();
     for (const Seen& s : seen) photographs.seen.insert(photographs.seen.end(), s.observations.begin(), s.observations.end());
-    if (photographs.seen.empty()) return nothingSeen(seen);
+    if (photographs.seen.empty()) return named({}, seen);
     if (!report(progress_, {"lamps", 0, 1})) throw Stopped{};
     Outcome<BallLamps> fit = fitBallLamps(photographs, outlines_ == Outlines::Fitted);
     if (!fit) return fit.failure();
@@ -167,8 +183,8 @@ class ShotReader {
   Outcome<RefinedOutline> outlineOf(std::size_t k);
   std::vector<Cutting> cuttingsForOutline(std::size_t k);
   std::vector<Seen> highlights();
+  std::vector<Seen> look();
   Seen highlightsOf(const Shot& shot);
-  Failure nothingSeen(const std::vector<Seen>& seen) const;
   PhotographLamps named(BallLamps fit, const std::vector<Seen>& seen);
 
   const BallShots& s_;
@@ -179,6 +195,7 @@ class ShotReader {
   std::optional<OutlineCamera>
       outlineCamera_;  ///< none where a lens bends outlines: its ellipse is then found from the edge points alone
   std::vector<BallOutline> found_;
+  std::vector<StillReflections> still_;  ///< of each ball
   std::vector<std::string> warnings_;
 };
 
@@ -189,7 +206,7 @@ std::vector<Cutting> ShotReader::cuttingsForOutline(std::size_t k) {
   for (const Shot& shot : s_.shots)
     if (!shot.files[k].empty()) files.push_back(shot.files[k]);
   std::vector<Cutting> cuttings;
-  std::size_t most = outlines_ == Outlines::Given ? 1 : std::min(kMostForOutline, files.size()), stride = 1;
+  std::size_t most = std::min(kMostForOutline, files.size()), stride = 1;
   std::optional<Failure> first;
   for (std::size_t i = 0; i < files.size() && cuttings.size() < most; i += cuttings.empty() ? 1 : stride) {
     if (!report(progress_, {"outlines", static_cast<int>(i), static_cast<int>(files.size())})) throw Stopped{};
@@ -228,23 +245,42 @@ Outcome<RefinedOutline> ShotReader::outlineOf(std::size_t k) {
   if (cuttings.empty())
     return Failure{Reason::FrameUnreadable, "no photograph of ball " + std::to_string(k + 1) + " can be read" +
                                                 (warnings_.empty() ? "" : "; first: " + warnings_.back())};
-  if (outlines_ == Outlines::Given) return given;
   const Eigen::Vector2d corner = cuttings.front().corner;
   std::vector<Image> images;
   for (Cutting& c : cuttings) images.push_back(std::move(c.image));
+  still_.push_back(stillReflections(images, corner, ball.outline));
+  if (outlines_ == Outlines::Given) return given;
   Outcome<RefinedOutline> refined = refineBallOutline(images, corner, ball.outline, outlineCamera_);
   if (refined) return refined;
   warnings_.push_back("the outline of ball " + std::to_string(k + 1) + " is taken as given: " + refined.failure().message());
   return given;
 }
 
-std::vector<ShotReader::Seen> ShotReader::highlights() {
+std::vector<ShotReader::Seen> ShotReader::look() {
   std::vector<Seen> seen(s_.shots.size());
   parallelFor(
       static_cast<int>(seen.size()),
       [&](int i) { seen[static_cast<std::size_t>(i)] = highlightsOf(s_.shots[static_cast<std::size_t>(i)]); }, progress_,
       "highlights");
   return seen;
+}
+
+/// Beside what stays where it is. Where nothing else is bright on a ball, every photograph may show one and the same lamp.
+std::vector<ShotReader::Seen> ShotReader::highlights() {
+  std::vector<Seen> seen = look();
+  bool again = false;
+  for (std::size_t k = 0; k < still_.size(); ++k) {
+    const bool moves = std::any_of(seen.begin(), seen.end(), [k](const Seen& s) {
+      return std::any_of(s.observations.begin(), s.observations.end(), [k](const LampObservation& o) { return o.object == k; });
+    });
+    if (!moves && !still_[k].places.empty()) still_[k] = {}, again = true;
+    for (const Eigen::Vector2d& place : still_[k].places)
+      warnings_.push_back(
+          formatted("ball %zu: the bright reflection at %.0f, %.0f does not move between photographs, so it is not "
+                    "the lamp's: what moves is taken",
+                    k + 1, place.x() - s_.balls[k].corner.x(), place.y() - s_.balls[k].corner.y()));
+  }
+  return again ? look() : seen;
 }
 
 ShotReader::Seen ShotReader::highlightsOf(const Shot& shot) {
@@ -266,7 +302,7 @@ ShotReader::Seen ShotReader::highlightsOf(const Shot& shot) {
       continue;
     }
     const Cutting part = around(*image, s_.balls[k].corner, found_[k]);
-    Outcome<LampObservation> found = findLampHighlight(part.image, part.corner, found_, k);
+    Outcome<LampObservation> found = findLampHighlight(part.image, part.corner, found_, k, still_[k]);
     if (!found) {
       failed(k, found.failure());
       continue;
@@ -276,14 +312,6 @@ ShotReader::Seen ShotReader::highlightsOf(const Shot& shot) {
     seen.observations.push_back(*std::move(found));
   }
   return seen;
-}
-
-Failure ShotReader::nothingSeen(const std::vector<Seen>& seen) const {
-  for (std::size_t i = 0; i < seen.size(); ++i)
-    if (seen[i].failure)
-      return Failure{seen[i].failure->reason,
-                     "no photograph shows a lamp; first: " + s_.shots[i].name + ": " + seen[i].failure->detail};
-  return Failure{Reason::NoHighlight, "no photograph shows a lamp"};
 }
 
 PhotographLamps ShotReader::named(BallLamps fit, const std::vector<Seen>& seen) {
@@ -372,6 +400,8 @@ BallShots ballShotsIn(const fs::path& input, const std::vector<NamedBall>& balls
     named.frames.emplace_back().id = shot.id;
     result.shots.push_back(shot);
   }
+  if (std::all_of(balls.begin(), balls.end(), [](const NamedBall& b) { return !b.folder.empty(); }))
+    result.leftOut = foldersLeftOut(folders, result.shots);
   if (exclude.empty()) return result;
   const std::vector<int> out = parseFrames(exclude, named, "--exclude");
   for (auto i = out.rbegin(); i != out.rend(); ++i) result.shots.erase(result.shots.begin() + *i);

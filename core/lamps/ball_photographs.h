@@ -37,6 +37,8 @@ struct BallShots {
   std::vector<NamedBall> balls;
   std::vector<Shot> shots;  ///< by name
   CameraResponse response;  ///< of all photographs
+  /// Folders beside those of the balls with photographs of the same names: those of another ball that nobody outlined.
+  std::vector<std::string> leftOut;
   std::vector<std::filesystem::path> files() const;
 };
 
@@ -61,7 +63,7 @@ struct PhotographLamps {
 /// @param camera,focalAlone  see BallPhotographs
 /// @param givenSigmaPx  of centre and radius of an outline that is taken as typed
 /// @throw InputError where a ball lies outside of its photographs; Stopped
-/// @return  FrameUnreadable, NoHighlight where no shot says anything; what fitBallLamps() says
+/// @return  without any answer where no shot shows a highlight. FrameUnreadable where no shot can be read; what fitBallLamps() says
 Outcome<PhotographLamps> lampsOfShots(const BallShots& shots, const std::optional<Camera>& camera, bool focalAlone,
                                       const std::optional<double>& ballRadius, Outlines outlines, double givenSigmaPx,
                                       const ProgressFn& progress);

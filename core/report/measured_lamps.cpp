@@ -2,9 +2,12 @@
 #include "core/report/measured_lamps.h"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <utility>
 
+#include "core/base/atomic_file.h"
+#include "core/base/exif.h"
 #include "core/base/number_text.h"
 #include "core/base/shortest_text.h"
 #include "core/lamps/scene_lamps.h"
@@ -42,6 +45,57 @@ void sayWhatIsMissing(const BallQuestion& q, bool camera, LampsReport& report) {
         formatted("the highlights disagree %.2g times as much as their detection promises; every standard "
                   "deviation is widened by that",
                   report.balls->noiseFactor));
+}
+
+/// Places of two cut-outs of one shot that have the same corner are those of no shot: a camera would take them for its own.
+void requireCorners(const BallShots& shots) {
+  for (std::size_t j = 1; j < shots.balls.size(); ++j)
+    for (std::size_t i = 0; i < j; ++i)
+      for (const Shot& shot : shots.shots)
+        if (!shot.files[i].empty() && !shot.files[j].empty() && shot.files[i] != shot.files[j] &&
+            shots.balls[i].corner == shots.balls[j].corner)
+          throw InputError("", "--ball " + shots.balls[j].text,
+                           formatted("its photographs have the same corner in the shot, %g,%g, as those of another ball: with a "
+                                     "camera, state the place of each cut-out by @X0,Y0",
+                                     shots.balls[j].corner.x(), shots.balls[j].corner.y()));
+}
+
+/// What EXIF data of photographs tell viewers to do; "" where all are shown as they are stored.
+std::string turnedByViewers(const BallShots& shots) {
+  int turned = 0, first = 1;
+  const std::vector<std::filesystem::path> files = shots.files();
+  for (const std::filesystem::path& file : files) {
+    try {
+      const int orientation = exifOrientation(readFile(file, Limit::ImageMegabytes));
+      if (orientation != 1 && turned++ == 0) first = orientation;
+    } catch (const InputError&) {
+      continue;  // it is said where the photograph is looked at
+    }
+  }
+  if (turned == 0) return "";
+  return formatted(
+      "%d of %zu photographs have an EXIF orientation (%d): viewers turn them, Glint does not; outlines and directions "
+      "are those of the stored pixels, not of what a viewer shows",
+      turned, files.size(), first);
+}
+
+/// All lamps that have an answer in one direction: several lamps are not.
+void sayOneDirection(LampsReport& report) {
+  constexpr double kOneDirectionDeg = 1;
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const LampAnswer& lamp : report.lamps)
+    if (!lamp.failure) mean += lamp.direction;
+  int answers = 0;
+  double widest = 0;
+  for (const LampAnswer& lamp : report.lamps)
+    if (!lamp.failure)
+      ++answers, widest = std::max(widest, std::atan2(lamp.direction.cross(mean).norm(), lamp.direction.dot(mean)) * 180 / M_PI);
+  if (answers < 2 || widest > kOneDirectionDeg) return;
+  report.warnings.insert(
+      report.warnings.begin(),
+      formatted("all %d lamps have one direction, to within %.2g degrees: either every photograph shows the same "
+                "lamp, or the reflection is not the lamp's but that of a window or another fixed thing",
+                answers, std::max(widest, 0.01)));
 }
 
 std::string ballText(const NamedBall& ball) {
@@ -84,12 +138,15 @@ const char* toText(Outlines outlines) {
 }
 
 Outcome<LampsReport> lampsReportOf(const BallQuestion& q, const BallShots& shots, const ProgressFn& progress) {
+  if (q.camera) requireCorners(shots);
+  const std::string turned = turnedByViewers(shots);
   double filmMm = 0;
   std::optional<Camera> camera = q.camera;
   if (!camera) camera = cameraOfExif(shots, filmMm);
   const bool focalAlone = camera && !q.camera;
   Outcome<PhotographLamps> found = lampsOfShots(shots, camera, focalAlone, q.ballRadius, q.outlines, q.outlineSigmaPx, progress);
-  if (!found) return found.failure();
+  if (!found && turned.empty()) return found.failure();
+  if (!found) return Failure{found.failure().reason, found.failure().detail + "; " + turned};
   LampsReport report;
   report.input = q.input;
   report.lengthUnit = !camera ? "" : q.ballRadius ? "m" : "ball radius";
@@ -98,6 +155,11 @@ Outcome<LampsReport> lampsReportOf(const BallQuestion& q, const BallShots& shots
     if (!report.lamps[i].failure) report.lines.push_back({found->fileNames[i], report.lamps[i].direction});
   report.balls = std::move(found->fit);
   report.warnings = found->warnings;
+  for (const std::string& folder : shots.leftOut)
+    report.warnings.push_back("the folder '" + folder +
+                              "' has photographs of the same shots and no ball is outlined in it: it is not measured");
+  if (!turned.empty()) report.warnings.push_back(turned);
+  sayOneDirection(report);
   if (const std::string doubt = shots.response.doubt(); !doubt.empty()) report.warnings.push_back(doubt);
   if (focalAlone)
     report.warnings.push_back(
@@ -106,6 +168,7 @@ Outcome<LampsReport> lampsReportOf(const BallQuestion& q, const BallShots& shots
                   filmMm));
   sayWhatIsMissing(q, camera.has_value(), report);
   sayHowManyFailed(report);
+  if (!turned.empty() && nothingMeasured(report)) report.lamps.front().failure->detail += "; " + turned;
   return report;
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <fstream>
 #include <iterator>
+#include <set>
 #include <sstream>
 
 #include "core/base/document_kind.h"
@@ -14,6 +15,9 @@ namespace glint {
 namespace fs = std::filesystem;
 
 namespace {
+
+constexpr const char* kSessionKey = "glint_session";
+constexpr const char* kWorkKey = "glint_tradeoff_work";  // beside another output, by that one's name
 
 /// The first bytes of a file; fewer where it is shorter.
 std::string headOf(const fs::path& file, std::size_t bytes) {
@@ -45,12 +49,29 @@ bool isLightPositions(const std::string& head) {
 
 }  // namespace
 
-OutputKind OutputKind::document(const std::string& key) { return {Form::Document, key, "a JSON file with \"" + key + "\""}; }
-OutputKind OutputKind::table(const std::string& start) { return {Form::Table, start, "a table written by this command"}; }
-OutputKind OutputKind::page() { return {Form::Page, "", "a page written by this command"}; }
-OutputKind OutputKind::png() { return {Form::Png, "", "a PNG file"}; }
-OutputKind OutputKind::movie() { return {Form::Movie, "", "a movie"}; }
-OutputKind OutputKind::lightPositions() { return {Form::LightPositions, "", "a list of light positions (.lp)"}; }
+OutputKind OutputKind::document(const std::string& key) {
+  const std::string ending = key == kSessionKey ? ".glint" : ".json";
+  return {Form::Document, key, "a JSON file with \"" + key + "\"",
+          key == kWorkKey ? std::vector<std::string>{} : std::vector<std::string>{ending}};
+}
+OutputKind OutputKind::table(const std::string& start) {
+  return {Form::Table, start, "a table written by this command", {".csv"}};
+}
+OutputKind OutputKind::page() { return {Form::Page, "", "a page written by this command", {".html", ".htm"}}; }
+OutputKind OutputKind::png() { return {Form::Png, "", "a PNG file", {".png"}}; }
+OutputKind OutputKind::movie() { return {Form::Movie, "", "a movie", {}}; }  // its ending chooses how it is encoded
+OutputKind OutputKind::lightPositions() { return {Form::LightPositions, "", "a list of light positions (.lp)", {".lp"}}; }
+
+bool OutputKind::mayBeNamed(const fs::path& file) const {
+  // What programs choose by the name alone; other endings promise nothing.
+  static const std::set<std::string> promises{".bmp", ".csv",  ".exr", ".gif", ".glint", ".htm", ".html", ".jpeg",
+                                              ".jpg", ".json", ".lp",  ".mp4", ".obj",   ".pdf", ".ply",  ".png",
+                                              ".ppm", ".stl",  ".svg", ".tif", ".tiff",  ".webp"};
+  std::string ending = file.extension().string();
+  for (char& c : ending)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return endings_.empty() || promises.count(ending) == 0 || std::count(endings_.begin(), endings_.end(), ending) > 0;
+}
 
 bool OutputKind::holds(const fs::path& file) const {
   std::error_code ignored;  // what cannot be asked about is not empty
@@ -90,12 +111,16 @@ void Outputs::file(const std::string& file, const std::string& flag, const Outpu
     throw InputError(file, flag, "is already used for another output; choose another file");
   asked_.push_back(path);
   std::error_code ignored;
-  if (!fs::exists(path, ignored)) return;
-  requireNoInput(file, flag);
-  if (fs::is_regular_file(path, ignored) && !kind.holds(path))
+  const bool exists = fs::exists(path, ignored), device = exists && !fs::is_regular_file(path, ignored);
+  if (exists) requireNoInput(file, flag);
+  if (device) return;
+  if (exists && !kind.holds(path))
     throw InputError(
         file, flag,
         "already exists and is not " + kind.words() + "; nothing is overwritten: choose another file or remove this one");
+  if (!kind.mayBeNamed(path))
+    throw InputError(file, flag,
+                     "this command writes " + kind.words() + ": the file's name must end in " + kind.endings().front());
 }
 
 void Outputs::inFolder(const std::string& folder, const std::string& flag, const std::vector<std::string>& names,

@@ -22,17 +22,22 @@ class OutputKind {
 
   /// Whether the file may be replaced by one of this kind: empty, or of this kind.
   bool holds(const std::filesystem::path& file) const;
+  /// Whether a file of this name may hold it: the ending of another format would say what it is not.
+  bool mayBeNamed(const std::filesystem::path& file) const;
   const std::string& words() const { return words_; }
+  const std::vector<std::string>& endings() const { return endings_; }
 
  private:
   enum class Form { Document, Table, Page, Png, Movie, LightPositions };
-  OutputKind(Form form, std::string key, std::string words) : form_(form), key_(std::move(key)), words_(std::move(words)) {}
+  OutputKind(Form form, std::string key, std::string words, std::vector<std::string> endings)
+      : form_(form), key_(std::move(key)), words_(std::move(words)), endings_(std::move(endings)) {}
   Form form_;
   std::string key_, words_;
+  std::vector<std::string> endings_;  ///< with their dot, lower case; empty = any
 };
 
-/// The files that a program was asked to write, checked before it computes: each is new, or of the kind that it writes; none is
-/// a file of the input; no two are the same. "-", devices and pipes pass.
+/// The files that a program was asked to write, checked before it computes: each is new, or of the kind that it writes; its
+/// ending is one of that kind; none is a file of the input; no two are the same. "-", devices and pipes pass.
 class Outputs {
  public:
   /// @param input  as given on the command line: a file or folder

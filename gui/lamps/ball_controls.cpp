@@ -234,7 +234,7 @@ void BallControls::show(const BallQuestion& q) {
   outlineChoice_->setCurrentIndex(outlineChoice_->findData(QLatin1String(toText(q.outlines))));
 }
 
-bool BallControls::fill(BallQuestion& question) {
+QString BallControls::fill(BallQuestion& question) {
   question.camera.reset();
   question.ballRadius.reset();
   question.outlines = glint::outlinesOf(outlineChoice_->currentData().toString().toStdString());
@@ -243,19 +243,20 @@ bool BallControls::fill(BallQuestion& question) {
       question.camera = cameraOfNumbers(cameraNumbers(QString(text).remove(QLatin1Char(' ')).toStdString(), "camera"));
     } catch (const InputError& e) {
       complain(camera_, toQString(e.what()));
-      return false;
+      return toQString(e.what());
     }
   }
   if (const QString text = radius_->text().trimmed(); !text.isEmpty()) {
     QString why;
     const std::optional<double> radius = numberFromText(text, &why);
     if (!radius || !(*radius > 0)) {
-      complain(radius_, radius ? tr("The radius must be above 0") : why);
-      return false;
+      if (radius) why = tr("The radius must be above 0");
+      complain(radius_, why);
+      return tr("Ball radius: %1").arg(why);
     }
     question.ballRadius = radius;
   }
-  return true;
+  return {};
 }
 
 }  // namespace glint::gui

@@ -29,8 +29,8 @@ class BallControls : public QWidget {
   void setPhotographSize(QSize size) { size_ = size; }
   /// Camera, radius and outlines of this question; its balls are the outlines'.
   void show(const BallQuestion& question);
-  /// Camera, radius and outlines as typed. False, and it is said below the field, where one of them cannot be taken.
-  bool fill(BallQuestion& question);
+  /// Camera, radius and outlines as typed. Where one of them cannot be taken: why, which is said below its field, too; else "".
+  QString fill(BallQuestion& question);
 
  signals:
   void questionChanged();  ///< other than the outlines

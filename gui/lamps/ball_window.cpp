@@ -323,7 +323,10 @@ const LampAnswer* BallWindow::lampOf(const QString& photograph) const {
 bool BallWindow::question(BallQuestion& q) {
   q.input = folder_.toStdString();
   q.balls = outlines_->named();
-  if (!controls_->fill(q)) return false;
+  if (const QString wrong = controls_->fill(q); !wrong.isEmpty()) {
+    tell(wrong, true);
+    return false;
+  }
   if (q.balls.empty()) {
     tell(tr("Draw the outline of a ball first."), true);
     return false;

@@ -199,9 +199,10 @@ TEST_F(BadInput, SurfaceThatNoCameraSees) {
 
 TEST_F(BadInput, FullDiskLeavesTheOldFile) {
   saveSession("--model limit-angle");
+  const auto oldName = [](const std::string& command) { return command + "-old" + (command == "convert" ? ".json" : ""); };
   const auto old = [&](const std::string& command) {
-    folder_.write(command + "-old.json", oldOutputOf(command));
-    return out(command + "-old.json");
+    folder_.write(oldName(command), oldOutputOf(command));
+    return out(oldName(command));
   };
   const std::string limit = "ulimit -f 1; ";  // no file may grow beyond one block: what a full disk does
   std::vector<ProgramRun> runs{on("evaluate", "--models limit-angle --json " + old("evaluate"), limit),
@@ -219,14 +220,14 @@ TEST_F(BadInput, FullDiskLeavesTheOldFile) {
     EXPECT_THAT(runs[i].err, HasSubstr("cannot be ")) << i;
   }
   for (const char* command : {"evaluate", "detect", "reconstruct", "render", "convert", "predict"})
-    EXPECT_EQ(contentOf(folder_ / (std::string(command) + "-old.json")), oldOutputOf(command)) << command;
+    EXPECT_EQ(contentOf(folder_ / oldName(command)), oldOutputOf(command)) << command;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder_.path()))
     EXPECT_THAT(entry.path().filename().string(), testing::Not(StartsWith("."))) << "an unfinished file";
 }
 
 TEST_F(BadInput, OutputThatCannotBeWritten) {
   saveSession("--model limit-angle");
-  for (const std::string& place : {out("missing/x.json"), inQuotes("/dev/full"), inQuotes(folder_ / "radiance")})
+  for (const std::string& place : {out("missing/x"), inQuotes("/dev/full"), inQuotes(folder_ / "radiance")})
     for (const ProgramRun& run :
          {on("info", "--json " + place), on("detect", "--json " + place), on("evaluate", "--models limit-angle --csv " + place),
           on("reconstruct", "--model limit-angle -o " + place), onSession("predict", "--json " + place),
@@ -262,13 +263,13 @@ TEST_F(BadInput, InterruptedWorkLeavesNoFile) {
   // SIGTERM, because a shell lets its background jobs ignore SIGINT; the program treats both alike.
   fs::remove(radiance(3));
   ASSERT_EQ(std::system(("mkfifo " + inQuotes(radiance(3))).c_str()), 0);
-  for (const std::string& command : {"evaluate " + inQuotes(folder_.path()) + " --json " + out("x"),
-                                     "reconstruct " + inQuotes(folder_.path()) + " -o " + out("x")}) {
+  for (const std::string& command : {"evaluate " + inQuotes(folder_.path()) + " --json " + out("x.json"),
+                                     "reconstruct " + inQuotes(folder_.path()) + " -o " + out("x.glint")}) {
     const ProgramRun run =
         runGlint(command + " & child=$!; exec 3>" + inQuotes(radiance(3)) + "; kill -TERM $child; wait $child");
     EXPECT_EQ(run.code, 130) << run.err;
     EXPECT_EQ(run.err, "glint: stopped\n");
-    EXPECT_FALSE(fs::exists(folder_ / "x"));
+    for (const char* name : {"x.json", "x.glint"}) EXPECT_FALSE(fs::exists(folder_ / name));
   }
 }
 

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <Eigen/LU>
+#include <opencv2/imgproc.hpp>
 #include <sstream>
 
 #include "tests/cli/small_scene.h"
@@ -188,6 +189,61 @@ TEST_F(OneBall, WrongRequestsAreNamed) {
     EXPECT_TRUE(run.out.empty()) << request;
   }
   EXPECT_FALSE(std::filesystem::exists("same.lp"));
+}
+
+/// A second spot, larger than the lamp's, at one place of the ball in every photograph.
+TEST_F(OneBall, AReflectionThatStaysIsNotTheLamp) {
+  const Eigen::Vector2d window = ball_.centre + Eigen::Vector2d(-30, -45);
+  for (std::size_t i = 0; i < lamps_.size(); ++i) {
+    const std::string name = "shot " + std::to_string(i) + ".png";
+    cv::Mat m = cv::imread((folder_ / name).string());
+    cv::circle(m, {static_cast<int>(window.x()), static_cast<int>(window.y())}, 14, {255, 255, 255}, cv::FILLED);
+    ASSERT_TRUE(cv::imwrite((folder_ / name).string(), m));
+  }
+  const ProgramRun run = lights("--ball 150,130,100 --json -");
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("does not move between photographs"));
+  const Json j = Json::parse(run.out);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_LT(angleDeg(j["lights"][i]["direction"], lamps_[i]), kPhotograph) << i;
+}
+
+TEST_F(OneBall, LampsOfOneDirectionAreAFinding) {
+  for (const char* name : {"shot 1.png", "shot 2.png"}) folder_.write(name, contentOf(folder_ / "shot 0.png"));
+  const ProgramRun run = lights("--ball 150,130,100 --json -");
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("all 3 lamps have one direction"));
+  EXPECT_LT(angleDeg(Json::parse(run.out)["lights"][2]["direction"], lamps_[0]), kPhotograph);
+}
+
+TEST_F(OneBall, WithoutAnyLampTheFilesAreWritten) {
+  const TemporaryFolder shots;
+  photograph(shots / "dark.png", 300, 260, {ball_}, {});
+  const ProgramRun run = runGlint("lights " + inQuotes(shots.path()) + " --ball 150,130,100 --json " + out("j.json") + " -o " +
+                                  out("l.lp") + " -o " + out("l.csv"));
+  EXPECT_EQ(run.code, 3);
+  EXPECT_EQ(run.errorLines(), 1);
+  EXPECT_EQ(Json::parse(contentOf(folder_ / "j.json"))["lights"][0]["status"], "failed");
+  EXPECT_THAT(contentOf(folder_ / "l.lp"), testing::StartsWith("0\n"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "l.csv"));
+}
+
+TEST_F(OneBall, FoldersOfOneShotAreAskedAbout) {
+  for (const char* side : {"left", "right"}) {
+    std::filesystem::create_directories(folder_ / side);
+    for (std::size_t i = 0; i < lamps_.size(); ++i) {
+      const std::string name = "shot " + std::to_string(i) + ".png";
+      folder_.write(side + ("/" + name), contentOf(folder_ / name));
+    }
+  }
+  const ProgramRun one = lights("--ball left:150,130,100 --json -");
+  EXPECT_EQ(one.code, 0) << one.err;
+  EXPECT_THAT(one.err, HasSubstr("the folder 'right' has photographs of the same shots"));
+  const std::string both = "--ball left:150,130,100 --ball right:150,130,100 --camera 2000,2000,500,400";
+  const ProgramRun same = lights(both + " --json -");
+  EXPECT_EQ(same.code, 2);
+  EXPECT_THAT(same.err, HasSubstr("the same corner in the shot"));
+  EXPECT_THAT(lights("--ball left:150,130,100 --ball right:150,130,100@600,0 --json -").err,
+              testing::Not(HasSubstr("has photographs of the same shots")));
 }
 
 TEST_F(OneBall, ADamagedPhotographIsOneLampLess) {

@@ -70,6 +70,23 @@ TEST_F(OutputsOfCommands, AFileOfAnotherKindStaysAsItIs) {
   EXPECT_EQ(contentOf(folder_ / "other.json"), R"({"glint_scene": 1})");
 }
 
+TEST_F(OutputsOfCommands, AnEndingOfAnotherFormatIsRefused) {
+  const std::string kMust = "the file's name must end in ";
+  refuses(on("render", "--view plots -o " + out("r.svg")), kMust + ".png");
+  refuses(on("render", "--view plots -o " + out("r.jpg")), kMust + ".png");
+  refuses(on("reconstruct", "--model limit-angle -o " + out("r.json")), kMust + ".glint");
+  refuses(on("evaluate", "--json " + out("r.csv")), kMust + ".json");
+  refuses(on("evaluate", "--csv " + out("r.json")), kMust + ".csv");
+  refuses(on("evaluate", "--html " + out("r.pdf")), kMust + ".html");
+  refuses(on("info", "--json " + out("r.html")), kMust + ".json");
+  refuses(on("tradeoff", "-o " + out("r.json")), kMust + ".glint");
+  refuses(on("share", "-o " + out("r.svg")), kMust + ".html");
+  for (const char* name : {"r.svg", "r.jpg", "r.json", "r.csv", "r.pdf", "r.html"})
+    EXPECT_FALSE(fs::exists(folder_ / name)) << name;
+  EXPECT_EQ(on("info", "--json " + out("r.JSON")).code, 0);
+  EXPECT_EQ(on("info", "--json " + out("r.report")).code, 0) << "no format's ending";
+}
+
 TEST_F(OutputsOfCommands, EveryOtherOutputRefusesAnotherKind) {
   saveSession("--model limit-angle");
   const std::string session = out("run.glint"), tradeoff = "tradeoff " + out("scene.json"),

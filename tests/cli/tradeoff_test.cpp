@@ -118,45 +118,53 @@ TEST_F(TradeoffCommand, WithoutAHeldOutFrameItIsRefusedBeforeTheFirstTrial) {
   EXPECT_EQ(four.code, 0) << four.err;
 }
 
-TEST_F(TradeoffCommand, ASessionKeepsItAndPresetsFindIt) {
+TEST_F(TradeoffCommand, TheSessionThatItReadsStaysAsItIs) {
   saveSession("--model limit-angle");
   const std::string before = contentOf(folder_ / "run.glint");
+  const ProgramRun run = onSession("tradeoff", std::string(kFew) + "--budget-us 1e9");
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_EQ(onSession("tradeoff", std::string(kFew) + "--budget-us 1e9 --json " + out("t.json")).code, 0);
+  EXPECT_EQ(contentOf(folder_ / "run.glint"), before);
+  EXPECT_EQ(onSession("tradeoff", std::string(kFew) + "-o " + out("run.glint")).code, 2) << "it is an input";
+  EXPECT_EQ(contentOf(folder_ / "run.glint"), before);
+}
+
+TEST_F(TradeoffCommand, PresetsFindItInTheSessionThatItWrites) {
+  saveSession("--model limit-angle");
   ProgramRun none = onSession("evaluate", "--preset fast");
   EXPECT_EQ(none.code, 2);
   EXPECT_THAT(none.err, HasSubstr("the session has no trade-off"));
   EXPECT_EQ(on("evaluate", "--preset fast").code, 2) << "a scene has none either";
 
-  const ProgramRun run = onSession("tradeoff", std::string(kFew) + "--budget-us 1e9");
+  const ProgramRun run = onSession("tradeoff", std::string(kFew) + "--budget-us 1e9 -o " + out("best.glint"));
   ASSERT_EQ(run.code, 0) << run.err;
-  const Json old = Json::parse(before), now = Json::parse(contentOf(folder_ / "run.glint"));
+  const Json now = Json::parse(contentOf(folder_ / "best.glint"));
   EXPECT_EQ(now["glint_session"], 3);
   const Json& t = now["tradeoff"];
   EXPECT_EQ(t["glint_tradeoff"], 1);
-  EXPECT_EQ(now["request"], old["request"]) << "the choice is not imposed on the session";
-  EXPECT_EQ(now["results"], old["results"]);
-  const ProgramRun replayed = onSession("replay", "--exact");
+  const auto onBest = [&](const std::string& command, const std::string& more) {
+    return runGlint(command + " " + out("best.glint") + " " + more);
+  };
+  const ProgramRun replayed = onBest("replay", "--exact");
   EXPECT_EQ(replayed.code, 0) << replayed.err << replayed.out;
 
   const Json fast = t["points"][t["presets"]["fast"].get<std::size_t>()];
-  const ProgramRun evaluated = onSession("evaluate", "--preset fast --json -");
+  const ProgramRun evaluated = onBest("evaluate", "--preset fast --json -");
   ASSERT_EQ(evaluated.code, 0) << evaluated.err;
   const Json models = Json::parse(evaluated.out)["models"];
   ASSERT_EQ(models.size(), 1u);
   ASSERT_TRUE(models.contains(fast["settings"]["model"].get<std::string>()));
   EXPECT_EQ(models.begin().value()["summary"]["contour_error_pct"]["mean"], fast["contour_error_pct"])
       << "the point's error is that of evaluate";
-  EXPECT_EQ(onSession("predict", "--preset chosen --json -").code, 0);
-  EXPECT_EQ(onSession("predict", "--preset quick").code, 2);
-  EXPECT_EQ(onSession("reconstruct", "--preset exact -o " + out("exact.glint")).code, 0);
+  EXPECT_EQ(onBest("predict", "--preset chosen --json -").code, 0);
+  EXPECT_EQ(onBest("predict", "--preset quick").code, 2);
+  EXPECT_EQ(onBest("reconstruct", "--preset exact -o " + out("exact.glint")).code, 0);
 
   // A session of version 1 is one without.
-  Json first = old;
+  Json first = Json::parse(contentOf(folder_ / "run.glint"));
   first["glint_session"] = 1;
   folder_.write("run.glint", first.dump());
   EXPECT_EQ(onSession("replay", "--exact").code, 0);
-  const std::string kept = contentOf(folder_ / "run.glint");
-  EXPECT_EQ(onSession("tradeoff", std::string(kFew) + "--keep-session").code, 0);
-  EXPECT_EQ(contentOf(folder_ / "run.glint"), kept);
 }
 
 TEST_F(TradeoffCommand, WritesASessionOfTheChoice) {

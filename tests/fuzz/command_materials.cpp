@@ -236,7 +236,7 @@ std::vector<Victim> makeMaterials(const fs::path& program, const fs::path& folde
                                               "compare run.glint copy.glint --json out/c.json",
                                               "convert run.glint -o out/c.json",
                                               "render run.glint --view ladder --size 160x120 -o out/p.png",
-                                              "tradeoff run.glint --keep-session --max-trials 1 --repeats 1 --json out/t.json"};
+                                              "tradeoff run.glint --max-trials 1 --repeats 1 --json out/t.json"};
   fs::copy(folder / "given/run.glint", folder / "given/copy.glint");
 
   std::vector<Victim> victims;

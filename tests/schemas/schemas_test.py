@@ -161,9 +161,9 @@ class Written(InFolder):
         (self.folder / "scene.json").write_text(json.dumps(examples()[0]), encoding="utf-8")
         self.run_glint("reconstruct", "scene.json", "--model", "limit-angle", "--train", "left,front", "-o", "run.glint")
         self.assertValid(self.folder / "run.glint")
-        self.run_glint("tradeoff", "run.glint", "--max-trials", "2", "--repeats", "1")
-        self.assertValid(self.folder / "run.glint")
-        self.assertIsNotNone(read(self.folder / "run.glint")["tradeoff"])
+        self.run_glint("tradeoff", "run.glint", "--max-trials", "2", "--repeats", "1", "-o", "fast.glint")
+        self.assertValid(self.folder / "fast.glint")
+        self.assertIsNotNone(read(self.folder / "fast.glint")["tradeoff"])
 
 
 def put(*path_and_value):
