@@ -5,10 +5,13 @@
 #include <cmath>
 #include <set>
 
+#include "core/base/median.h"
 #include "core/base/number_text.h"
+#include "core/diagnostics/likely_mistakes.h"
 #include "core/fit/evidence.h"
 #include "core/fit/fit_engine.h"
 #include "core/fit/training.h"
+#include "core/light/estimate.h"
 #include "core/model/model.h"
 #include "core/model/reflectance_settings.h"
 #include "core/surface/mesh_policy.h"
@@ -22,15 +25,13 @@ constexpr double kClearlyFlip = 0.2;   // mirrored images leave pixels where the
 constexpr double kDetectionPx = 0.02;  // residuals as given below this are what detection leaves on good data
 constexpr double kGoodRadii = 0.01;    // residual over the contour's radius below which a light explains the contours
 constexpr double kOnlyPx = 1;          // px; the same for coarse images, where no other hypothesis has any light; said as a guess
+constexpr double kFits = 0.05;  // the same after a change, where nothing fits as given: photographs of 8 bits leave 1 to 3 %
+constexpr double kNothingRadii = 0.1;   // above: no light explains the contours
 constexpr double kLeastFocalPct = 0.3;  // of errors that are told: smaller ones hide in those of surfaces
 constexpr double kShiftSlackPx = 0.2;   // of what the highlights ask for about half a pixel
 constexpr double kHalfGain = 0.7;       // of a half's residual as given that a true change leaves at most; noise leaves all of it
 
-/// Changes of all cameras: principal point (px) and log of the focal length.
-struct Change {
-  double cx = 0, cy = 0, logFocal = 0;
-  bool flipX = false, flipY = false;
-};
+using Change = CameraChange;
 
 class Check {
  public:
@@ -39,6 +40,11 @@ class Check {
   CameraCheck run() {
     gather();
     result_.views = static_cast<int>(views_.size());
+    if (searched_ > 0 && dark_ == searched_)
+      result_.findings.push_back(
+          formatted("none of %d frames that were searched shows a highlight (are they the right photographs? Is the "
+                    "background brighter than the highlight, or the mask of another part?)",
+                    searched_));
     if (!result_.whyNot.empty()) return std::move(result_);
     if (result_.views < kLeastViews) {
       result_.whyNot =
@@ -48,7 +54,8 @@ class Check {
     const std::vector<int> all = every(0, 1);
     const std::optional<Fitted> given = fit({}, all, {});
     add("as given", given);
-    if (!given || given->rmsPx > kGoodRadii * radiusPx_) flips(given);
+    if (!given || given->rmsPx > kGoodRadii * radiusPx_) explains(mirroredImages(), given);
+    if (result_.findings.empty() && nothingFits(given) && !explains(misplacedMeshes(), given)) sayThatNothingFits(given);
     if (given && result_.findings.empty()) intrinsics(*given, all);
     return std::move(result_);
   }
@@ -89,6 +96,8 @@ class Check {
       const Frame& f = scene_.frames[static_cast<std::size_t>(frame)];
       if (f.surface.empty()) continue;
       FrameEvidence evidence = gatherEvidence(scene_, frame, FrameSource::Radiance, settings_);
+      ++searched_;
+      dark_ += evidence.failure && evidence.failure->reason == Reason::NoHighlight;
       if (evidence.failure || evidence.highlights.size() != 1) continue;
       const Highlight& h = evidence.highlights.front();
       if (h.clipped || (h.touchesBorder && !h.fromScene) || !(h.areaPx2 > 0)) continue;
@@ -122,20 +131,10 @@ class Check {
     std::vector<TrainingView> views;
     for (const int i : which) {
       const View& v = views_[static_cast<std::size_t>(i)];
-      Camera camera = scene_.frames[static_cast<std::size_t>(v.evidence.frame)].camera;
-      camera.pixelFromRay(0, 2) += change.cx;
-      camera.pixelFromRay(1, 2) += change.cy;
-      camera.pixelFromRay.topLeftCorner<2, 2>() *= std::exp(change.logFocal);
+      const Camera& asRead = scene_.frames[static_cast<std::size_t>(v.evidence.frame)].camera;
       FrameEvidence evidence = v.evidence;
-      Highlight& h = evidence.highlights.front();
-      const auto turned = [&](Pixel p) {
-        if (change.flipX) p.x() = camera.width - 1 - p.x();
-        if (change.flipY) p.y() = camera.height - 1 - p.y();
-        return p;
-      };
-      h.peak = turned(h.peak);
-      for (Pixel& p : h.contour.points) p = turned(p);
-      if (change.flipX != change.flipY) std::reverse(h.contour.points.begin(), h.contour.points.end());  // keeps its sense
+      change.move(evidence.highlights.front(), asRead);
+      const Camera camera = change.of(asRead);
       TrainingView view = trainingView(evidence, 0, camera, v.surface);
       if (!view.seen) return std::nullopt;
       views.push_back(std::move(view));
@@ -157,42 +156,90 @@ class Check {
     return std::isfinite(result.rmsPx) ? std::optional<Fitted>(result) : std::nullopt;
   }
 
-  void flips(const std::optional<Fitted>& given) {
-    struct Flip {
-      const char* name;
-      bool x, y;
-      const char* remedy;
-    };
-    const Flip kinds[] = {{"mirrored left-right", true, false, "-flop"},
-                          {"mirrored upside down", false, true, "-flip"},
-                          {"turned by 180 degrees", true, true, "-rotate 180"}};
-    const Flip* best = nullptr;
+  /// Looks for the one of some mistakes whose undoing makes a light explain the contours. @return whether it was found
+  bool explains(const std::vector<LikelyMistake>& mistakes, const std::optional<Fitted>& given) {
+    constexpr double kAsGood = 1.2;  // residuals of symmetric bodies differ by less; the likelier mistake comes first
+    const double sureBelow = kGoodRadii * radiusPx_;
+    const LikelyMistake* best = nullptr;
     double bestPx = 0;
     int explained = 0;
-    for (const Flip& flip : kinds) {
-      Change change;
-      change.flipX = flip.x;
-      change.flipY = flip.y;
-      const std::optional<Fitted> fitted = fit(change, every(0, 1), {});
-      add(std::string("images ") + flip.name, fitted);
+    for (const LikelyMistake& mistake : mistakes) {
+      // A change that half of the views refuse is not tried on all.
+      const bool refused = !fit(mistake.undoing, every(0, 2), {});
+      const std::optional<Fitted> fitted = refused ? std::nullopt : fit(mistake.undoing, every(0, 1), {});
+      add(mistake.correction ? mistake.correction->words : "images " + mistake.is, fitted);
       explained += fitted.has_value();
-      if (!fitted || (best && fitted->rmsPx >= bestPx)) continue;
-      best = &flip;
+      if (!fitted || (best && kAsGood * fitted->rmsPx >= bestPx)) continue;
+      best = &mistake;
       bestPx = fitted->rmsPx;
+      if (bestPx <= sureBelow) break;  // the list has the likely ones first
     }
     // Where no light explains anything else, coarse images may leave more.
-    const double good = !given && explained == 1 ? std::max(kOnlyPx, kGoodRadii * radiusPx_) : kGoodRadii * radiusPx_;
-    if (!best || bestPx > good || (given && bestPx > kClearlyFlip * given->rmsPx)) return;
-    const bool sure = given || bestPx <= kGoodRadii * radiusPx_;
+    const double good = !given && explained == 1 ? std::max(kOnlyPx, sureBelow)
+                        : nothingFits(given)     ? kFits * radiusPx_
+                                                 : sureBelow;
+    if (!best || bestPx > good || (given && bestPx > kClearlyFlip * given->rmsPx)) return false;
+    const bool sure = given || bestPx <= sureBelow;
+    const char* verb = best->many ? (sure ? " are " : " seem to be ") : (sure ? " is " : " seems to be ");
     result_.findings.push_back(
-        std::string(sure ? "the images are " : "the images seem to be ") + best->name +
+        best->subject + verb + best->is +
         formatted(": corrected, the highlights of %d frames fit one light to %.2g px; as given, ", result_.views, bestPx) +
         (given ? formatted("only to %.2g px", given->rmsPx) : std::string("no light explains them")) +
-        " (Glint does not rewrite photographs: ImageMagick's mogrify " + best->remedy + " does)");
+        (best->remedy.empty() ? "" : " (" + best->remedy + ")"));
+    result_.correction = best->correction;
+    return true;
+  }
+
+  /// Whether no light explains the contours, whatever one may expect of coarse images.
+  bool nothingFits(const std::optional<Fitted>& given) const {
+    return !given || given->rmsPx > std::max(kNothingRadii * radiusPx_, kOnlyPx);
+  }
+
+  /// By how much, as a median, the mirrored rays of all views pass beside the lamp that they share, rad. @param withCamera  a lamp that moves with
+  /// the camera, in its axes. Nothing where they share none.
+  std::optional<double> missOfRays(bool withCamera) const {
+    std::vector<ReflectedRay> rays;
+    for (const View& v : views_) {
+      const Camera& camera = scene_.frames[static_cast<std::size_t>(v.evidence.frame)].camera;
+      const TrainingView view = trainingView(v.evidence, 0, camera, v.surface);
+      if (!view.seen) return std::nullopt;
+      ReflectedRay ray = reflectedRay(view.seen->brightest, camera);
+      if (withCamera) {
+        ray.origin = camera.camFromWorld * ray.origin;
+        ray.direction = camera.camFromWorld.linear() * ray.direction;
+        ray.normal = camera.camFromWorld.linear() * ray.normal;
+      }
+      rays.push_back(ray);
+    }
+    const Outcome<Triangulation> lamp = triangulateLight(rays);
+    if (!lamp) return std::nullopt;
+    std::vector<double> misses;
+    for (const ReflectedRay& r : rays)
+      misses.push_back(std::acos(std::clamp(r.direction.dot(lamp->light.directionFrom(r.origin)), -1.0, 1.0)));
+    return upperMedian(misses);
+  }
+
+  void sayThatNothingFits(const std::optional<Fitted>& given) {
+    constexpr double kShared = 0.03, kNotShared = 0.1;  // rad: off-specular peaks and blur move mirrored rays by a degree
+    const std::optional<double> fixed = missOfRays(false), carried = missOfRays(true);
+    std::string words = formatted("no light explains the highlights of %d frames", result_.views);
+    if (given)
+      words += formatted(": the best leaves %.2g px, %.0f %% of their radius", given->rmsPx, 100 * given->rmsPx / radiusPx_);
+    if (carried && *carried < kShared && !(fixed && *fixed < kNotShared))
+      words +=
+          "; the lamp moves with the camera: in the camera's axes it stands still (a flash or a ring light; Glint expects a lamp "
+          "that stands still)";
+    else
+      words += formatted(
+          "; none of %zu likely mistakes explains it. Mesh, poses and photographs do not belong together: is it the mesh of "
+          "another object, or is it shifted or deformed? Are the poses those of other photographs? Does the lamp move with "
+          "the camera?",
+          result_.hypotheses.size() - 1);
+    result_.findings.push_back(words);
   }
 
   static Change along(const Change& direction, double by) {
-    return {by * direction.cx, by * direction.cy, by * direction.logFocal, false, false};
+    return {by * direction.cx, by * direction.cy, by * direction.logFocal};
   }
 
   /// How far to go along a change until the sum of squares is least: a parabola through three fits, then one about its end, where
@@ -232,7 +279,7 @@ class Check {
   void intrinsics(const Fitted& given, const std::vector<int>& all) {
     if (given.rmsPx < kDetectionPx) return;
     // Steps are large against detection and small against what bends the parabola.
-    const Change shift{0.25, 0.25, 0, false, false}, focal{0, 0, 0.005, false, false};
+    const Change shift{0.25, 0.25, 0}, focal{0, 0, 0.005};
     const std::optional<double> byShift = least(shift, given, all), byFocal = least(focal, given, all);
     std::optional<Fitted> atHalf, atFocal;
     Change half, longer;
@@ -274,7 +321,8 @@ class Check {
   const ProgressFn& progress_;
   Settings settings_;
   std::vector<View> views_;
-  double radiusPx_ = 0;  ///< mean of the contours
+  int searched_ = 0, dark_ = 0;  ///< frames, and those without any highlight
+  double radiusPx_ = 0;          ///< mean of the contours
   CameraCheck result_;
 };
 

@@ -326,6 +326,12 @@ void ConventionReport::add(std::string finding, std::optional<Correction> correc
   findings.push_back(std::move(finding));
 }
 
+std::string ConventionReport::cleanBill() const {
+  return cameras && cameras->hypotheses.empty()
+             ? "All cameras see their surface. The highlights were not held against it; nothing else was found."
+             : "All cameras see their surface; no problems found.";
+}
+
 void ConventionReport::take(CameraCheck check) {
   for (const std::string& f : check.findings) add(f, &f == &check.findings.back() ? check.correction : std::nullopt);
   cameras = std::move(check);
@@ -424,6 +430,26 @@ std::string lightLines(const ConventionReport& r) {
     out += "  light     " + way + (ways.size() > 1 ? formatted(": %d frames", n) : std::string()) + "\n";
   return out;
 }
+/// What the highlights say about the cameras.
+std::string cameraLines(const CameraCheck& check) {
+  if (check.hypotheses.empty()) return "\n  cameras   not checked with highlights: " + check.whyNot + "\n";
+  std::string out = formatted("\n  cameras   from the highlights of %d frames: contours fit one light ", check.views);
+  std::string separator;
+  constexpr std::size_t kAlwaysListed = 4;  // as given, and mirrored images
+  std::size_t listed = 0, others = 0;
+  for (const CameraCheck::Hypothesis& h : check.hypotheses) {
+    if (!h.rmsPx && listed >= kAlwaysListed) {
+      ++others;
+      continue;
+    }
+    ++listed;
+    out += separator + (h.rmsPx ? formatted("to %.2g px ", *h.rmsPx) : std::string("not at all ")) + "(" + h.change + ")";
+    separator = ", ";
+  }
+  if (others) out += formatted(", not at all (%zu other changes)", others);
+  out += "\n";
+  return out;
+}
 }  // namespace
 
 std::string toText(const ConventionReport& r) {
@@ -460,17 +486,7 @@ std::string toText(const ConventionReport& r) {
       out += formatted("            %d of %d in front of the surface lie on it (depth within 1 %%)\n", r.tracks->onSurface,
                        r.tracks->met);
   }
-  if (r.cameras && !r.cameras->hypotheses.empty()) {
-    out += formatted("\n  cameras   from the highlights of %d frames: contours fit one light ", r.cameras->views);
-    std::string separator;
-    for (const CameraCheck::Hypothesis& h : r.cameras->hypotheses) {
-      out += separator + (h.rmsPx ? formatted("to %.2g px ", *h.rmsPx) : std::string("not at all ")) + "(" + h.change + ")";
-      separator = ", ";
-    }
-    out += "\n";
-  } else if (r.cameras) {
-    out += "\n  cameras   not checked with highlights: " + r.cameras->whyNot + "\n";
-  }
+  if (r.cameras) out += cameraLines(*r.cameras);
   for (const std::string& f : r.facts) out += "fact: " + f + "\n";
   for (const std::string& w : r.warnings) out += "warning: " + w + "\n";
   for (std::size_t i = 0; i < r.findings.size(); ++i) {
@@ -478,7 +494,7 @@ std::string toText(const ConventionReport& r) {
     for (const auto& c : r.corrections)
       if (c.finding == i) out += "  fix:   glint convert INPUT --fix " + c.correction.fix + " --out corrected.json\n";
   }
-  if (r.findings.empty()) out += "All cameras see their surface; no problems found.\n";
+  if (r.findings.empty()) out += r.cleanBill() + "\n";
   return out;
 }
 

@@ -75,6 +75,8 @@ struct ConventionReport {
 
   void take(CameraCheck check);  ///< with its findings
   void add(std::string finding, std::optional<Correction> correction = {});
+  /// What is said where there is no finding: no more than what was checked.
+  std::string cleanBill() const;
   bool anyFrameSeesSurface() const;
   bool everyFrameSeesSurface() const;
 };

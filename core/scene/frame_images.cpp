@@ -211,6 +211,27 @@ Image toneMapped(const Image& linear) {
 
 }  // namespace
 
+namespace {
+/// A cut-out: what colour its transparent pixels have is arbitrary, so they are outside. Nothing where all is opaque.
+std::optional<Image> opaquePart(const Frame& frame) {
+  if (frame.image.empty() || frame.ofVideo || !frame.radiance.empty()) return std::nullopt;
+  std::string bytes;
+  try {
+    bytes = readFile(frame.image, Limit::ImageMegabytes);
+    const ImageHeader header = readImageHeader(bytes);
+    const bool mayHaveAlpha = header.channels == 2 || header.channels == 4;
+    if (!mayHaveAlpha || header.format == ImageFormat::Jpeg || !headerProblem(header, frame.camera).empty()) return std::nullopt;
+  } catch (const InputError&) {
+    return std::nullopt;  // who reads the photograph says so
+  }
+  const Outcome<cv::Mat> alpha = decodeAlpha(bytes);
+  if (!alpha || !isCode(*alpha) || alpha->cols != frame.camera.width || alpha->rows != frame.camera.height) return std::nullopt;
+  const Image mask = toImage(*alpha, [](double v) { return v != 0 ? 1.f : 0.f; });
+  if (std::all_of(mask.data.begin(), mask.data.end(), [](float v) { return v != 0; })) return std::nullopt;
+  return mask;
+}
+}  // namespace
+
 Outcome<Image> readLinear(const Frame& frame, FrameSource source, std::string* how) {
   // Where only one of the two exists there is nothing to choose.
   const bool useRadiance = frame.image.empty() || (source == FrameSource::Radiance && !frame.radiance.empty());
@@ -223,8 +244,13 @@ Outcome<Image> readLinear(const Frame& frame, FrameSource source, std::string* h
   if (isFloat(m)) return floatImage(m);
   if (useRadiance) return unreadable(file, "radiance must be 32-bit float (give an 8- or 16-bit picture as image)");
   if (!isCode(m)) return unreadable(file, "the pixel type is not supported (8-bit, 16-bit or float)");
-  return throughTable(
+  Image image = throughTable(
       m, [&frame, linear = takenAsLinear(*decoded)](double v, int c) { return frame.response.lightOf(v, c, linear); });
+  // Hidden colours are arbitrary, and a blur or an edge would bring them in: transparent pixels are dark.
+  if (const std::optional<Image> opaque = useRadiance ? std::nullopt : opaquePart(frame))
+    for (std::size_t i = 0; i < image.data.size(); ++i)
+      if (opaque->data[i / static_cast<std::size_t>(image.channels)] == 0) image.data[i] = 0;
+  return image;
 }
 
 Outcome<Image> readPhotograph(const Frame& frame) {
@@ -291,7 +317,7 @@ std::string frameFileProblem(const Frame& frame, FrameFile kind) {
 }
 
 Outcome<std::optional<Image>> readMask(const Frame& frame) {
-  if (frame.mask.empty()) return std::optional<Image>();
+  if (frame.mask.empty()) return opaquePart(frame);
   Outcome<DecodedImage> decoded = decode(frame.mask, frame.camera);
   if (!decoded) return decoded.failure();
   const cv::Mat& codes = *decoded->pixels;

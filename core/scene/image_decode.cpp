@@ -225,7 +225,8 @@ class QuietCerr {
   }
 };
 
-Outcome<cv::Mat> decodeOther(const std::string& bytes) {
+/// All channels in OpenCV's order.
+Outcome<cv::Mat> decodeAll(const std::string& bytes) {
   static const bool quiet = [] {
     cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
     return true;
@@ -244,15 +245,30 @@ Outcome<cv::Mat> decodeOther(const std::string& bytes) {
   if (m.empty()) return undecodable("not an image, truncated or damaged");
   if (m.channels() != 1 && m.channels() != 3 && m.channels() != 4)
     return undecodable("it has " + std::to_string(m.channels()) + " channels, expected 1, 3 or 4");
-  if (m.channels() == 1) return m;
+  return m;
+}
+
+Outcome<cv::Mat> decodeOther(const std::string& bytes) {
+  Outcome<cv::Mat> all = decodeAll(bytes);
+  if (!all || all->channels() == 1) return all;
   // Blue-green-red to red-green-blue; alpha is dropped.
   std::vector<cv::Mat> c;
-  cv::split(m, c);
+  cv::Mat m;
+  cv::split(*all, c);
   cv::merge(std::vector<cv::Mat>{c[2], c[1], c[0]}, m);
   return m;
 }
 
 }  // namespace
+
+Outcome<cv::Mat> decodeAlpha(const std::string& bytes) {
+  const Outcome<cv::Mat> all = decodeAll(bytes);
+  if (!all) return all.failure();
+  std::vector<cv::Mat> c;
+  cv::split(*all, c);
+  if (c.size() != 4) return undecodable("it has no alpha");
+  return c[3];
+}
 
 Outcome<cv::Mat> decodeImage(const std::string& bytes, const ImageHeader& header) {
   switch (header.format) {

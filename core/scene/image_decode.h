@@ -21,4 +21,8 @@ namespace glint {
 /// @throws CodecsMissing  neither PNG nor JPEG, and libglint-codecs is not there
 Outcome<cv::Mat> decodeImage(const std::string& bytes, const ImageHeader& header);
 
+/// How opaque each pixel is, one channel in the file's own depth. FrameUnreadable where the file has none.
+/// @throws CodecsMissing  libglint-codecs is not there
+Outcome<cv::Mat> decodeAlpha(const std::string& bytes);
+
 }  // namespace glint

@@ -128,7 +128,7 @@ Outcome<Image> readPhotograph(const Frame& frame);
 /// For a program's start: from now on this process keeps decoded image files, up to so many bytes of pixels in all, for the next time that a frame is
 /// looked at. A file that changes is read again. 0, as at the start of every process: none is kept.
 void keepDecodedImages(std::size_t mostBytes);
-/// 1 on the glossy object, 0 elsewhere; nothing when the frame has no mask. FrameUnreadable.
+/// 1 on the glossy object, 0 elsewhere; without a mask, 0 where the photograph is transparent. Nothing when the frame has neither. FrameUnreadable.
 Outcome<std::optional<Image>> readMask(const Frame& frame);
 /// Depth along the optical axis in metres, 0 = none (non-finite and negative values too); nothing when the frame has none. That of a depth camera of
 /// its own is registered to the frame's camera (registeredDepth).

@@ -63,7 +63,7 @@ void ReportPanel::show(const ReportPtr& report, const QString& why) {
   text_->setPlainText(report ? toQString(glint::toText(*report)) : QString());
   if (!report) return summary_->setText(why);
   const std::size_t n = report->findings.size();
-  summary_->setText(n == 0 ? tr("All cameras see their surface; no problems found.")
+  summary_->setText(n == 0 ? toQString(report->cleanBill())
                            : tr("%n thing(s) to look at:", nullptr, int(n))
                                  .replace(QStringLiteral("(s)"), n == 1 ? QString() : QStringLiteral("s")));
   for (std::size_t i = 0; i < n; ++i) {

@@ -45,12 +45,14 @@ void InputReport::take(const ReportPtr& report) {
   report_ = report;
   panel_->show(report, {});
   if (!report->findings.empty()) emit message(tr("Report: %1").arg(toQString(report->findings.front())));
-  if (report->corrections.empty()) return;
+  if (report->findings.empty()) return;
   MessageBar::Answers answers;
   for (const ConventionReport::Proposal& p : report->corrections)
     answers << std::pair(tr("%1…").arg(toQString(p.correction.words)), [this, c = p.correction] { fix(c); });
   answers << std::pair(tr("Show report"), [this] { emit shown(); });
-  bar_.showOffer(toQString(report->findings[report->corrections.front().finding]), answers);
+  // What can be corrected at once stands first.
+  const std::size_t first = report->corrections.empty() ? 0 : report->corrections.front().finding;
+  bar_.showOffer(toQString(report->findings[first]), answers);
 }
 
 void InputReport::fix(const Correction& correction) {

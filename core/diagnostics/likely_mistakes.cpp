@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/diagnostics/likely_mistakes.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/number_text.h"
+
+namespace glint {
+namespace {
+
+LikelyMistake images(const char* is, bool swapXY, bool flipX, bool flipY, const char* mogrify) {
+  LikelyMistake m{"the images", true, is, {}, {}, {}};
+  m.undoing.swapXY = swapXY;
+  m.undoing.flipX = flipX;
+  m.undoing.flipY = flipY;
+  m.remedy = std::string("Glint does not rewrite photographs: ImageMagick's mogrify ") + mogrify + " does";
+  return m;
+}
+
+LikelyMistake turnedMesh(int axis, int degrees) {
+  const char* names[] = {"x", "y", "z"};
+  LikelyMistake m{"the mesh", false, formatted("turned by %d degrees about its %s axis", degrees, names[axis]), {}, {}, {}};
+  if (axis == 0 && degrees != 180) m.is += " (y up against z up)";
+  m.undoing.camerasFromMesh.rotation =
+      Eigen::AngleAxisd(-degrees * EIGEN_PI / 180, Eigen::Vector3d::Unit(axis)).toRotationMatrix();
+  m.correction = meshSimilarityCorrection(m.undoing.camerasFromMesh);
+  m.correction->words = formatted("Turn the mesh by %+d degrees about %s", -degrees, names[axis]);
+  return m;
+}
+
+LikelyMistake scaledMesh(const std::string& is, double factor, const char* fix, const std::string& words) {
+  LikelyMistake m{"the mesh", false, is, {}, {}, {}};
+  m.undoing.camerasFromMesh.scale = factor;
+  m.correction = meshSimilarityCorrection(m.undoing.camerasFromMesh);
+  if (fix) m.correction->fix = fix;
+  m.correction->words = words;
+  return m;
+}
+
+}  // namespace
+
+Camera CameraChange::of(Camera camera) const {
+  camera.pixelFromRay(0, 2) += cx;
+  camera.pixelFromRay(1, 2) += cy;
+  camera.pixelFromRay.topLeftCorner<2, 2>() *= std::exp(logFocal);
+  // A point m of the mesh is at R (s Q m + t) + r: the direction of R Q m + (R t + r) / s.
+  const Similarity& s = camerasFromMesh;
+  const Eigen::Isometry3d pose = camera.camFromWorld;
+  camera.camFromWorld.linear() = pose.linear() * s.rotation;
+  camera.camFromWorld.translation() = (pose.linear() * s.translation + pose.translation()) / s.scale;
+  return camera;
+}
+
+void CameraChange::move(Highlight& h, const Camera& camera) const {
+  const int width = swapXY ? camera.height : camera.width, height = swapXY ? camera.width : camera.height;
+  const auto moved = [&](Pixel p) {
+    if (swapXY) std::swap(p.x(), p.y());
+    if (flipX) p.x() = width - 1 - p.x();
+    if (flipY) p.y() = height - 1 - p.y();
+    return p;
+  };
+  h.peak = moved(h.peak);
+  for (Pixel& p : h.contour.points) p = moved(p);
+  if ((flipX != flipY) != swapXY) std::reverse(h.contour.points.begin(), h.contour.points.end());
+}
+
+const std::vector<LikelyMistake>& mirroredImages() {
+  static const std::vector<LikelyMistake> all{images("mirrored left-right", false, true, false, "-flop"),
+                                              images("mirrored upside down", false, false, true, "-flip"),
+                                              images("turned by 180 degrees", false, true, true, "-rotate 180")};
+  return all;
+}
+
+const std::vector<LikelyMistake>& misplacedMeshes() {
+  static const std::vector<LikelyMistake> all = [] {
+    std::vector<LikelyMistake> list;
+    for (const int axis : {0, 1, 2})
+      for (const int degrees : {-90, 90, 180}) list.push_back(turnedMesh(axis, degrees));
+    list.push_back(scaledMesh("in millimetres", 0.001, "mesh-mm", "Read the mesh in millimetres"));
+    list.push_back(scaledMesh("in centimetres", 0.01, "mesh-cm", "Read the mesh in centimetres"));
+    list.push_back(scaledMesh("in inches", 0.0254, nullptr, "Read the mesh in inches"));
+    list.push_back(scaledMesh("in feet", 0.3048, nullptr, "Read the mesh in feet"));
+    list.push_back(scaledMesh("in metres and the poses are in millimetres", 1000, "poses-mm", "Read the poses in millimetres"));
+    list.push_back(scaledMesh("in metres and the poses are in centimetres", 100, nullptr, "Read the poses in centimetres"));
+    list.push_back(scaledMesh("in metres and the poses are in inches", 1 / 0.0254, nullptr, "Read the poses in inches"));
+    list.push_back(scaledMesh("in metres and the poses are in feet", 1 / 0.3048, nullptr, "Read the poses in feet"));
+    list.push_back(scaledMesh("half as large as it should be", 2, nullptr, "Double the mesh"));
+    list.push_back(scaledMesh("twice as large as it should be", 0.5, nullptr, "Halve the mesh"));
+    list.push_back(images("turned by 90 degrees clockwise", true, false, true, "-rotate -90"));
+    list.push_back(images("turned by 90 degrees counterclockwise", true, true, false, "-rotate 90"));
+    for (LikelyMistake* m : {&list[list.size() - 2], &list[list.size() - 1]})
+      m->remedy +=
+          "; of a video with a rotation tag, poses and --camera are of the stored pictures: remove the tag, by ffmpeg "
+          "-display_rotation 0 -i IN -c copy OUT";
+    return list;
+  }();
+  return all;
+}
+
+}  // namespace glint

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/geometry/camera.h"
+#include "core/geometry/similarity.h"
+#include "core/highlight/highlight.h"
+#include "core/scene/correction.h"
+
+namespace glint {
+
+/// A change of all cameras of a scene, as the highlights can be asked about it. The surface stays: a mesh that is turned or of another unit is
+/// the same as cameras that move about it.
+struct CameraChange {
+  double cx = 0, cy = 0, logFocal = 0;  ///< added to the principal point (px) and to the logarithm of the focal length
+  bool swapXY = false;                  ///< of the pixels, before the flips
+  bool flipX = false, flipY = false;
+  Similarity camerasFromMesh = {};  ///< where the mesh belongs, from its coordinates as they were read
+
+  Camera of(Camera camera) const;
+  /// Peak and contour, in pixels of a picture of the camera's size; the contour keeps its sense.
+  void move(Highlight& highlight, const Camera& camera) const;
+};
+
+/// What somebody may have done wrong, the change that undoes it, and how a person does that.
+struct LikelyMistake {
+  std::string subject;  ///< "the images", "the mesh"
+  bool many = false;    ///< of the subject
+  std::string is;       ///< "mirrored left-right", "in millimetres"
+  CameraChange undoing;
+  std::optional<Correction> correction;
+  std::string remedy;  ///< for a person where there is no correction
+};
+
+/// Images that are mirrored or turned by 180 degrees.
+const std::vector<LikelyMistake>& mirroredImages();
+/// Images turned by a quarter, meshes turned by quarters and halves about an axis, meshes of another unit or size. Those that people meet most come
+/// first: of equals the first one is named.
+const std::vector<LikelyMistake>& misplacedMeshes();
+
+}  // namespace glint
