@@ -42,7 +42,7 @@ class Check {
     result_.views = static_cast<int>(views_.size());
     if (searched_ > 0 && dark_ == searched_)
       result_.findings.push_back(
-          formatted("none of %d frames that were searched shows a highlight (are they the right photographs? Is the "
+          formatted("no highlight was found in any of %d frames (are they the right photographs? Is the "
                     "background brighter than the highlight, or the mask of another part?)",
                     searched_));
     if (!result_.whyNot.empty()) return std::move(result_);
@@ -220,20 +220,22 @@ class Check {
   }
 
   void sayThatNothingFits(const std::optional<Fitted>& given) {
+    constexpr double kDegrees = 180 / double(EIGEN_PI);
     constexpr double kShared = 0.03, kNotShared = 0.1;  // rad: off-specular peaks and blur move mirrored rays by a degree
     const std::optional<double> fixed = missOfRays(false), carried = missOfRays(true);
     std::string words = formatted("no light explains the highlights of %d frames", result_.views);
     if (given)
       words += formatted(": the best leaves %.2g px, %.0f %% of their radius", given->rmsPx, 100 * given->rmsPx / radiusPx_);
     if (carried && *carried < kShared && !(fixed && *fixed < kNotShared))
-      words +=
-          "; the lamp moves with the camera: in the camera's axes it stands still (a flash or a ring light; Glint expects a lamp "
-          "that stands still)";
+      words += formatted(
+          "; the lamp seems to move with the camera: in the camera's axes the mirrored rays pass one place by %.2g degrees, "
+          "in the world's by %s (a flash or a ring light; Glint expects a lamp that stands still)",
+          *carried * kDegrees, fixed ? formatted("%.2g", *fixed * kDegrees).c_str() : "more than can be measured");
     else
       words += formatted(
-          "; none of %zu likely mistakes explains it. Mesh, poses and photographs do not belong together: is it the mesh of "
-          "another object, or is it shifted or deformed? Are the poses those of other photographs? Does the lamp move with "
-          "the camera?",
+          "; none of %zu likely mistakes explains it. Either mesh, poses and photographs do not belong together (is it the "
+          "mesh of another object, or is it shifted or deformed? Are the poses those of other photographs?), or the scene is "
+          "outside of the models (print or wood under the highlight, bumps of a scanned mesh, brushed metal, a lamp that moves)",
           result_.hypotheses.size() - 1);
     result_.findings.push_back(words);
   }

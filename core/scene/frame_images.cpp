@@ -220,7 +220,8 @@ std::optional<Image> opaquePart(const Frame& frame) {
     bytes = readFile(frame.image, Limit::ImageMegabytes);
     const ImageHeader header = readImageHeader(bytes);
     const bool mayHaveAlpha = header.channels == 2 || header.channels == 4;
-    if (!mayHaveAlpha || header.format == ImageFormat::Jpeg || !headerProblem(bytes, header, frame.camera).empty()) return std::nullopt;
+    if (!mayHaveAlpha || header.format == ImageFormat::Jpeg || !headerProblem(bytes, header, frame.camera).empty())
+      return std::nullopt;
   } catch (const InputError&) {
     return std::nullopt;  // who reads the photograph says so
   }

@@ -116,7 +116,7 @@ TEST_F(SceneOnDisk, InfoSaysWhatItIs) {
   EXPECT_EQ(run.code, 0);
   EXPECT_EQ(run.err, "");
   EXPECT_THAT(run.out, HasSubstr("analytic sphere"));
-  EXPECT_THAT(run.out, HasSubstr("none of 2 frames that were searched shows a highlight"));  // its images are of one value
+  EXPECT_THAT(run.out, HasSubstr("no highlight was found in any of 2 frames"));  // its images are of one value
   EXPECT_THAT(run.out, Not(HasSubstr("no problems found")));
 }
 
