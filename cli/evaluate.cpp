@@ -75,6 +75,7 @@ Command evaluateCommand() {
     if (!a->csv.empty()) context.write(a->csv, evaluationCsv(e.inspection));
     if (!a->html.empty()) context.write(a->html, evaluationHtml(e.inspection, e.report));
     for (const std::string& w : warningsOf(e.inspection)) context.warn(w);
+    if (e.report.selection && e.report.selection->poor) context.warn("auto: " + e.report.selection->why);
     // What was asked for on standard output must stay parseable there: the table then stays away.
     const bool tableToo = a->json != "-" && a->csv != "-" && a->html != "-";
     const std::string table = e.inspection.models.empty() ? "" : evaluationTable(e.inspection);

@@ -19,6 +19,7 @@ std::string fitText(const ModelResult::Fit& entry, const std::string& model) {
   if (entry.failure()) return out + entry.failure()->message() + "\n";
   const ModelFit& f = *entry.fit;
   out += std::to_string(f.frames.size()) + " views, " + f.solver + "\n";
+  if (!f.poor.empty()) out += "  poor              " + f.poor + "\n";
   const EllipsoidFit* const fitted = f.as<EllipsoidFit>();
   if (f.ellipsoid()) {
     out += "  ellipsoid centre  " + vectorText(f.ellipsoid()->centre()) + " m\n";

@@ -326,7 +326,7 @@ std::vector<ParamSpec>& params() {
        "frames better. auto: both. Point: R = 0.",
        "fit"},
       {"fit.most_residual",
-       "Refuse above",
+       "Poor above",
        "e_max",
        "",
        0.1,
@@ -334,9 +334,9 @@ std::vector<ParamSpec>& params() {
        10.0,
        0.01,
        {},
-       "A model is refused if its residual exceeds this fraction of the contours' radius in more than a third of the training "
-       "views or, for ellipsoids, overall. Raise it to see how a model fails. Answered: e <= e_max r, e the residual without "
-       "noise, r = √(A/π).",
+       "A model is poor if its residual exceeds this fraction of the contours' radius in more than a third of the training "
+       "views or, for ellipsoids, overall. It answers all the same; above one half (or this fraction, if larger) it fails. Good: "
+       "e <= e_max r, e the residual without noise, r = √(A/π).",
        "fit"},
       {"fit.directions",
        "Directions",

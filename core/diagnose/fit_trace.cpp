@@ -47,7 +47,7 @@ std::vector<FitTrace> traceFits(const Inspection& inspection, const HighlightMod
   std::vector<FitTrace> traces;
   for (auto& [key, fold] : folds) {
     SolverTrace trace;
-    const Outcome<ModelFit> fit = fitFold(fold, model, inspection.request.settings);
+    const Outcome<ModelFit> fit = fitFold(fold, model, inspection.request.settings, PoorFits::Take);
     traces.push_back({key, trace.runs(), fit ? std::nullopt : std::optional(fit.failure())});
   }
   return traces;

@@ -42,7 +42,7 @@ LeftOutError leftOutError(const Inspection& inspection, const HighlightModel& mo
   std::vector<Answer> answers;
   RankingSoFar known;
   known.possible.assign(folds.size(), 1);
-  const Candidate tried = tryModel(inspection, model, folds, answers, known, progress);
+  const Candidate tried = tryModel(inspection, model, folds, answers, known, PoorFits::Take, progress);
   LeftOutError error;
   error.firstFailure = tried.remark;
   for (std::size_t i = 0; i < folds.size(); ++i)
@@ -87,7 +87,7 @@ LeftOutError unseenError(const Inspection& inspection, const Inspection& evidenc
     for (std::size_t i = 0; i < inspection.views.size(); ++i)
       if (inspection.views[i].seen && inspection.keyFor(inspection.views[i].frame, inspection.views[i].highlight.light) == key)
         all.others.push_back(inspection.viewAsGiven(int(i)));
-    Outcome<ModelFit> fit = fitFold(all, model, inspection.request.settings);
+    Outcome<ModelFit> fit = fitFold(all, model, inspection.request.settings, PoorFits::Take);
     fitted.emplace(key, std::pair(std::move(all), std::move(fit)));
   }
   const std::size_t before = error.views.size();

@@ -13,6 +13,7 @@
 #include "core/fit/training.h"
 #include "core/light/estimate.h"
 #include "core/model/model.h"
+#include "core/model/plausible.h"
 #include "core/model/reflectance_settings.h"
 #include "core/surface/mesh_policy.h"
 
@@ -145,7 +146,7 @@ class Check {
     const HighlightModel& model = radianceModel();
     FitInput input = fitInput(model, std::move(views), light, settings);
     if (near) input.near = near->model;
-    const Outcome<ModelFit> fitted = model.fit(input, settings);
+    const Outcome<ModelFit> fitted = accepted(model.fit(input, settings), PoorFits::Refuse);
     if (!fitted || fitted->residualPx.size() != which.size()) return std::nullopt;
     Fitted result;
     for (const double r : fitted->residualPx) result.rmsPx += r * r / double(which.size());

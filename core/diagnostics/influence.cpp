@@ -120,8 +120,9 @@ Influence measureInfluence(const Inspection& inspection, const ProgressFn& progr
       return report(progress, {stage, round * n * (1 + probes) + e.done, rounds * n * (1 + probes)});
     };
     std::vector<Answer> answers(folds.size());
+    const PoorFits poor = poorFitsFor(result);
     parallelFor(
-        n, [&](int i) { answers[std::size_t(i)] = leaveOut(folds[std::size_t(i)], model, settings); }, part, stage);
+        n, [&](int i) { answers[std::size_t(i)] = leaveOut(folds[std::size_t(i)], model, settings, poor); }, part, stage);
 
     // Every probe with every fold's fit; one piece of work each, so that a stop is heeded soon.
     std::vector<std::optional<double>> errors(std::size_t(n) * std::size_t(probes));

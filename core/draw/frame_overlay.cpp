@@ -12,6 +12,7 @@
 #include "core/draw/lobe_overlay.h"
 #include "core/draw/plots.h"
 #include "core/draw/unmatched.h"
+#include "core/inspect/summary.h"
 #include "core/scene/scene_files.h"
 
 namespace glint::draw {
@@ -44,6 +45,12 @@ void addBand(const PredictedHighlight& highlight, const Camera& camera, const Ov
     lines.back().dash = Dash::Dotted;
     lines.back().label = style.label.empty() ? "" : style.label + ", 95 % band";
   }
+}
+
+/// Nearer to grey, for what counts less.
+Colour pale(Colour colour) {
+  for (double& channel : colour) channel = 0.5 * (channel + 0.5);
+  return colour;
 }
 
 void addPrediction(const PredictedHighlight& highlight, const Camera& camera, const OverlayLine& style,
@@ -159,14 +166,21 @@ class FrameLayers {
     }
   }
 
+  static std::string poorReason(const ModelResult& result, const FrameComparison& c) {
+    const bool fitted = c.fit >= 0 && c.fit < static_cast<int>(result.fits.size()) && !c.prediction.highlights().empty();
+    return fitted ? fitReason(result.fits[static_cast<std::size_t>(c.fit)]) : "";
+  }
+
   void addModel(const std::string& model) {
     const ModelResult& result = inspection_.models.at(model);
-    const FrameScore score = frameScore(result, frame_);
+    FrameScore score = frameScore(result, frame_);
     const Colour roleColour = training_ ? kTraining : heldOut_ ? kHeldOut : kExcluded;
     bool answered = false;
     for (const FrameComparison& comparison : result.frames) {
       if (comparison.frame != frame_) continue;
       answered = true;
+      if (const std::string why = poorReason(result, comparison); !why.empty() && score.reason.empty())
+        score.reason = "poor: " + why;
       if (!drawn_(model)) continue;
       OverlayLine line;
       line.model = model;
@@ -174,8 +188,10 @@ class FrameLayers {
       line.colour = options_.colourByRole ? roleColour : modelColour(model);
       line.halo = options_.colourByRole;
       line.label = model + (score.errorPct ? " " + errorText(*score.errorPct) + " %" : std::string{});
+      const bool poor = !poorReason(result, comparison).empty();
+      if (poor) line.colour = pale(line.colour);
       for (std::size_t i = 0; i < comparison.prediction.highlights().size(); ++i)
-        addPredicted(comparison, static_cast<int>(i), line);
+        addPredicted(comparison, static_cast<int>(i), line, poor);
       for (const FilteredHighlight& filtered : comparison.prediction.filtered) addGhost(filtered, line);
     }
     if (answered)
@@ -185,7 +201,8 @@ class FrameLayers {
   }
 
   /// @param line  with model, light, colour and label
-  void addPredicted(const FrameComparison& comparison, int index, OverlayLine line) {
+  /// @param poor  its fit explains the training views badly: dashed wherever it is drawn
+  void addPredicted(const FrameComparison& comparison, int index, OverlayLine line, bool poor) {
     const PredictedHighlight& h = comparison.prediction.highlights()[static_cast<std::size_t>(index)];
     const bool onPlane = h.canonical && h.canonical->ellipse;
     line.highlight = index;
@@ -199,7 +216,7 @@ class FrameLayers {
     if (shown_(OverlayRole::PredictedContour)) {
       line.role = OverlayRole::PredictedContour;
       line.width = chosen ? 3.75 : selected_ && selected_->model == line.model ? 2.75 : 1.75;
-      line.dash = line.unmatched ? Dash::DashDotted : training_ ? Dash::Solid : Dash::Dashed;
+      line.dash = line.unmatched ? Dash::DashDotted : training_ && !poor ? Dash::Solid : Dash::Dashed;
       addPrediction(h, camera_, line, overlay_.lines);
     }
     if (shown_(OverlayRole::UncertaintyBand)) addBand(h, camera_, line, overlay_.lines);
@@ -248,7 +265,7 @@ class FrameLayers {
     line.dash = Dash::Dotted;
     line.width = 0.75;
     line.halo = false;
-    for (double& channel : line.colour) channel = 0.5 * (channel + 0.5);
+    line.colour = pale(line.colour);
     overlay_.lines.push_back(std::move(line));
   }
 
@@ -343,7 +360,8 @@ const std::vector<OverlayLayer>& overlayLayers() {
       {OverlayRole::ObservedEllipse, "frame/observed-ellipse", "Ellipse", "Ellipse fitted to the observed contour: grey, dashed",
        true},
       {OverlayRole::PredictedContour, "frame/predicted", "Predicted",
-       "Contour predicted by each model, in its colour: dashed in frames not used for training, dotted where directions failed",
+       "Contour predicted by each model, in its colour: dashed in frames not used for training, dashed and pale where the model "
+       "is poor, dotted where directions failed",
        true},
       {OverlayRole::PredictedEllipse, "frame/predicted-ellipse", "Pred. ellipse",
        "Ellipse fitted to each predicted contour, dashed", true},

@@ -8,6 +8,7 @@
 #include "core/base/number_text.h"
 #include "core/fit/fit_engine.h"
 #include "core/fit/training.h"
+#include "core/model/plausible.h"
 #include "core/model/reflectance_settings.h"
 
 namespace glint {
@@ -42,13 +43,13 @@ CameraChange zoomed(double factor) {
 
 /// The fit as it would be with other cameras, all derived quantities anew.
 Outcome<ModelFit> fitWith(const FitInput& input, const CameraChange& change, const HighlightModel& model,
-                          const Settings& settings) {
+                          const Settings& settings, PoorFits poor) {
   std::vector<TrainingView> views;
   for (const TrainingView& v : input.views)
     if (v.seen) views.push_back(seenAgain(v, change(v.camera), v.surface));
   const std::optional<Outcome<LightEstimate>> light =
       model.needsLight() ? std::optional(estimateLight(views, settings)) : std::nullopt;
-  return fitModel(model, std::move(views), light, settings);
+  return accepted(fitModel(model, std::move(views), light, settings), poor);
 }
 
 /// Mean square of the distances of the training contours' points from the contours that a fit predicts there, px^2: the same measure for
@@ -96,6 +97,8 @@ FittedBand bandOf(const HighlightModel& model, const ModelFit& fit, const FitInp
     return result;
   }
   result.band = band;
+  // Beside a fit that explains its views, one that does not is no alternative.
+  const PoorFits poor = fit.poor.empty() ? PoorFits::Refuse : PoorFits::Take;
   if (surfaceRefined) band->addOwnCovariance();
 
   // Other lobes, or reflectance beside the limit angle. One that the evidence prefers is away by d for certain: uniform between -d and d; several that it likes alike are a mixture,
@@ -110,7 +113,7 @@ FittedBand bandOf(const HighlightModel& model, const ModelFit& fit, const FitInp
   FitInput anew = input;
   anew.pixelFit.reset();  // it is that of the lobe chosen
   const auto tryOther = [&](const HighlightModel& m, const Settings& with, const std::string& name) {
-    Outcome<ModelFit> other = m.fit(anew, with);
+    Outcome<ModelFit> other = accepted(m.fit(anew, with), poor);
     const double square = other ? meanSquare(m, *other, input, settings) : std::nan("");
     if (!std::isfinite(square)) return;
     squares.push_back(square);
@@ -147,7 +150,7 @@ FittedBand bandOf(const HighlightModel& model, const ModelFit& fit, const FitInp
   std::shared_ptr<const ModelFit> reference;
   if (fitted && fitted->evidence == "pixels") {
     const Outcome<ModelFit> fromContours = fitWith(
-        input, [](const Camera& c) { return c; }, model, settings);
+        input, [](const Camera& c) { return c; }, model, settings, poor);
     if (fromContours) reference = std::make_shared<const ModelFit>(*fromContours);
   }
   const auto tolerance = [&](const char* key, const char* what, CameraChange (*change)(double)) {
@@ -155,7 +158,7 @@ FittedBand bandOf(const HighlightModel& model, const ModelFit& fit, const FitInp
     if (!(t > 0)) return;
     for (const double factor : {1 + t, 1 / (1 + t)}) {
       const CameraChange moved = change(factor);
-      const Outcome<ModelFit> other = fitWith(input, moved, model, settings);
+      const Outcome<ModelFit> other = fitWith(input, moved, model, settings, poor);
       if (other)
         band->add({&model, *other, moved, reference, kToleranceShare});
       else

@@ -8,6 +8,7 @@
 #include "core/fit/fit_engine.h"
 #include "core/fit/training.h"
 #include "core/light/contour_evidence.h"
+#include "core/model/plausible.h"
 #include "core/model/reflectance_settings.h"
 #include "core/reflectance/pixel_patch.h"
 #include "core/reflectance/radiance_field.h"
@@ -38,7 +39,8 @@ std::optional<ModelFit> reflectanceOf(const std::vector<TrainingView>& views, co
   Settings contours = settings;
   contours.set("fit.evidence", std::string("contours"));
   contours.set("fit.most_residual", 1.0);  // what the bumps leave is what is looked for
-  const Outcome<ModelFit> fit = fitModel(radianceModel(), views, Outcome<LightEstimate>(light), contours);
+  const Outcome<ModelFit> fit =
+      accepted(fitModel(radianceModel(), views, Outcome<LightEstimate>(light), contours), PoorFits::Refuse);
   return fit && fit->lightEstimate && fit->as<ReflectanceFit>() ? std::optional<ModelFit>(*fit) : std::nullopt;
 }
 

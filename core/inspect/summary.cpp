@@ -53,10 +53,18 @@ std::vector<ComparisonTally> talliesOf(const Inspection& inspection, const Model
   return tallies;
 }
 
-std::string firstFitFailure(const ModelResult& result) {
-  for (const ModelResult::Fit& f : result.fits)
-    if (f.failure()) return f.failure()->message();
-  return "";
+const char* fitStatus(const ModelResult::Fit& fit) { return fit.fit ? fit.fit->status() : "failed"; }
+std::string fitReason(const ModelResult::Fit& fit) { return fit.fit ? fit.fit->poor : fit.failure()->message(); }
+
+void FitReasons::add(const std::string& status, const std::string& reason) {
+  if (status == "failed" && failure.empty()) failure = reason;
+  if (status == "poor" && poor.empty()) poor = reason;
+}
+
+FitReasons reasonsOf(const ModelResult& result) {
+  FitReasons reasons;
+  for (const ModelResult::Fit& f : result.fits) reasons.add(fitStatus(f), fitReason(f));
+  return reasons;
 }
 
 HeldOutFrames heldOutFrames(const Inspection& inspection) {
@@ -70,7 +78,7 @@ HeldOutFrames heldOutFrames(const Inspection& inspection) {
   return frames;
 }
 
-ModelSummary summaryOf(const std::vector<ComparisonTally>& tallies, const std::string& fitFailure, const HeldOutFrames& heldOut) {
+ModelSummary summaryOf(const std::vector<ComparisonTally>& tallies, const FitReasons& fits, const HeldOutFrames& heldOut) {
   ModelSummary s;
   std::vector<double> pct, px, ellipse, hausdorff, peak, coverage, iou, time;
   for (const ComparisonTally& t : tallies) {
@@ -103,12 +111,13 @@ ModelSummary summaryOf(const std::vector<ComparisonTally>& tallies, const std::s
   s.timeUs = statisticOf(time);
   std::sort(time.begin(), time.end());
   s.timeP99Us = quantileOf(time, 0.99);
-  if (!s.answered) s.reason = reasonOf(tallies, fitFailure, heldOut, s.frames);
+  s.poor = s.answered && !fits.poor.empty();
+  s.reason = s.answered ? fits.poor : reasonOf(tallies, fits.failure, heldOut, s.frames);
   return s;
 }
 
 ModelSummary summarise(const Inspection& inspection, const ModelResult& result) {
-  return summaryOf(talliesOf(inspection, result), firstFitFailure(result), heldOutFrames(inspection));
+  return summaryOf(talliesOf(inspection, result), reasonsOf(result), heldOutFrames(inspection));
 }
 
 }  // namespace glint

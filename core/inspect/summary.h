@@ -12,7 +12,8 @@ namespace glint {
 /// What `evaluate` prints of one model (docs/formats.md, "evaluate --json"): held-out frames only, except per surface.
 struct ModelSummary {
   bool answered = false;                      ///< some frame was predicted
-  std::string reason;                         ///< why not, when it was not
+  bool poor = false;                          ///< and a fit explains its training views badly
+  std::string reason;                         ///< why not, when it was not; why it is poor, when it is
   int frames = 0;                             ///< (frame, light) pairs that should be predicted
   int predicted = 0;                          ///< of those, pairs with a prediction
   int matched = 0, missed = 0, spurious = 0;  ///< highlights
@@ -21,6 +22,8 @@ struct ModelSummary {
   Statistic iou;  ///< per (frame, light), over the union of all regions
   Statistic timeUs;
   double timeP99Us = 0;
+
+  const char* status() const { return !answered ? "failed" : poor ? "poor" : "ok"; }
 };
 ModelSummary summarise(const Inspection& inspection, const ModelResult& result);
 
@@ -47,13 +50,19 @@ struct HeldOutFrames {
 /// Held-out frames as the evidence of this inspection shows them; what was not looked at counts nothing.
 HeldOutFrames heldOutFrames(const Inspection& inspection);
 
+/// What is wrong with the fits of a model: the first failure and the first reason why one is poor; "" = none.
+struct FitReasons {
+  std::string failure, poor;
+  void add(const std::string& status, const std::string& reason);  ///< of one more fit, as fitStatus() and fitReason() give them
+};
+FitReasons reasonsOf(const ModelResult& result);
+const char* fitStatus(const ModelResult::Fit& fit);  ///< "ok", "poor", "failed"
+std::string fitReason(const ModelResult::Fit& fit);  ///< "" where it is ok
+
 /// The same summary from tallies of all comparisons of held-out frames, in the order of the inspection.
-/// @param fitFailure  the first of the model's fits; "" = none failed
-ModelSummary summaryOf(const std::vector<ComparisonTally>& tallies, const std::string& fitFailure, const HeldOutFrames& heldOut);
+ModelSummary summaryOf(const std::vector<ComparisonTally>& tallies, const FitReasons& fits, const HeldOutFrames& heldOut);
 
 /// Tallies of a model's comparisons in held-out frames.
 std::vector<ComparisonTally> talliesOf(const Inspection& inspection, const ModelResult& result);
-/// The first failure among a model's fits; "" = none failed.
-std::string firstFitFailure(const ModelResult& result);
 
 }  // namespace glint

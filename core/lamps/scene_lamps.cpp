@@ -18,6 +18,7 @@
 #include "core/geometry/plane.h"
 #include "core/light/estimate.h"
 #include "core/light/left_out.h"
+#include "core/model/plausible.h"
 
 namespace glint {
 namespace {
@@ -224,7 +225,8 @@ class SceneLamp {
     const auto known = r_.pixelFits.find(r_.keyFor(views_.front().frame, light_.id));
     const bool use = whole_ && !lit.correction && known != r_.pixelFits.end() && known->second;
     const Outcome<ModelFit> fit =
-        fitModel(radianceModel(), views_, estimate_, settings, use ? *known->second : std::shared_ptr<const PixelFit>());
+        accepted(fitModel(radianceModel(), views_, estimate_, settings, use ? *known->second : std::shared_ptr<const PixelFit>()),
+                 PoorFits::Refuse);
     if (!fit || !fit->lightEstimate || !fit->uncertainty) return false;
     a_.solver = fit->solver;
     a_.remarks = fit->remarks;
@@ -236,7 +238,7 @@ class SceneLamp {
     const auto again = [&](const std::vector<bool>& kept) -> std::optional<Light> {
       FitInput input = fitInput(radianceModel(), part(kept), estimate_, ofContours);
       input.near = near;
-      const Outcome<ModelFit> other = radianceModel().fit(input, ofContours);
+      const Outcome<ModelFit> other = accepted(radianceModel().fit(input, ofContours), PoorFits::Refuse);
       return other ? other->lightEstimate : std::nullopt;
     };
     return place(*fit->lightEstimate, fit->uncertainty->root.topRows(4), fit->residualPx, again);

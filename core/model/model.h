@@ -140,7 +140,10 @@ struct ModelFit {
   /// Of the blocks in `parameters`, family by family; other models say theirs.
   std::optional<ParameterUncertainty> uncertainty;
   std::vector<std::string> remarks;  ///< warnings in words, for the user: what makes the answer doubtful
+  std::string poor;  ///< why it explains its evidence badly: it predicts and is scored all the same; "" where it explains it
   double timeUs = 0;
+
+  const char* status() const { return poor.empty() ? "ok" : "poor"; }
 
   /// Null where the model is of another family.
   template <class Family>

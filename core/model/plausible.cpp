@@ -82,39 +82,76 @@ Failure withUnusedViews(Failure failure, const std::vector<TrainingView>& views,
   return failure;
 }
 
+namespace {
+
+/// What a fit leaves of its training views.
+struct Left {
+  std::vector<double> px, shares;              ///< per view, without the noise of single points; of the radius
+  double residual = 0, share = 0, radius = 0;  ///< root mean squares; mean
+
+  std::vector<std::size_t> over(double limit) const {
+    std::vector<std::size_t> views;
+    for (std::size_t i = 0; i < shares.size(); ++i)
+      if (!(shares[i] <= limit)) views.push_back(i);
+    return views;
+  }
+  /// "2.3 px remain ...: over the limit of 10 % in 3 of 6 views" where that is so.
+  std::optional<std::string> tooMuch(double limit, bool robust) const {
+    const std::size_t views = over(limit).size();
+    const bool inViews = 3 * views > shares.size();
+    if (!inViews && (robust || share <= limit)) return std::nullopt;
+    const std::string where = inViews ? " in " + std::to_string(views) + " of " + std::to_string(shares.size()) + " views" : "";
+    return text() + ": over the limit of " + figure(100 * limit) + " %" + where;
+  }
+  std::string text() const {
+    return figure(residual) + " px remain in the training views, " + figure(100 * share) + " % of the contours' radius (" +
+           figure(radius) + " px)";
+  }
+};
+
+Left leftOf(const ModelFit& fit, const std::vector<UsedContour>& used) {
+  const double n = double(used.size());
+  double shares = 0, squares = 0;
+  Left left;
+  for (std::size_t i = 0; i < used.size(); ++i) {
+    const double residual = fit.residualPx[i] / used[i].unit, noise = kNoiseShare * used[i].noise;
+    left.px.push_back(std::sqrt(std::max(0.0, residual * residual - noise * noise)));
+    left.shares.push_back(left.px[i] / used[i].radius);
+    shares += left.shares[i] * left.shares[i] / n;
+    squares += left.px[i] * left.px[i] / n;
+    left.radius += used[i].radius / n;
+  }
+  left.share = std::sqrt(shares);
+  left.residual = std::sqrt(squares);
+  return left;
+}
+
+}  // namespace
+
 Outcome<ModelFit> explaining(ModelFit fit, const std::vector<UsedContour>& used, bool robust, double mostShare) {
   require(used.size() == fit.residualPx.size() && used.size() == fit.frames.size(), "explaining: one contour for every view");
   if (used.empty()) return fit;
-  const double n = double(used.size());
-  double shares = 0, squares = 0, radius = 0;
-  std::vector<double> left;  // px of the photograph, without the noise
-  std::vector<std::size_t> poor;
-  for (std::size_t i = 0; i < used.size(); ++i) {
-    const double residual = fit.residualPx[i] / used[i].unit, noise = kNoiseShare * used[i].noise;
-    if (!std::isfinite(residual))
+  for (std::size_t i = 0; i < used.size(); ++i)
+    if (!std::isfinite(fit.residualPx[i] / used[i].unit))
       return Failure{Reason::NotFinite, "the fit predicts no highlight in training frame " + std::to_string(fit.frames[i])};
-    left.push_back(std::sqrt(std::max(0.0, residual * residual - noise * noise)));
-    const double share = left[i] / used[i].radius;
-    shares += share * share / n;
-    squares += left[i] * left[i] / n;
-    radius += used[i].radius / n;
-    if (!(share <= mostShare)) poor.push_back(i);
+  const Left left = leftOf(fit, used);
+  if (const std::optional<std::string> none = left.tooMuch(std::max(kNoAnswerShare, mostShare), robust))
+    return Failure{Reason::NotConverged, *none + ", beyond which a fit is no answer"};
+  if (const std::optional<std::string> poor = left.tooMuch(mostShare, robust)) {
+    if (fit.poor.empty()) fit.poor = *poor + " (setting fit.most_residual)";
+    return fit;
   }
-  const double share = std::sqrt(shares), residual = std::sqrt(squares);
-  const std::string text = figure(residual) + " px remain in the training views, " + figure(100 * share) +
-                           " % of the contours' radius (" + figure(radius) + " px)";
-  const bool poorViews = 3 * poor.size() > used.size();
-  if (poorViews || (!robust && !(share <= mostShare))) {
-    const std::string where =
-        poorViews ? " in " + std::to_string(poor.size()) + " of " + std::to_string(used.size()) + " views" : "";
-    return Failure{Reason::NotConverged,
-                   text + ": over the limit of " + figure(100 * mostShare) + " %" + where + " (setting fit.most_residual)"};
-  }
-  for (const std::size_t i : poor)
+  const std::vector<std::size_t> inconsistent = left.over(mostShare);
+  for (const std::size_t i : inconsistent)
     fit.remarks.push_back("frame " + std::to_string(fit.frames[i]) + " is inconsistent with the other training views: " +
-                          figure(left[i]) + " px remain of a contour of " + figure(used[i].radius) + " px radius");
-  if (poor.empty() && (residual > kRemarkPx || share > kRemarkShare))
-    fit.remarks.push_back("the fit explains its training views poorly: " + text);
+                          figure(left.px[i]) + " px remain of a contour of " + figure(used[i].radius) + " px radius");
+  if (inconsistent.empty() && (left.residual > kRemarkPx || left.share > kRemarkShare))
+    fit.remarks.push_back("the fit explains its training views poorly: " + left.text());
+  return fit;
+}
+
+Outcome<ModelFit> accepted(Outcome<ModelFit> fit, PoorFits poor) {
+  if (fit && !fit->poor.empty() && poor == PoorFits::Refuse) return Failure{Reason::NotConverged, fit->poor};
   return fit;
 }
 

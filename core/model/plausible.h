@@ -46,13 +46,22 @@ std::string unusedViews(const std::vector<TrainingView>& views);
 Failure withUnusedViews(Failure failure, const std::vector<TrainingView>& views,
                         const std::function<std::optional<Failure>(const TrainingView&)>& why);
 
-/// The fit, unless it leaves more than `mostShare` of the contours' radius in more than a third of its training views, or on the whole (root of
-/// the mean square of the shares): NotConverged says how much, and which setting allows more. What is noise of single points does not count, since every model leaves it. A
-/// robust fit may leave a smaller number of views alone, whatever they show. Such views, and a fit that leaves more than 3 px or a twentieth of
-/// the radius, become remarks.
+/// More than this share of the contours' radius left is no answer: such a prediction may not even overlap the highlight.
+inline constexpr double kNoAnswerShare = 0.5;
+
+/// The fit, judged by what it leaves of its training views. It is poor (ModelFit::poor says how much is left, and which setting allows more) where
+/// that is more than `mostShare` of the contours' radius in more than a third of the views, or on the whole (root of the mean square of the
+/// shares). NotConverged where it is so much by kNoAnswerShare, or `mostShare` where that is larger; NotFinite where it predicts nothing in
+/// a training view. What is noise of single points does not count, since every model leaves it. A robust fit may leave a smaller number of views
+/// alone, whatever they show. Such views, and a fit that leaves more than 3 px or a twentieth of the radius, become remarks.
 /// @param used    the highlights behind fit.residualPx and fit.frames, in the same order
 /// @param robust  outliers had no say in this fit: the rule for the whole is left out
 /// @param mostShare  of the radius, fit.most_residual
 Outcome<ModelFit> explaining(ModelFit fit, const std::vector<UsedContour>& used, bool robust, double mostShare);
+
+/// Which fits serve a purpose.
+enum class PoorFits { Refuse, Take };
+/// The fit; where poor ones do not serve, NotConverged instead of one.
+Outcome<ModelFit> accepted(Outcome<ModelFit> fit, PoorFits poor);
 
 }  // namespace glint

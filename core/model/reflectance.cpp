@@ -126,16 +126,22 @@ class Reflectance final : public HighlightModel {
       Outcome<ModelFit> fromPixels = reflectanceFromPixels(input, settings);
       if (fromPixels && fromPixels->lightEstimate)
         if (const std::optional<Failure> behind = lightBehind(input.views, *fromPixels->lightEstimate)) return *behind;
-      if (fromPixels) return fromPixels;
-      fit.remarks.push_back("Fitted to contours, not to pixels: " + fromPixels.failure().message() + ".");
+      const Outcome<ModelFit> good = accepted(fromPixels, PoorFits::Refuse);
+      if (good) return good;
+      fit.remarks.push_back("Fitted to contours, not to pixels: " + good.failure().message() + ".");
+      Outcome<ModelFit> instead = fromContours(std::move(fit), input, views, owner, settings);
+      return instead || !fromPixels ? instead : fromPixels;
     }
+    return fromContours(std::move(fit), input, views, owner, settings);
+  }
+
+  /// @param fit  names its frames. @param owner  of each view: which of these frames
+  static Outcome<ModelFit> fromContours(ModelFit fit, const FitInput& input, const std::vector<RadianceView>& views,
+                                        const std::vector<std::size_t>& owner, const Settings& settings) {
     const double level = views.front().level;
     const Outcome<RadianceFit> best = lampOfContours(input, views, settings);
     if (!best) return best.failure();
-    if (best->poor) {
-      const std::string detail = formatted("no light and roughness explain the contours: %.3g px remain", best->rmsPx);
-      return Failure{Reason::NotConverged, detail};
-    }
+    if (best->poor) fit.poor = formatted("no light and roughness explain the contours: %.3g px remain", best->rmsPx);
     if (const std::optional<Failure> behind = lightBehind(input.views, best->light)) return *behind;
     fit.lightEstimate = best->light;
     if (!best->light.atInfinity() && best->positionCovariance.allFinite()) fit.lightCovariance = best->positionCovariance;

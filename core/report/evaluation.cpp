@@ -40,6 +40,8 @@ void choose(Evaluation& e, const std::shared_ptr<const Scene>& scene, Inspection
   if (s.model.empty()) {
     e.report.whyChosen = s.why;
     e.failure = Failure{Reason::NotReached, s.why};
+    // The best of what was refused is shown all the same.
+    if (!s.best.empty()) e.inspection = inspect(scene, chosenRequest(std::move(request), s), progress, &e.inspection);
     return;
   }
   if (question.keepWalks && s.patches && s.patches->goodEnough) e.choice += "predict.query stays as set.\n\n";

@@ -60,9 +60,14 @@ Json settingsJson(const Settings& settings) {
 }
 
 Json selectionJson(const Selection& s) {
-  Json j = {{"training_views", s.trainingViews}, {"left_out", s.leftOut},
-            {"views_to_predict", s.toPredict},   {"outside", s.outside},
-            {"decided_by", s.decidedBy},         {"candidates", Json::array()}};
+  Json j = {{"status", s.status()},
+            {"best", s.best.empty() ? Json(nullptr) : Json(s.best)},
+            {"training_views", s.trainingViews},
+            {"left_out", s.leftOut},
+            {"views_to_predict", s.toPredict},
+            {"outside", s.outside},
+            {"decided_by", s.decidedBy},
+            {"candidates", Json::array()}};
   for (const Candidate& c : s.candidates)
     j["candidates"].push_back({{"model", c.model},
                                {"views", c.views},
@@ -97,8 +102,8 @@ Json fitJson(const ModelResult::Fit& entry) {
   Json j;
   j["light"] = entry.light;
   j["surface"] = entry.surface ? Json(*entry.surface) : Json(nullptr);
-  j["status"] = entry.failure() ? "failed" : "ok";
-  j["reason"] = entry.failure() ? entry.failure()->message() : "";
+  j["status"] = fitStatus(entry);
+  j["reason"] = fitReason(entry);
   // A failed fit has every key too, without values: a reader need not ask which are there.
   const ModelFit f = entry.fit ? *entry.fit : ModelFit{};
   const EllipsoidFit* const quadric = f.as<EllipsoidFit>();
@@ -173,8 +178,14 @@ void metricsJson(const FrameComparison::Row* row, const FrameComparison& c, Json
   j["time_us"] = numberOrNull(c.prediction.timeUs);
 }
 
+/// Why the fit behind a comparison is poor; "" where it is not.
+std::string poorFit(const ModelResult& result, const FrameComparison& c) {
+  const bool known = c.fit >= 0 && c.fit < static_cast<int>(result.fits.size());
+  return known && result.fits[static_cast<std::size_t>(c.fit)].fit ? fitReason(result.fits[static_cast<std::size_t>(c.fit)]) : "";
+}
+
 /// Appends one row per highlight of a comparison, or one that says why there is none.
-void addRows(const Inspection& inspection, const FrameComparison& c, Json& out) {
+void addRows(const Inspection& inspection, const ModelResult& result, const FrameComparison& c, Json& out) {
   const auto base = [&](int highlight) {
     Json j;
     j["index"] = c.frame;
@@ -196,11 +207,15 @@ void addRows(const Inspection& inspection, const FrameComparison& c, Json& out) 
   }
   for (const FrameComparison::Row& row : c.rows) {
     Json j = base(row.observed >= 0 ? row.observed : row.predicted);
-    j["status"] = row.metrics ? "ok" : row.observed >= 0 ? "missed" : row.predicted >= 0 ? "spurious" : "failed";
+    const std::string poor = poorFit(result, c);
+    j["status"] = row.metrics          ? (poor.empty() ? "ok" : "poor")
+                  : row.observed >= 0  ? "missed"
+                  : row.predicted >= 0 ? "spurious"
+                                       : "failed";
     std::string reason = whyUnmatched(inspection, c, row);
     if (const std::string general = row.failure ? row.failure->message() : ""; !row.metrics && general != reason)
       reason = general + (general.empty() ? "" : "; ") + reason;
-    j["reason"] = row.metrics ? "" : reason;
+    j["reason"] = row.metrics ? poor : reason;
     metricsJson(&row, c, j);
     out.push_back(j);
   }
@@ -240,7 +255,7 @@ std::string textOf(const Json& value) { return value.dump(-1, ' ', false, Json::
 Json modelJson(const Inspection& inspection, const ModelResult& result) {
   const ModelSummary s = summarise(inspection, result);
   Json j;
-  j["status"] = s.answered ? "ok" : "failed";
+  j["status"] = s.status();
   j["reason"] = s.reason;
   j["fits"] = Json::array();
   for (const ModelResult::Fit& f : result.fits) j["fits"].push_back(fitJson(f));
@@ -256,7 +271,7 @@ Json modelJson(const Inspection& inspection, const ModelResult& result) {
   }
   j["frames"] = Json::array();
   for (const FrameComparison& c : result.frames)
-    if (inspection.isHeldOut(c.frame)) addRows(inspection, c, j["frames"]);
+    if (inspection.isHeldOut(c.frame)) addRows(inspection, result, c, j["frames"]);
   return j;
 }
 
@@ -289,8 +304,11 @@ BestModel bestOf(const std::vector<std::pair<std::string, ModelSummary>>& models
   BestModel best;
   int mostPredicted = 0;
   double smallest = 0;
+  const bool anyOk = std::any_of(models.begin(), models.end(), [](const auto& m) {
+    return m.second.answered && !m.second.poor && m.second.contourErrorPct.count > 0;
+  });
   for (const auto& [name, s] : models) {
-    if (!s.answered || s.contourErrorPct.count == 0) continue;
+    if (!s.answered || s.contourErrorPct.count == 0 || (anyOk && s.poor)) continue;
     if (best.model.empty() || s.predicted > mostPredicted ||
         (s.predicted == mostPredicted && s.contourErrorPct.mean < smallest)) {
       best.model = name;
@@ -299,15 +317,15 @@ BestModel bestOf(const std::vector<std::pair<std::string, ModelSummary>>& models
     }
   }
   if (!best.model.empty())
-    best.why =
-        "Smallest mean held-out contour error among the models that predicted the most frames; --models auto chooses from "
-        "the training frames alone.";
+    best.why = std::string(anyOk ? "" : "Every model that answers is poor: it explains its training views badly. ") +
+               "Smallest mean held-out contour error among the models that predicted the most frames; --models auto chooses from "
+               "the training frames alone.";
   return best;
 }
 
-std::string rowsJson(const Inspection& inspection, const FrameComparison& comparison) {
+std::string rowsJson(const Inspection& inspection, const ModelResult& result, const FrameComparison& comparison) {
   Json rows = Json::array();
-  addRows(inspection, comparison, rows);
+  addRows(inspection, result, comparison, rows);
   return textOf(rows);
 }
 
@@ -336,7 +354,9 @@ std::string evaluationJson(const Inspection& inspection, const ReportContext& co
   j["settings"] = settingsJson(inspection.request.settings);
   if (!inspection.request.whatIf.none()) j["what_if"] = Json::parse(whatIfJson(inspection.request.whatIf));
   j["scored_against"] = scoredAgainst(inspection);
-  j["warnings"] = warningsOf(inspection);
+  std::vector<std::string> warnings = warningsOf(inspection);
+  if (context.selection && context.selection->poor) warnings.push_back("auto: " + context.selection->why);
+  j["warnings"] = std::move(warnings);
   j["chosen_model"] = context.chosenModel.empty() ? Json(nullptr) : Json(context.chosenModel);
   j["why_chosen"] = context.whyChosen;
   if (const std::optional<DetectionError> d = detectionError(inspection)) j["detection"] = detectionOfAll(*d);

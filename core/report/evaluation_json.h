@@ -16,7 +16,7 @@
 namespace glint::evaluation {
 
 /// One row per highlight of a comparison, or one that says why there is none: an array, and how many it has.
-std::string rowsJson(const Inspection& inspection, const FrameComparison& comparison);
+std::string rowsJson(const Inspection& inspection, const ModelResult& result, const FrameComparison& comparison);
 int rowCount(const FrameComparison& comparison);
 std::string summaryJson(const ModelSummary& summary);
 std::string detectionJson(const DetectionError& error);

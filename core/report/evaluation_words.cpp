@@ -191,8 +191,9 @@ EvaluationWords evaluationWords(const Inspection& inspection, const ReportContex
   if (words.best.empty())
     words.inShort.push_back(models.empty() ? "No model was computed." : "No model predicted a highlight that was observed.");
   for (const auto& [name, s] : models) {
-    helpWanted = helpWanted || !s.answered || s.missed > 0 || s.contourErrorPct.mean > kLargestExpectedPct;
+    helpWanted = helpWanted || !s.answered || s.poor || s.missed > 0 || s.contourErrorPct.mean > kLargestExpectedPct;
     if (!s.answered) words.inShort.push_back(name + " gives no answer: " + sentence(s.reason));
+    if (s.poor) words.inShort.push_back(name + " answers poorly: " + sentence(s.reason));
   }
   if (helpWanted && !models.empty())
     words.inShort.push_back("glint diagnose " + (context.input.empty() ? "INPUT" : context.input) +

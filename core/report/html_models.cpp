@@ -18,10 +18,10 @@ ModelSummary ofLight(const Inspection& inspection, const ModelResult& result, co
   std::vector<ComparisonTally> tallies;
   for (const FrameComparison& c : result.frames)
     if (inspection.isHeldOut(c.frame) && c.light == light) tallies.push_back(tallyOf(c));
-  std::string failure;
+  FitReasons reasons;
   for (const ModelResult::Fit& fit : result.fits)
-    if (failure.empty() && fit.light == light && fit.failure()) failure = fit.failure()->message();
-  return summaryOf(tallies, failure, heldOutFrames(inspection));
+    if (fit.light == light) reasons.add(fitStatus(fit), fitReason(fit));
+  return summaryOf(tallies, reasons, heldOutFrames(inspection));
 }
 
 /// Lights of a model's comparisons, in their order.
@@ -34,7 +34,8 @@ std::vector<std::string> lightsOf(const Inspection& inspection, const ModelResul
 }
 
 std::string statisticsRow(const std::string& head, const ModelSummary& s) {
-  std::string html = "<tr>" + head + "<td>" + std::to_string(s.predicted) + "/" + std::to_string(s.frames) + "</td>";
+  std::string html = std::string(s.poor ? "<tr class=\"poor\">" : "<tr>") + head + "<td>" + std::to_string(s.predicted) + "/" +
+                     std::to_string(s.frames) + "</td>";
   if (!s.answered) return html + "<td class=\"reason\" colspan=\"10\">" + escaped(s.reason) + "</td></tr>\n";
   for (const double v : {s.contourErrorPct.mean, s.contourErrorPct.median, s.contourErrorPct.p95, s.contourErrorPct.max,
                          s.contourErrorPx.mean, s.ellipseErrorPct.mean})
@@ -99,6 +100,8 @@ std::string remarks(const Inspection& inspection, const ModelResult& result) {
   for (const ModelResult::Fit& fit : result.fits) {
     const std::string of = result.fits.size() > 1 ? textOf(fit.key()) + ": " : "";
     if (fit.failure()) html += "<li class=\"refused\">" + escaped(of + "no fit: " + fit.failure()->message()) + "</li>\n";
+    if (fit.fit && !fit.fit->poor.empty())
+      html += "<li class=\"refused\">" + escaped(of + poorWarning(fit.fit->poor)) + "</li>\n";
     if (fit.fit)
       for (const std::string& remark : fit.fit->remarks) html += "<li>" + escaped(of + remark) + "</li>\n";
   }
@@ -124,7 +127,9 @@ std::string overview(const Inspection& inspection, const std::string& best) {
   for (const std::string& name : inspection.request.models) {
     if (!inspection.models.count(name)) continue;
     const ModelSummary s = summarise(inspection, inspection.models.at(name));
-    html += std::string("<tr") + (name == best ? " class=\"best\"" : "") + "><td>" + swatch(name) + escaped(name) + "</td>";
+    const std::string classes = std::string(name == best ? "best " : "") + (s.poor ? "poor" : "");
+    html += "<tr" + (classes.empty() ? "" : " class=\"" + classes + "\"") + "><td>" + swatch(name) + escaped(name) +
+            (s.poor ? " <span class=\"refused\">poor</span>" : "") + "</td>";
     if (!s.answered) {
       html += "<td class=\"text refused\" colspan=\"3\">no answer</td></tr>\n";
       continue;
@@ -169,8 +174,9 @@ std::string modelSections(const Inspection& inspection) {
               " <span class=\"note\">(" + escaped(model->reference()) + ")</span></p>\n";
     else
       html += "</h3>\n";
-    if (const ModelSummary s = summarise(inspection, result); !s.answered)
-      html += "<p class=\"refused\"><b>No answer:</b> " + escaped(s.reason) + "</p>\n";
+    const ModelSummary s = summarise(inspection, result);
+    if (s.poor) html += "<p class=\"refused\"><b>Poor answer:</b> " + escaped(s.reason) + "</p>\n";
+    if (!s.answered) html += "<p class=\"refused\"><b>No answer:</b> " + escaped(s.reason) + "</p>\n";
     html += remarks(inspection, result) + unmatchedTable(inspection, name) + "</section>\n";
   }
   return html;

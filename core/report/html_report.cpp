@@ -29,6 +29,7 @@ constexpr const char* kStyle =
     ".swatch{display:inline-block;width:.8em;height:.8em;margin-right:.4em}"
     ".bar{display:inline-block;height:.8em;min-width:2px;margin-right:.6em;vertical-align:baseline}"
     ".overview td.text{width:70%}tr.best td{font-weight:bold}.refused{color:#9c1f12}"
+    "tr.poor td{color:#666;font-style:italic}"
     ".short{background:#f4f6f8;border-left:5px solid #2f7cc4;padding:.2em 1.2em .8em}.short p:first-child{font-size:1.15em}"
     "ul{padding-left:1.4em}.settings{columns:3;column-gap:2em;font-size:12px}.settings p{margin:0;break-inside:avoid}"
     "@media(max-width:700px){.frames{grid-template-columns:1fr}.settings{columns:1}}"

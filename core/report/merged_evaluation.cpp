@@ -28,7 +28,7 @@ struct MergedModel {
   Json band;  ///< of the first part; null = none
   std::vector<ComparisonTally> tallies;
   std::vector<std::string> warnings;
-  std::string fitFailure;
+  FitReasons reasons;
 };
 
 /// A list of a document, checked.
@@ -156,7 +156,11 @@ void readFits(const std::string& file, MergedModel& model) {
   const JsonNode fits = JsonNode::parse(model.fits.dump(), file);
   for (std::size_t i = 0; i < fits.size(); ++i) {
     const JsonNode fit = fits.at(i), surface = fit.at("surface"), remarks = listAt(fit, "warnings");
-    if (fit.at("status").text() != "ok" && model.fitFailure.empty()) model.fitFailure = fit.at("reason").text();
+    model.reasons.add(fit.at("status").text(), fit.at("reason").text());
+    if (fit.at("status").text() == "poor")
+      model.warnings.push_back(fitWarning(model.name, fit.at("light").text(),
+                                          surface.isNull() ? std::nullopt : std::optional(surface.text()),
+                                          poorWarning(fit.at("reason").text())));
     for (std::size_t r = 0; r < remarks.size(); ++r)
       model.warnings.push_back(fitWarning(model.name, fit.at("light").text(),
                                           surface.isNull() ? std::nullopt : std::optional(surface.text()), remarks.at(r).text()));
@@ -289,9 +293,9 @@ MergedEvaluation mergedEvaluation(const std::vector<std::string>& files) {
     mergeComparisons(parts, records, m);
     mergeBand(first, m);
     warnings.insert(warnings.end(), m.warnings.begin(), m.warnings.end());
-    summaries.emplace_back(name, summaryOf(m.tallies, m.fitFailure, heldOut));
+    summaries.emplace_back(name, summaryOf(m.tallies, m.reasons, heldOut));
     const ModelSummary& s = summaries.back().second;
-    Json j = {{"status", s.answered ? "ok" : "failed"}, {"reason", s.reason}, {"fits", std::move(m.fits)}};
+    Json j = {{"status", s.status()}, {"reason", s.reason}, {"fits", std::move(m.fits)}};
     j["summary"] = Json::parse(evaluation::summaryJson(s));
     if (!m.band.is_null()) j["band"] = std::move(m.band);
     j["frames"] = std::move(m.rows);

@@ -60,7 +60,8 @@ std::string evaluationCsv(const Inspection& inspection) {
     ordered_json rows = ordered_json::array();
     for (const FrameComparison& c : it->second.frames)
       if (inspection.isHeldOut(c.frame))
-        for (ordered_json& row : ordered_json::parse(evaluation::rowsJson(inspection, c))) rows.push_back(std::move(row));
+        for (ordered_json& row : ordered_json::parse(evaluation::rowsJson(inspection, it->second, c)))
+          rows.push_back(std::move(row));
     for (const ordered_json& r : rows) {
       out += csvText(name) + "," + r["index"].dump() + "," + csvText(r["id"]) + "," + csvText(r["light"]) + "," +
              r["highlight"].dump() + "," + csvText(r["status"]) + "," + csvText(r["reason"]);
@@ -88,7 +89,7 @@ std::string evaluationTable(const Inspection& inspection) {
                      cell(s.contourErrorPct.p95).c_str(), cell(s.contourErrorPct.max).c_str(),
                      cell(s.contourErrorPx.mean).c_str(), cell(s.iou.mean, "%.4f").c_str(), cell(s.coverage.mean, "%.3f").c_str(),
                      counts.c_str(), cell(s.timeUs.median, "%.0f").c_str());
-    if (!s.answered) out += "  " + s.reason;
+    if (!s.answered || s.poor) out += "  " + (s.poor ? poorWarning(s.reason) : s.reason);
     out += "\n";
     for (const std::string& text : bandLines(inspection, it->second)) {
       out += formatted("%-12s ", "") + text + "\n";

@@ -69,11 +69,11 @@ std::string tradeoffHtml(const Tradeoff& t) {
       if (index == i) marks += " " + name;
     html += std::string("<tr") + (t.chosen == i ? " class=\"chosen\"" : "") + "><td>" + marks +
             "</td><td class=\"text\"><span class=\"swatch\" style=\"background:" + modelHex(p.model) + "\"></span>" +
-            escaped(describe(t, p)) + "</td><td>" + format("%.1f", p.predictUs) + "</td><td>" +
-            format("%.3g", p.contourErrorPct) + "</td><td>" + format("%.4f", p.iou) + "</td><td>" + format("%.3f", p.coverage) +
-            "</td><td>" + std::to_string(p.predicted) + "/" + std::to_string(p.frames) + "</td><td>" + std::to_string(p.matched) +
-            " / " + std::to_string(p.missed) + " / " + std::to_string(p.spurious) + "</td><td>" + format("%.2f", p.fitUs * 1e-3) +
-            "</td><td>" + format("%.1f", p.peakMb) + "</td></tr>\n";
+            escaped(describe(t, p) + (p.poor.empty() ? "" : ", poor: " + p.poor)) + "</td><td>" + format("%.1f", p.predictUs) +
+            "</td><td>" + format("%.3g", p.contourErrorPct) + "</td><td>" + format("%.4f", p.iou) + "</td><td>" +
+            format("%.3f", p.coverage) + "</td><td>" + std::to_string(p.predicted) + "/" + std::to_string(p.frames) +
+            "</td><td>" + std::to_string(p.matched) + " / " + std::to_string(p.missed) + " / " + std::to_string(p.spurious) +
+            "</td><td>" + format("%.2f", p.fitUs * 1e-3) + "</td><td>" + format("%.1f", p.peakMb) + "</td></tr>\n";
   }
   html +=
       "</table>\n<p class=\"faded\">Only settings that differ from the defaults are listed. Error: symmetric mean "

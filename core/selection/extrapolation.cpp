@@ -138,12 +138,12 @@ double differencePct(const std::vector<PredictedHighlight>& a, const std::vector
 
 Outlook lookAhead(const HighlightModel& model, std::map<std::string, Fold>& whole, const std::vector<Fold>& folds,
                   const std::vector<Answer>& answers, const std::vector<ViewToPredict>& views, const Settings& settings,
-                  const ProgressFn& progress) {
+                  PoorFits poor, const ProgressFn& progress) {
   Outlook outlook;
   const Clock::time_point start = Clock::now();
   for (auto& [light, fold] : whole) {
     if (!report(progress, {"look ahead " + model.id(), 0, static_cast<int>(views.size())})) throw Stopped{};
-    outlook.fits.emplace(light, fitFold(fold, model, settings));
+    outlook.fits.emplace(light, fitFold(fold, model, settings, poor));
   }
   outlook.predictions.resize(views.size());
   outlook.spreadPct.assign(views.size(), kNoPredictionPct);

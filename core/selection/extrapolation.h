@@ -52,7 +52,7 @@ struct Outlook {
 /// @param answers  one per fold, with their fits.
 Outlook lookAhead(const HighlightModel& model, std::map<std::string, Fold>& whole, const std::vector<Fold>& folds,
                   const std::vector<Answer>& answers, const std::vector<ViewToPredict>& views, const Settings& settings,
-                  const ProgressFn& progress);
+                  PoorFits poor, const ProgressFn& progress);
 
 /// Distance between two predictions of one view as `contour_error_pct` (method.md section 10), of the first one's diameter; a
 /// highlight that only one of them has counts kNoPredictionPct, and no pair counts more. NaN when neither has one.

@@ -10,7 +10,6 @@
 #include "core/base/parallel.h"
 #include "core/fit/training.h"
 #include "core/light/left_out.h"
-#include "core/model/plausible.h"
 #include "core/score/statistic.h"
 #include "core/surface/mesh_policy.h"
 
@@ -87,8 +86,8 @@ Outcome<std::shared_ptr<const Surface>> Fold::surfaceOf(int frame, const Highlig
                           model.needsLight() && light ? light->correction : none, meshPolicy(inspection->request.settings));
 }
 
-Outcome<ModelFit> fitFold(Fold& fold, const HighlightModel& model, const Settings& settings) {
-  if (!model.needsLight()) return fitModel(model, fold.others, std::nullopt, settings, fold.pixelFit);
+Outcome<ModelFit> fitFold(Fold& fold, const HighlightModel& model, const Settings& settings, PoorFits poor) {
+  if (!model.needsLight()) return accepted(fitModel(model, fold.others, std::nullopt, settings, fold.pixelFit), poor);
   if (!fold.light) {
     fold.light = fitLight(fold.others, *fold.inspection->scene, *fold.inspection->surfaces, settings);
     if (fold.light->correction) {
@@ -98,11 +97,18 @@ Outcome<ModelFit> fitFold(Fold& fold, const HighlightModel& model, const Setting
   }
   if (model.needsCanonicalContours() && fold.light->light && !std::exchange(fold.canonicalTried, true))
     for (TrainingView& v : fold.light->views) addCanonicalContour(v, fold.light->light->light, settings);
-  return fitModel(model, fold.light->views, fold.light->light, settings, fold.light->correction ? nullptr : fold.pixelFit);
+  return accepted(
+      fitModel(model, fold.light->views, fold.light->light, settings, fold.light->correction ? nullptr : fold.pixelFit), poor);
 }
 
-Answer leaveOut(Fold& fold, const HighlightModel& model, const Settings& settings) {
-  const Outcome<ModelFit> fit = fitFold(fold, model, settings);
+PoorFits poorFitsFor(const ModelResult& result) {
+  const bool any = std::any_of(result.fits.begin(), result.fits.end(),
+                               [](const ModelResult::Fit& f) { return f.fit && !f.fit->poor.empty(); });
+  return any ? PoorFits::Take : PoorFits::Refuse;
+}
+
+Answer leaveOut(Fold& fold, const HighlightModel& model, const Settings& settings, PoorFits poor) {
+  const Outcome<ModelFit> fit = fitFold(fold, model, settings, poor);
   if (!fit) return failed(fit.failure());
   Answer answer = predictLeft(fold, model, *fit, settings);
   answer.fit = *fit;
@@ -144,7 +150,7 @@ double rankedPct(const std::vector<Answer>& answers, const std::vector<char>& po
 }
 
 Candidate tryModel(const Inspection& inspection, const HighlightModel& model, std::vector<Fold>& folds,
-                   std::vector<Answer>& answers, const RankingSoFar& known, const ProgressFn& progress) {
+                   std::vector<Answer>& answers, const RankingSoFar& known, PoorFits poor, const ProgressFn& progress) {
   Candidate c;
   c.model = model.id();
   c.views = static_cast<int>(folds.size());
@@ -157,7 +163,7 @@ Candidate tryModel(const Inspection& inspection, const HighlightModel& model, st
     const int count = std::min(kGroup, c.views - tried);
     const ProgressFn offset = [&](const StageEvent& e) { return report(progress, {e.stage, tried + e.done, c.views}); };
     parallelFor(
-        count, [&](int i) { answers[tried + i] = leaveOut(folds[tried + i], model, inspection.request.settings); }, offset,
+        count, [&](int i) { answers[tried + i] = leaveOut(folds[tried + i], model, inspection.request.settings, poor); }, offset,
         "leave one out " + c.model);
     tried += count;
   }

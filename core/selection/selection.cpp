@@ -33,8 +33,13 @@ constexpr std::size_t kViewsShown = 8;
 /// The search, step by step; see selectModel.
 class Search {
  public:
-  Search(const Inspection& inspection, const std::optional<double>& goodEnoughPct, const ProgressFn& progress)
-      : inspection_(inspection), goodEnough_(goodEnoughPct), progress_(progress), settings_(inspection.request.settings) {}
+  /// @param poor  whether fits that explain their views badly count as answers: the choice is then poor
+  Search(const Inspection& inspection, const std::optional<double>& goodEnoughPct, PoorFits poor, const ProgressFn& progress)
+      : inspection_(inspection),
+        goodEnough_(goodEnoughPct),
+        poor_(poor),
+        progress_(progress),
+        settings_(inspection.request.settings) {}
 
   Selection run();
 
@@ -50,6 +55,7 @@ class Search {
     std::vector<double> aheadPct;  ///< per view to predict: spread and disagreement; NaN where nothing predicts
   };
 
+  double mostPct() const { return poor_ == PoorFits::Take ? kLargestPoorPct : kLargestExpectedPct; }
   double ranked(std::size_t m) const { return rankedPct(tried_[m].answers, known_.possible); }
   std::string errorText(std::size_t m) const;
   void tryNext(const HighlightModel& model);
@@ -84,6 +90,7 @@ class Search {
 
   const Inspection& inspection_;
   const std::optional<double>& goodEnough_;
+  const PoorFits poor_;
   const ProgressFn& progress_;
   const Settings& settings_;
   Selection s_;
@@ -103,7 +110,8 @@ std::string Search::errorText(std::size_t m) const {
 
 void Search::choose(std::size_t m, double mostPct) {
   s_.candidates[m].remark = "chosen" + (s_.candidates[m].remark.empty() ? "" : "; " + s_.candidates[m].remark);
-  s_.model = s_.candidates[m].model;
+  s_.model = s_.best = s_.candidates[m].model;
+  s_.poor = poor_ == PoorFits::Take;
   s_.patches = choosePatches(inspection_, *tried_[m].model, folds_, tried_[m].answers, mostPct, progress_);
 }
 
@@ -123,7 +131,7 @@ void Search::tryNext(const HighlightModel& model) {
   tried_.emplace_back();
   Tried& t = tried_.back();
   t.model = &model;
-  s_.candidates.push_back(tryModel(inspection_, model, folds_, t.answers, known_, progress_));
+  s_.candidates.push_back(tryModel(inspection_, model, folds_, t.answers, known_, poor_, progress_));
   Candidate& c = s_.candidates.back();
   t.bound = predictsOtherSurfaces(inspection_) &&
             std::any_of(t.answers.begin(), t.answers.end(), [](const Answer& a) { return a.boundToSurface; });
@@ -151,7 +159,7 @@ void Search::tryNext(const HighlightModel& model) {
 void Search::lookAt(std::size_t m) {
   Tried& t = tried_[m];
   if (views_.empty() || t.outlook) return;
-  t.outlook = lookAhead(*t.model, whole_, folds_, t.answers, views_, settings_, progress_);
+  t.outlook = lookAhead(*t.model, whole_, folds_, t.answers, views_, settings_, poor_, progress_);
   s_.candidates[m].timeUs += t.outlook->timeUs;
   for (const auto& [light, fit] : t.outlook->fits) {
     if (fit) {
@@ -194,7 +202,7 @@ std::vector<std::vector<PredictedHighlight>> Search::witness() {
   std::vector<std::vector<PredictedHighlight>> predictions(views_.size());
   const HighlightModel& levelSet = levelSetModel();
   for (auto& [light, fold] : whole_)
-    if (const Outcome<ModelFit> fit = fitFold(fold, levelSet, settings_))
+    if (const Outcome<ModelFit> fit = fitFold(fold, levelSet, settings_, poor_))
       for (std::size_t v = 0; v < views_.size(); ++v)
         if (views_[v].light == light)
           predictions[v] = levelSet.predict(*fit, views_[v].camera, views_[v].surface.get(), settings_).highlights();
@@ -332,7 +340,7 @@ Selection Search::run() {
     if (goodEnough_) {
       if (!meetsTolerance(m)) continue;
       expect(m);
-      if (!(s_.candidates[m].expectedPct <= kLargestExpectedPct)) continue;
+      if (!(s_.candidates[m].expectedPct <= mostPct())) continue;
       s_.why = "Simplest model under the stated tolerance of " + percentText(*goodEnough_) + ": " + c.model +
                " has a leave-one-view-out error of " + percentText(c.meanPct) + "; richer models were not tried.";
       s_.decidedBy = "leave-one-out";
@@ -408,6 +416,7 @@ bool Search::heedContradictions(Decision& d) {
   const std::optional<std::size_t> allowed = best(true);
   Tried& first = tried_[d.best];
   if (!allowed) {
+    s_.best = s_.candidates[d.best].model;
     s_.why = "Refused: the surface contradicts every model that answered. The best of them is " + s_.candidates[d.best].model +
              ": " + first.contradiction + ".";
     return false;
@@ -470,7 +479,7 @@ void Search::compareAhead(Decision& d) {
 std::string Search::whyRefused(std::size_t choice) const {
   const Candidate& c = s_.candidates[choice];
   return "Refused: the smallest expected error is " + percentText(c.expectedPct) + " of the diameter, of " + c.model +
-         ", above the limit of " + percentText(kLargestExpectedPct) + ". Its leave-one-view-out error is " + errorText(choice) +
+         ", above the limit of " + percentText(mostPct()) + ". Its leave-one-view-out error is " + errorText(choice) +
          (s_.toPredict
               ? "; in the views to predict its contours are uncertain by " + percentText(c.outlookPct) + "; " + whereText()
               : "") +
@@ -508,10 +517,10 @@ void Search::decide() {
   compareAhead(d);
   for (const std::size_t m : d.plausible) expect(m);
   for (const std::size_t m : d.plausible)
-    if (s_.candidates[d.choice].expectedPct > kLargestExpectedPct &&
-        s_.candidates[m].expectedPct < s_.candidates[d.choice].expectedPct)
+    if (s_.candidates[d.choice].expectedPct > mostPct() && s_.candidates[m].expectedPct < s_.candidates[d.choice].expectedPct)
       d.choice = m;
-  if (!(s_.candidates[d.choice].expectedPct <= kLargestExpectedPct)) {
+  if (!(s_.candidates[d.choice].expectedPct <= mostPct())) {
+    s_.best = s_.candidates[d.choice].model;
     s_.why = whyRefused(d.choice);
     return;
   }
@@ -522,15 +531,30 @@ void Search::decide() {
   choose(d.choice, ranked(d.best) + d.slackPct);
 }
 
+double expectedPctOf(const Selection& s) {
+  for (const Candidate& c : s.candidates)
+    if (c.model == s.model) return c.expectedPct;
+  return std::nan("");
+}
+
 }  // namespace
 
 Selection selectModel(const Inspection& inspection, const std::optional<double>& goodEnoughPct, const ProgressFn& progress) {
-  return Search(inspection, goodEnoughPct, progress).run();
+  Selection good = Search(inspection, goodEnoughPct, PoorFits::Refuse, progress).run();
+  if (!good.model.empty() || good.leftOut == 0) return good;
+  Selection poor = Search(inspection, goodEnoughPct, PoorFits::Take, progress).run();
+  if (!poor.model.empty())
+    poor.why = formatted(
+                   "Poor: no model explains its training views and is expected to be off by less than %g %%; this is the "
+                   "best of what answers, expected to be off by %.3g %%. ",
+                   kLargestExpectedPct, expectedPctOf(poor)) +
+               poor.why;
+  return poor;
 }
 
 InspectionRequest chosenRequest(InspectionRequest request, const Selection& selection) {
   request.models.clear();
-  if (!selection.model.empty()) request.models.push_back(selection.model);
+  if (!selection.best.empty()) request.models.push_back(selection.best);
   if (selection.patches)
     request.settings.set("predict.query", std::string(selection.patches->goodEnough ? "local-quadric" : "exact"));
   return request;

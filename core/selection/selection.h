@@ -43,8 +43,10 @@ struct PatchChoice {
 };
 
 struct Selection {
-  std::string model;      ///< "" when no candidate answered every view that can be answered, or all expect too large an error
-  std::string why;        ///< one sentence
+  std::string model;  ///< "" when no candidate answered every view that can be answered, or all expect too large an error
+  bool poor = false;  ///< `model` is the best of what is there: its fit is poor, or its expected error over kLargestExpectedPct
+  std::string best;   ///< what to show: `model`, or the best of those refused; "" where none answered
+  std::string why;    ///< one sentence
   int trainingViews = 0;  ///< usable ones
   int leftOut = 0;        ///< of them left out, one at a time: at most kMostLeftOut, evenly spread
   int toPredict = 0;      ///< views to predict that were looked at, and of them those outside the training views
@@ -52,6 +54,8 @@ struct Selection {
   std::string decidedBy;               ///< "leave-one-out" or "extrapolation"; "" when nothing was chosen
   std::vector<Candidate> candidates;   ///< from simple to rich, as far as the search went
   std::optional<PatchChoice> patches;  ///< none when the chosen model does not walk, or walks on patches already
+
+  const char* status() const { return model.empty() ? "failed" : poor ? "poor" : "ok"; }
 };
 
 /// An error as large as the highlight itself is worth no more than no prediction; a missing prediction counts as this.
@@ -62,8 +66,10 @@ inline constexpr int kMostLeftOut = 24;
 /// on 8-bit frames, docs/accuracy.md), and a plane has a contour that is an ellipse only to about 0.02 %.
 inline constexpr double kNegligiblePct = 0.05;
 
-/// Above this expected error no model is chosen: a prediction that is off by a twentieth of its size is no answer.
+/// Above this expected error a choice is poor: a prediction that is off by a twentieth of its size.
 inline constexpr double kLargestExpectedPct = 5;
+/// Above this one no model is chosen.
+inline constexpr double kLargestPoorPct = 10;
 /// A simpler model may look ahead with this many times the least error: over docs/audit/auto.py's runs, where it was more, the richer
 /// model did better four times out of five.
 inline constexpr double kAsGood = 1.1;
@@ -77,7 +83,9 @@ inline constexpr double kAsGood = 1.1;
 ///    model that the surface allows, by two standard errors; then the surface is what is wrong.
 /// 3. Looking ahead, in views to predict: its `outlookPct` must be within kAsGood times the least. This sees what leaving one out
 ///    cannot: extrapolation, and differences that the noise of the left-out contours hides.
-/// Errors below kNegligiblePct count as that. When the model's expected error is over kLargestExpectedPct nothing is chosen.
+/// Errors below kNegligiblePct count as that. When the model's expected error is over kLargestExpectedPct it is not
+/// chosen so. The same rules then choose among all fits, poor ones too (ModelFit::poor), under the limit kLargestPoorPct; such a choice is
+/// `poor`. Above that limit nothing is chosen.
 /// With `goodEnoughPct` the search stops at the first model whose leave-one-view-out error is under it, whatever it assumes; where
 /// views to predict lie outside the training views, what it predicts there must be reproduced within the tolerance by its left-out
 /// fits and by `limit-angle`. Nothing richer is computed.
@@ -95,7 +103,7 @@ inline constexpr double kAsGood = 1.1;
 /// @param inspection  needs evidence and views; models need not have been fitted.
 Selection selectModel(const Inspection& inspection, const std::optional<double>& goodEnoughPct, const ProgressFn& progress = {});
 
-/// The request that computes what was chosen: its model, and patches where they are good enough.
+/// The request that computes what was chosen, or the best of what was refused: its model, and patches where they are good enough.
 InspectionRequest chosenRequest(InspectionRequest request, const Selection& selection);
 
 /// A table of the candidates and the sentence, for a person.

@@ -32,7 +32,10 @@ void choosePoint(Tradeoff& t, const TradeoffBound& bound) {
   std::stable_sort(t.points.begin(), t.points.end(),
                    [](const TradeoffPoint& a, const TradeoffPoint& b) { return a.predictUs < b.predictUs; });
   std::vector<Cost> costs;
-  for (const TradeoffPoint& p : t.points) costs.push_back({p.rankedErrorPct, p.predictUs});
+  // A poor setting counts only where no other answers.
+  const bool anyOk = std::any_of(t.points.begin(), t.points.end(), [](const TradeoffPoint& p) { return p.poor.empty(); });
+  for (const TradeoffPoint& p : t.points)
+    costs.push_back({anyOk && !p.poor.empty() ? std::nan("") : p.rankedErrorPct, p.predictUs});
   const std::vector<char> front = paretoFront(costs);
   for (std::size_t i = 0; i < costs.size(); ++i) t.points[i].pareto = front[i] != 0;
   t.presets.clear();

@@ -61,6 +61,8 @@ std::string tradeoffJson(const Tradeoff& t) {
   for (const TradeoffPoint& p : t.points) {
     Json point;
     addSettings(point, t, p.model, p.settings);
+    point["status"] = p.poor.empty() ? "ok" : "poor";
+    point["reason"] = p.poor;
     point["contour_error_pct"] = numberOrNull(p.contourErrorPct);
     point["iou"] = numberOrNull(p.iou);
     point["coverage"] = numberOrNull(p.coverage);
@@ -116,6 +118,7 @@ Tradeoff readTradeoff(const JsonNode& node) {
     TradeoffPoint p;
     p.model = n.at("settings").at("model").text();
     p.settings = readSet(n.at("set"));
+    if (const auto reason = n.find("reason")) p.poor = reason->text();
     p.contourErrorPct = optionalNumber(n.at("contour_error_pct"));
     p.iou = optionalNumber(n.at("iou"));
     p.coverage = optionalNumber(n.at("coverage"));
@@ -170,7 +173,7 @@ std::string tradeoffTable(const Tradeoff& t) {
     const std::string predicted = std::to_string(p.predicted) + "/" + std::to_string(p.frames);
     out += formatted("%-5s %9.1f %10.4g %8.4f %9.3f %10s %10.2f %8.1f  ", p.pareto ? "*" : "", p.predictUs, p.contourErrorPct,
                      p.iou, p.coverage, predicted.c_str(), p.fitUs * 1e-3, p.peakMb) +
-           describe(t, p) + marks + "\n";
+           describe(t, p) + (p.poor.empty() ? "" : "  poor: " + p.poor) + marks + "\n";
   }
   std::map<std::string, int> kinds;
   for (const PrunedPoint& p : t.pruned) ++kinds[p.kind];

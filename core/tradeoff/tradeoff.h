@@ -24,6 +24,7 @@ struct TradeoffPoint {
   double fitUs = 0;           ///< light, canonical contours and fit of all lights and surfaces, one thread, median of repeats
   double peakMb = 0;          ///< peak resident memory of the process with this setting alone, 2^20 bytes
   bool pareto = false;
+  std::string poor{};  ///< why the model explains its training views badly; "" where it explains them
 };
 
 /// A setting that was not measured in full, and why.

@@ -158,6 +158,7 @@ TradeoffPoint TradeoffBench::pointOf(const Inspection& inspection, const Trial& 
   p.iou = s.iou.mean;
   p.coverage = s.coverage.mean;
   p.rankedErrorPct = rankedErrorPct(p);
+  if (s.poor) p.poor = s.reason;
   return p;
 }
 
@@ -231,6 +232,7 @@ Outcome<TrialResult> TradeoffBench::coarse(const Trial& trial) {
   if (!s.answered) return Failure{Reason::NotReached, s.reason};
   TrialResult result;
   result.errorPct = pointOf(r, trial).rankedErrorPct;
+  if (s.poor) result.poor = s.reason;
   std::vector<double> shortest;
   for (const std::vector<double>& of : timesOf(r, trial, kFewTimed, kFewRepeats))
     shortest.push_back(*std::min_element(of.begin(), of.end()));

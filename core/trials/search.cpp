@@ -84,6 +84,11 @@ class Search {
       prune(t, "failed", "no finite error");
       return std::nullopt;
     }
+    if (!r->poor.empty()) {
+      poor_.push_back({t, static_cast<int>(result_.pruned.size())});
+      prune(t, "poor", r->poor, {r->errorPct, r->us});
+      return std::nullopt;
+    }
     tried_.push_back({t, std::move(*r)});
     return static_cast<int>(tried_.size()) - 1;
   }
@@ -238,6 +243,22 @@ class Search {
       kept.push_back(i);
     }
     for (const int i : kept) result_.finalists.push_back(tried_[i].trial);
+    if (result_.finalists.empty()) takePoorOnes();
+  }
+
+  /// No other one answers: the first of each model.
+  void takePoorOnes() {
+    std::set<std::string> taken;
+    std::vector<char> keep(result_.pruned.size(), 1);
+    for (const auto& [trial, pruned] : poor_) {
+      if (!taken.insert(trial.model).second) continue;
+      result_.finalists.push_back(trial);
+      keep[static_cast<std::size_t>(pruned)] = 0;
+    }
+    std::vector<PrunedPoint> left;
+    for (std::size_t i = 0; i < keep.size(); ++i)
+      if (keep[i]) left.push_back(std::move(result_.pruned[i]));
+    result_.pruned = std::move(left);
   }
 
   const std::vector<Knob>& knobs_;
@@ -245,7 +266,8 @@ class Search {
   const SearchOptions& options_;
   SearchResult result_;
   std::vector<Tried> tried_;
-  std::set<int> given_;  ///< tried and pruned
+  std::set<int> given_;                      ///< tried and pruned
+  std::vector<std::pair<Trial, int>> poor_;  ///< with their places in SearchResult::pruned
   std::set<std::string> seen_;
   std::map<std::string, int> bases_;
   std::map<std::string, std::vector<Promising>> promising_;

@@ -22,6 +22,7 @@ struct TrialResult {
   double errorPct = 0;      ///< rankedErrorPct
   double us = 0;            ///< per frame
   std::string predictions;  ///< equal for trials that predicted the same contours
+  std::string poor{};       ///< why the model explains its training views badly; "" where it explains them
 };
 
 struct SearchOptions {
@@ -42,6 +43,7 @@ struct SearchResult {
 ///    values, multiplied, say that a combination is clearly dominated, it is not tried;
 /// 4. what is on the front, or too near to tell, goes on; of several that cannot be told apart one stays. The base of every model
 ///    that answered goes on too, for comparison.
+/// Poor trials are given up, unless every trial that answers is poor: then the first one of each model goes on.
 /// "Clearly" means beyond the noise of a short measurement, kErrorSlack and kTimeSlack.
 /// @param models  from simple to rich.   @param tryOne  a failure gives the trial up, with its reason.
 SearchResult searchTrials(const std::vector<std::string>& models, const Settings& base, const std::vector<Knob>& knobs,

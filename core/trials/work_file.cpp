@@ -20,7 +20,7 @@ double numberOrNan(const JsonNode& j) { return j.isNull() ? std::nan("") : j.num
 
 // Settings are not stored: the id of a trial holds them, and the caller puts them back.
 Json toJson(const TrialResult& r) {
-  return {{"error_pct", numberOrNull(r.errorPct)}, {"us", numberOrNull(r.us)}, {"predictions", r.predictions}};
+  return {{"error_pct", numberOrNull(r.errorPct)}, {"us", numberOrNull(r.us)}, {"predictions", r.predictions}, {"poor", r.poor}};
 }
 Json toJson(const TradeoffPoint& p) {
   return {{"frames", p.frames},
@@ -33,13 +33,15 @@ Json toJson(const TradeoffPoint& p) {
           {"coverage", numberOrNull(p.coverage)},
           {"predict_us", numberOrNull(p.predictUs)},
           {"fit_us", numberOrNull(p.fitUs)},
-          {"peak_mb", numberOrNull(p.peakMb)}};
+          {"peak_mb", numberOrNull(p.peakMb)},
+          {"poor", p.poor}};
 }
 
 void fromJson(const JsonNode& j, TrialResult& r) {
   r.errorPct = numberOrNan(j.at("error_pct"));
   r.us = numberOrNan(j.at("us"));
   r.predictions = j.at("predictions").text();
+  r.poor = j.has("poor") ? j.at("poor").text() : "";
 }
 void fromJson(const JsonNode& j, TradeoffPoint& p) {
   p.frames = j.at("frames").integer();
@@ -54,6 +56,7 @@ void fromJson(const JsonNode& j, TradeoffPoint& p) {
   p.fitUs = numberOrNan(j.at("fit_us"));
   p.peakMb = numberOrNan(j.at("peak_mb"));
   p.rankedErrorPct = rankedErrorPct(p);
+  p.poor = j.has("poor") ? j.at("poor").text() : "";
 }
 
 template <class T>

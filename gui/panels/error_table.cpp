@@ -271,6 +271,7 @@ void ErrorTable::showSummary() {
   for (const std::string& name : modelsInOrder(*inspection)) {
     const ModelSummary s = summarise(*inspection, inspection->models.at(name));
     SummaryRow row{toQColor(draw::modelColour(name)).name(), toQString(name), {}, {}};
+    if (s.poor) row.name += tr(", poor");
     if (s.answered) {
       missed += s.missed;
       spurious += s.spurious;

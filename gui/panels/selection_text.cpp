@@ -111,6 +111,7 @@ NumberGroup fitGroup(const std::string& model, const ModelResult::Fit& f, int fr
   Lines lines;
   if (f.failure()) lines.note(toQString(f.failure()->message()));
   if (f.fit) {
+    if (!f.fit->poor.empty()) lines.note(QObject::tr("poor: %1").arg(toQString(f.fit->poor)));
     lines.add(QObject::tr("solver"), toQString(f.fit->solver));
     const EllipsoidFit* const fitted = f.fit->as<EllipsoidFit>();
     if (f.fit->ellipsoid()) {

@@ -239,9 +239,10 @@ void MainWindow::buildDocks() {
     const QString table = toQString(selectionTable(*selection));
     log(tr("Automatic choice of model\n") + table);
     setup_->showChoice(toQString(selection->why + (selection->patches ? " " + selection->patches->why : "")), table);
-    if (!selection->model.empty())
+    if (!selection->best.empty())
       document_.setRequest(chosenRequest(document_.request(), *selection),
-                           tr("Automatic choice: %1").arg(toQString(selection->model)));
+                           (selection->model.empty() ? tr("Best of those refused: %1") : tr("Automatic choice: %1"))
+                               .arg(toQString(selection->best)));
     if (document_.stale()) recompute();  // the choice took the place of a run that was under way
   });
   docks_.add("setup", tr("Setup"), setup_, Qt::LeftDockWidgetArea);

@@ -11,8 +11,8 @@ namespace glint::viz {
 namespace {
 
 std::string fitText(const ModelFit& fit, const EllipsoidFit& fitted) {
-  std::string text = line("model", fit.model) + line("light", fit.light) + line("solver", fit.solver) +
-                     line("gap ratio", fitted.gapRatio) + line("condition", fit.condition);
+  std::string text = line("model", fit.model + (fit.poor.empty() ? "" : ", poor: " + fit.poor)) + line("light", fit.light) +
+                     line("solver", fit.solver) + line("gap ratio", fitted.gapRatio) + line("condition", fit.condition);
   if (!fit.residualPx.empty())
     text += line("worst training residual", *std::max_element(fit.residualPx.begin(), fit.residualPx.end()), "px") +
             "(residual: " + residualMeaning(fit) + ")\n";
@@ -92,6 +92,7 @@ LayerContent ellipsoidsLayer(const LayerInput& in) {
       info.text = fitText(*fit, *fitted) + line("centre", e.centre(), "m") + line("semi-axes", e.semiAxes(), "m");
       content.behindSurface = content.behindSurface || hiddenBySurface(in, e.centre());
       const Colour colour = modelColour(model);
+      const bool poor = !fit->poor.empty();  // paler
       // A vanishing axis would make the unit sphere's normals undefined: keep it thinner than a line.
       const Eigen::Vector3d axes = e.semiAxes().cwiseMax(1e-5 * std::max(e.semiAxes().maxCoeff(), 1e-300));
       const Eigen::Affine3d worldFromUnit = Eigen::Affine3d(e.worldFromBody()) * Eigen::Scaling(axes);
@@ -100,9 +101,9 @@ LayerContent ellipsoidsLayer(const LayerInput& in) {
       const std::vector<Points> outlines{circle(c, a.col(0), a.col(1)), circle(c, a.col(1), a.col(2)),
                                          circle(c, a.col(2), a.col(0))};
       const bool selected = in.selection.model == model && (in.selection.light.empty() || in.selection.light == fit->light);
-      content.add(ellipsoidActor(worldFromUnit, colour, selected ? 0.4 : 0.15), info);
+      content.add(ellipsoidActor(worldFromUnit, colour, (selected ? 0.4 : 0.15) * (poor ? 0.5 : 1)), info);
       if (selected) content.add(lineActor(outlines, in.ink(), 5.0), info, 5.0);  // ink about the model's colour
-      const double width = selected ? 3.0 : 1.5;
+      const double width = selected ? 3.0 : poor ? 0.75 : 1.5;
       content.add(lineActor(outlines, colour, width), info, width);
       // A needle far across the scene must not shrink the rest: cameras, surface and lights frame the picture.
       if (2 * e.semiAxes().maxCoeff() > in.scale.sceneSize)

@@ -20,7 +20,7 @@ class Results:
         return [m for m in dict.fromkeys(list(self.fits) + list(self.predictions))]
 
     def answered(self):
-        return [m for m in self.models() if any(f.get("status") == "ok" for f in self.fits.get(m, []))]
+        return [m for m in self.models() if any(f.get("status") in ("ok", "poor") for f in self.fits.get(m, []))]
 
 
 def objects(value, file, place):
@@ -126,7 +126,7 @@ def check_index(row, frames, file, place):
 
 def fit_for(results, model, light, surface):
     """The fit that predicts a light on a surface; None where there is none."""
-    rows = [f for f in results.fits.get(model, []) if f["light"] == light and f["status"] == "ok"]
+    rows = [f for f in results.fits.get(model, []) if f["light"] == light and f["status"] in ("ok", "poor")]
     own = [f for f in rows if f["surface"] == surface and surface is not None]
     return (own or [f for f in rows if f["surface"] is None] or [None])[0]
 

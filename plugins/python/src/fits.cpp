@@ -87,6 +87,7 @@ void declareFit(py::module_& module) {
       .def_readonly("solver", &ModelFit::solver, "\"linear\", \"anchored\", \"refined\", \"bundle\", ...")
       .def_readonly("frames", &ModelFit::frames, "Frames used.")
       .def_readonly("warnings", &ModelFit::remarks, "What makes the answer doubtful, in words.")
+      .def_readonly("poor", &ModelFit::poor, "Why it explains its training views badly; \"\" where it explains them.")
       .def_readonly("time_us", &ModelFit::timeUs, "Microseconds.")
       .def("__repr__", [](const ModelFit& f) {
         return "<glint.ModelFit of " + f.model + ", light " + f.light + ", " + std::to_string(f.frames.size()) + " views>";

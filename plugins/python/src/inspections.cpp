@@ -39,6 +39,7 @@ py::dict summaryOf(const InspectionHandle& handle, const std::string& model) {
   const ModelSummary s = summarise(*handle.inspection, it->second);
   py::dict out;
   out["answered"] = s.answered;
+  out["status"] = s.status();
   out["reason"] = s.reason;
   out["frames"] = s.frames;
   out["predicted"] = s.predicted;
@@ -80,7 +81,10 @@ void declareModelResult(py::module_& module) {
       .def_property_readonly(
           "fit", [](const Fit& f) { return f.fit ? &*f.fit : nullptr; }, "ModelFit, or None where it failed.")
       .def_property_readonly(
-          "failure", [](const Fit& f) { return messageOrNone(f.failure()); }, "Why it failed, or None.");
+          "failure", [](const Fit& f) { return messageOrNone(f.failure()); }, "Why it failed, or None.")
+      .def_property_readonly("status", &fitStatus,
+                             "\"ok\", \"poor\" (it answers, but explains its training views badly) or \"failed\".")
+      .def_property_readonly("reason", &fitReason, "Why it is poor or failed; \"\" where it is ok.");
   py::class_<ModelResult>(module, "ModelResult", "What one model did.")
       .def_readonly("model", &ModelResult::model, "Id of the model.")
       .def_property_readonly(

@@ -113,24 +113,37 @@ ModelFit fitWith(const std::vector<double>& residuals) {
   return fit;
 }
 
-TEST(Plausible, MoreThanATenthOfTheRadiusIsNoFit) {
+TEST(Plausible, MoreThanATenthOfTheRadiusIsAPoorFitMoreThanHalfIsNone) {
   ASSERT_EQ(Settings().number("fit.most_residual"), kTenth);
   const std::vector<UsedContour> radii(6, UsedContour{20, 0, 1});
   const Outcome<ModelFit> good = explaining(fitWith({0.1, 0.2, 0.1, 0.3, 0.1, 0.1}), radii, false, kTenth);
   ASSERT_TRUE(good);
   EXPECT_THAT(good->remarks, SizeIs(0));
   const Outcome<ModelFit> poor = explaining(fitWith({7, 7, 7, 7, 7, 7}), radii, false, kTenth);
-  ASSERT_FALSE(poor);
-  EXPECT_EQ(poor.failure().reason, Reason::NotConverged);
-  EXPECT_THAT(poor.failure().detail, HasSubstr("7 px remain in the training views, 35 % of the contours' radius (20 px)"));
-  EXPECT_THAT(poor.failure().detail, HasSubstr(": over the limit of 10 % in 6 of 6 views (setting fit.most_residual)"));
+  ASSERT_TRUE(poor);
+  EXPECT_STREQ(good->status(), "ok");
+  EXPECT_STREQ(poor->status(), "poor");
+  EXPECT_THAT(poor->poor, HasSubstr("7 px remain in the training views, 35 % of the contours' radius (20 px)"));
+  EXPECT_THAT(poor->poor, HasSubstr(": over the limit of 10 % in 6 of 6 views (setting fit.most_residual)"));
+  EXPECT_FALSE(accepted(poor, PoorFits::Refuse));
+  EXPECT_TRUE(accepted(poor, PoorFits::Take));
+  EXPECT_TRUE(accepted(good, PoorFits::Refuse));
   // The bound is the one asked for, and a view at it is an answer: 20 px times the bound, less and more by a hundredth.
   for (const double share : {0.01, 0.1, 0.3, 10.0})
     for (const bool robust : {false, true}) {
-      EXPECT_TRUE(explaining(fitWith(std::vector<double>(6, 0.99 * 20 * share)), radii, robust, share)) << share;
-      EXPECT_FALSE(explaining(fitWith(std::vector<double>(6, 1.01 * 20 * share)), radii, robust, share)) << share;
+      EXPECT_EQ(explaining(fitWith(std::vector<double>(6, 0.99 * 20 * share)), radii, robust, share)->poor, "") << share;
+      const Outcome<ModelFit> more = explaining(fitWith(std::vector<double>(6, 1.01 * 20 * share)), radii, robust, share);
+      EXPECT_EQ(bool(more), share < 0.5) << share;
+      EXPECT_TRUE(!more || !more->poor.empty()) << share;
+      // Half of 20 px is 10 px.
+      if (share > 0.5) continue;
+      EXPECT_TRUE(explaining(fitWith(std::vector<double>(6, 9.9)), radii, robust, share));
+      const Outcome<ModelFit> none = explaining(fitWith(std::vector<double>(6, 10.1)), radii, robust, share);
+      ASSERT_FALSE(none);
+      EXPECT_EQ(none.failure().reason, Reason::NotConverged);
+      EXPECT_THAT(none.failure().detail, HasSubstr("over the limit of 50 % in 6 of 6 views"));
     }
-  EXPECT_THAT(explaining(fitWith(std::vector<double>(6, 7.0)), radii, true, 0.3).failure().detail,
+  EXPECT_THAT(explaining(fitWith(std::vector<double>(6, 7.0)), radii, true, 0.3)->poor,
               HasSubstr("over the limit of 30 % in 6 of 6 views"));
   const Outcome<ModelFit> nan = explaining(fitWith({0.1, std::nan(""), 0.1, 0.1, 0.1, 0.1}), radii, false, kTenth);
   ASSERT_FALSE(nan);
@@ -145,15 +158,19 @@ TEST(Plausible, NoiseOfSinglePointsIsNoFault) {
   EXPECT_NEAR(noisePx(noisy.contour), 3, 1);  // from 72 points: a standard error of about 0.4
   EXPECT_LT(noisePx(circle(20)), 0.01);
   const std::vector<UsedContour> used(6, UsedContour{20, 3, 1});
-  EXPECT_TRUE(explaining(fitWith(std::vector<double>(6, 3.0)), used, false, kTenth));
+  const auto ok = [](double residual, const std::vector<UsedContour>& of) {
+    return explaining(fitWith(std::vector<double>(6, residual)), of, false, kTenth)->poor.empty();
+  };
+  EXPECT_TRUE(ok(3.0, used));
   // sqrt(4.0^2 - 3.6^2) = 1.7 px are less than the 2 px of a tenth, sqrt(4.3^2 - 3.6^2) = 2.4 px are more.
-  EXPECT_TRUE(explaining(fitWith(std::vector<double>(6, 4.0)), used, false, kTenth));
-  EXPECT_FALSE(explaining(fitWith(std::vector<double>(6, 4.3)), used, false, kTenth));
+  EXPECT_TRUE(ok(4.0, used));
+  EXPECT_FALSE(ok(4.3, used));
   // In units of a canonical contour that is five times as large.
-  EXPECT_TRUE(
-      explaining(fitWith(std::vector<double>(6, 9.0)), std::vector<UsedContour>(6, UsedContour{20, 0, 5}), false, kTenth));
-  EXPECT_FALSE(
-      explaining(fitWith(std::vector<double>(6, 11.0)), std::vector<UsedContour>(6, UsedContour{20, 0, 5}), false, kTenth));
+  EXPECT_TRUE(ok(9.0, std::vector<UsedContour>(6, UsedContour{20, 0, 5})));
+  EXPECT_FALSE(ok(11.0, std::vector<UsedContour>(6, UsedContour{20, 0, 5})));
+  // A radius of 4 px with 0.6 px of noise, which is 15 % of it: the noise alone is no fault, half the radius beside it is.
+  EXPECT_TRUE(ok(0.6, std::vector<UsedContour>(6, UsedContour{4, 0.6, 1})));
+  EXPECT_FALSE(ok(1.2, std::vector<UsedContour>(6, UsedContour{4, 0.6, 1})));
 }
 
 TEST(Plausible, WhatIsLeftIsSaidInWords) {
@@ -169,12 +186,12 @@ TEST(Plausible, WhatIsLeftIsSaidInWords) {
   ASSERT_THAT(robust->remarks, SizeIs(1));
   EXPECT_THAT(robust->remarks[0], HasSubstr("frame 12 is inconsistent with the other training views: 90 px remain"));
   const Outcome<ModelFit> bent = explaining(fitWith(one), radii, false, kTenth);  // 90 % / sqrt(6) = 36.7 % on the whole
-  ASSERT_FALSE(bent);
-  EXPECT_THAT(bent.failure().detail, HasSubstr("36.7 % of the contours' radius (100 px): over the limit of 10 %"));
+  ASSERT_TRUE(bent);
+  EXPECT_THAT(bent->poor, HasSubstr("36.7 % of the contours' radius (100 px): over the limit of 10 %"));
 }
 
 // Contours that no ellipsoid shows: every second one half as large, the others twice.
-TEST(Plausible, EllipsoidsOfContoursThatContradictEachOtherAreRefused) {
+TEST(Plausible, EllipsoidsOfContoursThatContradictEachOtherArePoorOrRefused) {
   FitInput input = fitInput(ellipsoidScene(), {});
   for (std::size_t i = 0; i < input.views.size(); ++i) input.views[i] = scaled(input.views[i], i % 2 ? 2.0 : 0.5);
   for (const char* model : {"primal", "dual"})
@@ -182,14 +199,15 @@ TEST(Plausible, EllipsoidsOfContoursThatContradictEachOtherAreRefused) {
       Settings settings;
       settings.set("fit.solver", std::string(solver));
       const Outcome<ModelFit> fit = modelByName(model).fit(input, settings);
-      ASSERT_FALSE(fit) << model << " " << solver;
-      if (fit.failure().message().find("the outlines do not determine it") != std::string::npos) {
+      const Outcome<ModelFit> good = accepted(fit, PoorFits::Refuse);
+      ASSERT_FALSE(good) << model << " " << solver;
+      if (good.failure().message().find("the outlines do not determine it") != std::string::npos) {
         // The iteration of `refined` may end on a valley without an end; then no setting makes an answer of it.
-        EXPECT_EQ(fit.failure().reason, Reason::NotConverged) << model << " " << solver;
+        EXPECT_EQ(good.failure().reason, Reason::NotConverged) << model << " " << solver;
         EXPECT_EQ(std::string(solver), "refined") << model;
         continue;
       }
-      EXPECT_THAT(fit.failure().message(), HasSubstr("(setting fit.most_residual)")) << model << " " << solver;
+      EXPECT_THAT(good.failure().message(), HasSubstr("over the limit of ")) << model << " " << solver;
       settings.set("fit.most_residual", 10.0);  // half and twice as large: nobody leaves more than the contours themselves
       EXPECT_TRUE(modelByName(model).fit(input, settings)) << model << " " << solver;
     }
@@ -218,16 +236,20 @@ TEST(Plausible, LimitAngleAnswersWhereContoursDifferALittle) {
 }
 
 // With s = 0.2 no x leaves less than 10 % of both (x < 0.88, x > 1.08), so that half of the views are poor; with s = 0.3 even more so.
-TEST(Plausible, LimitAngleRefusesContoursThatContradictEachOther) {
+TEST(Plausible, LimitAngleIsNeverOkOnContoursThatContradictEachOther) {
   for (const char* solver : {"bundle", "triangulated"})
     for (const double share : {0.2, 0.3}) {
       Settings settings;
       settings.set("light.solver", std::string(solver));
       const FitInput input = inTwoSizes(share, settings);
       const Outcome<ModelFit> fit = modelByName("limit-angle").fit(input, settings);
-      ASSERT_FALSE(fit) << solver << " " << share;
-      EXPECT_EQ(fit.failure().reason, Reason::NotConverged);
-      EXPECT_THAT(fit.failure().detail, HasSubstr("(setting fit.most_residual)")) << solver;
+      const Outcome<ModelFit> good = accepted(fit, PoorFits::Refuse);
+      ASSERT_FALSE(good) << solver << " " << share;
+      EXPECT_EQ(good.failure().reason, Reason::NotConverged);
+      EXPECT_THAT(good.failure().detail, HasSubstr("over the limit of ")) << solver;
+      if (share < 0.25) {
+        EXPECT_TRUE(fit) << solver << ": less than half of the radius is left";
+      }
       settings.set("fit.most_residual", 10.0);
       const Outcome<ModelFit> shown = modelByName("limit-angle").fit(input, settings);
       ASSERT_TRUE(shown) << solver << " " << share;
