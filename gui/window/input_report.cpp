@@ -25,6 +25,7 @@ void InputReport::forget() {
   job_.drop();
   started_ = false;
   report_.reset();
+  bar_.withdraw(offered_);
   panel_->show({}, tr("The check starts once the first results are there."));
 }
 
@@ -52,7 +53,8 @@ void InputReport::take(const ReportPtr& report) {
   answers << std::pair(tr("Show report"), [this] { emit shown(); });
   // What can be corrected at once stands first.
   const std::size_t first = report->corrections.empty() ? 0 : report->corrections.front().finding;
-  bar_.showOffer(toQString(report->findings[first]), answers);
+  offered_ = toQString(report->findings[first]);
+  bar_.queueOffer(offered_, answers);
 }
 
 void InputReport::fix(const Correction& correction) {

@@ -44,6 +44,7 @@ class InputReport : public QObject {
   ReportPanel* panel_;
   ReportPtr report_;
   bool started_ = false;
+  QString offered_;  ///< on the message bar
   LatestJob job_;
 };
 

@@ -41,8 +41,19 @@ void MessageBar::showOffer(const QString& oneLine, const Answers& answers) {
   offerShown_ = true;
 }
 
+void MessageBar::queueOffer(const QString& oneLine, const Answers& answers) {
+  if (!failed()) return showOffer(oneLine, answers);
+  offer_ = {oneLine, answers};
+}
+
 void MessageBar::overtakeError() {
   if (waits() && !offerShown_ && buttons_.isEmpty()) hide();
+}
+
+void MessageBar::withdraw(const QString& oneLine) {
+  if (!offer_ || offer_->first != oneLine) return;
+  if (offerShown_) return closeLine();
+  offer_.reset();
 }
 
 void MessageBar::closeLine() {

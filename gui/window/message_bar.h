@@ -25,12 +25,18 @@ class MessageBar : public QWidget {
   void showError(const QString& oneLine, const Answers& answers = {});
   /// Not an error: something to be decided. What takes its place gives it back when it is closed or answered.
   void showOffer(const QString& oneLine, const Answers& answers);
+  /// The same, after an error that is on screen.
+  void queueOffer(const QString& oneLine, const Answers& answers);
   /// Worth knowing, asks for nothing: whatever else is to be said may take its place.
   void showNotice(const QString& oneLine);
   /// Something has worked since: an error that asks for nothing goes.
   void overtakeError();
   /// An error or an offer waits for an answer.
   bool waits() const { return !isHidden() && !notice_; }
+  /// An error is on screen; an offer may give way to another one.
+  bool failed() const { return waits() && !offerShown_; }
+  /// The offer holds no longer: what it was about is closed.
+  void withdraw(const QString& oneLine);
   QString text() const;
 
  private:

@@ -149,7 +149,7 @@ void UnreadableFiles::add(const FrameFileProblems& found) {
 }
 
 void UnreadableFiles::tell() {
-  if (bar_.waits() && bar_.text() != said_) return;  // something else went wrong
+  if (bar_.failed() && bar_.text() != said_) return;  // something else went wrong
   QStringList counts, first;
   for (const auto& [kind, lines] : all_) {
     counts << counted(kind, lines.size());
