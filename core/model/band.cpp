@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/base/uncertainty.h"
+#include "core/model/contour_feet.h"
 #include "core/model/uncertainty.h"
 
 namespace glint {
@@ -12,18 +13,6 @@ namespace {
 
 // A clipped peak may have been ten times as high: a Gaussian lobe's contour at half of it then has half the radius. 1.96 of this hold that.
 constexpr double kClippedShare = 0.25;
-
-/// Arc length at every vertex, as a share of the whole.
-std::vector<double> arcOf(const Polyline& line) {
-  std::vector<double> arc;
-  double sum = 0;
-  for (std::size_t i = 0; i < line.points.size(); ++i) {
-    arc.push_back(sum);
-    sum += (line.points[(i + 1) % line.points.size()] - line.points[i]).norm();
-  }
-  for (double& a : arc) a /= sum;
-  return arc;
-}
 
 const PredictedHighlight* nearest(const Prediction& p, const Pixel& to) {
   const auto distance = [&](const PredictedHighlight& h) { return (centroid(h.contour) - to).norm(); };
@@ -38,32 +27,18 @@ std::optional<ViewResiduals> residualsOf(const Polyline& measured, const Polylin
                                          int points) {
   const std::size_t n = predicted.points.size();
   if (n < 3 || shifts.cols() == 0 || shifts.rows() != Eigen::Index(n)) return std::nullopt;
-  const std::vector<Pixel> normals = outwardNormals(predicted);
-  const std::vector<double> arc = arcOf(predicted);
   const std::vector<Pixel> observed = measured.points.size() > std::size_t(points) ? resample(measured, points) : measured.points;
   std::vector<double> residual, arcs;
   std::vector<Pixel> directions;
   std::vector<Eigen::RowVectorXd> rows;
-  for (const Pixel& p : observed) {
-    double best = std::numeric_limits<double>::infinity(), share = 0;
-    std::size_t at = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-      const Pixel a = predicted.points[i], along = predicted.points[(i + 1) % n] - a;
-      const double squared = along.squaredNorm(), t = squared > 0 ? std::clamp((p - a).dot(along) / squared, 0.0, 1.0) : 0.0;
-      const double d = (a + t * along - p).squaredNorm();
-      if (d < best) best = d, share = t, at = i;
-    }
-    const std::size_t next = (at + 1) % n;
-    const Eigen::Index i = Eigen::Index(at), j = Eigen::Index(next);
+  for (const ContourFoot& foot : feetOn(predicted, observed)) {
+    const Eigen::Index i = Eigen::Index(foot.from), j = Eigen::Index(foot.to);
     if (!(shifts.row(i).norm() > 0) || !(shifts.row(j).norm() > 0)) continue;  // the surface ends there
-    const Pixel foot = predicted.points[at] + share * (predicted.points[next] - predicted.points[at]);
-    const Pixel normal = ((1 - share) * normals[at] + share * normals[next]).normalized();
-    if (!normal.allFinite()) continue;
-    residual.push_back(std::copysign(std::sqrt(best), normal.dot(p - foot)));
-    directions.push_back(normal);
-    const double end = next == 0 ? 1.0 : arc[next];
-    arcs.push_back(arc[at] + share * (end - arc[at]));
-    rows.push_back((1 - share) * shifts.row(i) + share * shifts.row(j));
+    if (!foot.normal.allFinite()) continue;
+    residual.push_back(foot.distance);
+    directions.push_back(foot.normal);
+    arcs.push_back(foot.arc);
+    rows.push_back((1 - foot.share) * shifts.row(i) + foot.share * shifts.row(j));
   }
   constexpr std::size_t kLeast = 5;  // as the light's bundle asks for
   if (residual.size() < kLeast) return std::nullopt;

@@ -178,12 +178,6 @@ void metricsJson(const FrameComparison::Row* row, const FrameComparison& c, Json
   j["time_us"] = numberOrNull(c.prediction.timeUs);
 }
 
-/// Why the fit behind a comparison is poor; "" where it is not.
-std::string poorFit(const ModelResult& result, const FrameComparison& c) {
-  const bool known = c.fit >= 0 && c.fit < static_cast<int>(result.fits.size());
-  return known && result.fits[static_cast<std::size_t>(c.fit)].fit ? fitReason(result.fits[static_cast<std::size_t>(c.fit)]) : "";
-}
-
 /// Appends one row per highlight of a comparison, or one that says why there is none.
 void addRows(const Inspection& inspection, const ModelResult& result, const FrameComparison& c, Json& out) {
   const auto base = [&](int highlight) {

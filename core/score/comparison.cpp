@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "core/geometry/seen_window.h"
+#include "core/model/contour_feet.h"
+#include "core/model/view_effects.h"
 
 namespace glint {
 namespace {
@@ -44,19 +46,40 @@ bool leavesImage(const Polyline& line, const Camera& camera) {
   return std::any_of(line.points.begin(), line.points.end(), [&](const Pixel& p) { return !isInPhotograph(camera, p); });
 }
 
+/// Standard deviation of what an observed contour has of its own, px: what remains of its distances from the predicted one once the smooth
+/// shapes are taken out by which a whole view may be off. No prediction can know it.
+double noiseOf(const std::vector<ContourFoot>& feet) {
+  std::vector<Pixel> normals;
+  std::vector<double> arcs;
+  Eigen::VectorXd d(Eigen::Index(feet.size()));
+  for (const ContourFoot& foot : feet) {
+    d(Eigen::Index(normals.size())) = foot.distance;
+    normals.push_back(foot.normal);
+    arcs.push_back(foot.arc);
+  }
+  const Eigen::MatrixXd shapes = contourShapes(normals, arcs).columns;
+  const double freedom = double(d.size() - shapes.cols());
+  return freedom > 0 ? std::sqrt((d - shapes * (shapes.transpose() * d)).squaredNorm() / freedom) : 0;
+}
+
 std::optional<BandScore> bandScore(const Polyline& observed, const PredictedHighlight& h) {
   constexpr double kNormal95 = 1.959964;
   BandScore score;
   double count = 0;
-  for (std::size_t i = 0; i < h.sigmaPx.size(); ++i) {
-    if (!(h.sigmaPx[i] > 0)) continue;
-    count += 1;
-    score.sigmaPx += h.sigmaPx[i];
-    score.coverage += distance(observed, h.contour.points[i]) <= kNormal95 * h.sigmaPx[i];
-  }
+  for (const double sigma : h.sigmaPx)
+    if (sigma > 0) count += 1, score.sigmaPx += sigma;
   if (!(count > 0)) return std::nullopt;
   score.sigmaPx /= count;
-  score.coverage /= count;
+  std::vector<ContourFoot> feet;
+  for (const ContourFoot& foot : feetOn(h.contour, observed.points))
+    if (h.sigmaPx[foot.from] > 0 && h.sigmaPx[foot.to] > 0 && foot.normal.allFinite()) feet.push_back(foot);
+  if (feet.empty()) return std::nullopt;
+  const double noise = noiseOf(feet);
+  for (const ContourFoot& foot : feet) {
+    const double sigma = (1 - foot.share) * h.sigmaPx[foot.from] + foot.share * h.sigmaPx[foot.to];
+    score.coverage += std::abs(foot.distance) <= kNormal95 * std::hypot(sigma, noise);
+  }
+  score.coverage /= double(feet.size());
   return score;
 }
 

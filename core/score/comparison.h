@@ -13,10 +13,10 @@
 
 namespace glint {
 
-/// How a predicted contour's band does against the observed one; vertices on the surface's own edge have none and do not count.
+/// How a predicted contour's band does against the observed one; along the surface's own edge there is none, and nothing counts.
 struct BandScore {
   double sigmaPx = 0;   ///< mean over the vertices
-  double coverage = 0;  ///< share of the vertices whose distance from the observed contour is within 1.96 sigma
+  double coverage = 0;  ///< share of the observed points within 1.96 sigma, with the observed contour's own noise beside it
 };
 
 /// Prediction of one model for one light in one frame, compared with the evidence.
