@@ -123,7 +123,7 @@ class TradeoffTest : public QObject {
                         const ProgressFn&, const Inspection*) {
       asked = goodEnough.value_or(0);
       glint::Selection s;
-      s.model = "dual";
+      s.model = s.best = "dual";
       s.why = "because";
       return s;
     };
