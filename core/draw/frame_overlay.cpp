@@ -47,12 +47,6 @@ void addBand(const PredictedHighlight& highlight, const Camera& camera, const Ov
   }
 }
 
-/// Nearer to grey, for what counts less.
-Colour pale(Colour colour) {
-  for (double& channel : colour) channel = 0.5 * (channel + 0.5);
-  return colour;
-}
-
 void addPrediction(const PredictedHighlight& highlight, const Camera& camera, const OverlayLine& style,
                    std::vector<OverlayLine>& lines) {
   for (const ContourRun& run : contourRuns(highlight)) {
@@ -166,11 +160,6 @@ class FrameLayers {
     }
   }
 
-  static std::string poorReason(const ModelResult& result, const FrameComparison& c) {
-    const bool fitted = c.fit >= 0 && c.fit < static_cast<int>(result.fits.size()) && !c.prediction.highlights().empty();
-    return fitted ? fitReason(result.fits[static_cast<std::size_t>(c.fit)]) : "";
-  }
-
   void addModel(const std::string& model) {
     const ModelResult& result = inspection_.models.at(model);
     FrameScore score = frameScore(result, frame_);
@@ -179,7 +168,7 @@ class FrameLayers {
     for (const FrameComparison& comparison : result.frames) {
       if (comparison.frame != frame_) continue;
       answered = true;
-      if (const std::string why = poorReason(result, comparison); !why.empty() && score.reason.empty())
+      if (const std::string why = poorFit(result, comparison); !why.empty() && score.reason.empty())
         score.reason = "poor: " + why;
       if (!drawn_(model)) continue;
       OverlayLine line;
@@ -188,7 +177,7 @@ class FrameLayers {
       line.colour = options_.colourByRole ? roleColour : modelColour(model);
       line.halo = options_.colourByRole;
       line.label = model + (score.errorPct ? " " + errorText(*score.errorPct) + " %" : std::string{});
-      const bool poor = !poorReason(result, comparison).empty();
+      const bool poor = !poorFit(result, comparison).empty();
       if (poor) line.colour = pale(line.colour);
       for (std::size_t i = 0; i < comparison.prediction.highlights().size(); ++i)
         addPredicted(comparison, static_cast<int>(i), line, poor);

@@ -56,6 +56,13 @@ std::vector<ComparisonTally> talliesOf(const Inspection& inspection, const Model
 const char* fitStatus(const ModelResult::Fit& fit) { return fit.fit ? fit.fit->status() : "failed"; }
 std::string fitReason(const ModelResult::Fit& fit) { return fit.fit ? fit.fit->poor : fit.failure()->message(); }
 
+std::string poorFit(const ModelResult& result, const FrameComparison& comparison) {
+  const int i = comparison.fit;
+  if (i < 0 || i >= static_cast<int>(result.fits.size())) return "";
+  const ModelResult::Fit& fit = result.fits[static_cast<std::size_t>(i)];
+  return fit.fit ? fit.fit->poor : "";
+}
+
 void FitReasons::add(const std::string& status, const std::string& reason) {
   if (status == "failed" && failure.empty()) failure = reason;
   if (status == "poor" && poor.empty()) poor = reason;
