@@ -225,13 +225,12 @@ void warnOfBackground(const std::vector<DetectedFrame>& frames, const Context& c
       open, open == 1 ? "" : "s", worst));
 }
 
-/// Names of a frame's two parts, by position.
-std::array<std::string, 2> partsOf(int frame) {
-  return {formatted("%04d_specular.png", frame), formatted("%04d_diffuse.png", frame)};
+std::array<std::string, 2> partsOf(const Frame& frame) {
+  return {pictureName(frame, "_specular"), pictureName(frame, "_diffuse")};
 }
 
 /// The two parts of a frame that was parted, as a screen shows them.
-void writeParts(const std::filesystem::path& folder, int index, const Frame& frame, FrameSource source, const Parting& parting) {
+void writeParts(const std::filesystem::path& folder, const Frame& frame, FrameSource source, const Parting& parting) {
   const Outcome<Image> linear = readLinear(frame, source);
   if (!linear || linear->channels != 3) return;
   Image specular = specularPart(*linear, parting), diffuse = *linear;
@@ -245,7 +244,7 @@ void writeParts(const std::filesystem::path& folder, int index, const Frame& fra
     if (std::isfinite(v)) top = std::max(top, v);
   for (Image* const part : {&specular, &diffuse})
     for (float& v : part->data) v = static_cast<float>(srgbFromLinear(v / top));
-  const std::array<std::string, 2> names = partsOf(index);
+  const std::array<std::string, 2> names = partsOf(frame);
   writePng(folder / names[0], specular);
   writePng(folder / names[1], diffuse);
 }
@@ -258,12 +257,11 @@ void writeFolder(const DetectArguments& a, const Scene& scene, const std::vector
         [&](int i) {
           const Frame& frame = scene.frames[static_cast<std::size_t>(i)];
           const Outcome<Image> photograph = readPhotograph(frame);
-          // Numbered by position: an id may hold characters that no file name may.
-          const std::string name = formatted("%04d.png", i);
           if (photograph)
-            writePng(folder / name, drawDetection(*photograph, frame.camera, frames[static_cast<std::size_t>(i)].highlights));
+            writePng(folder / pictureName(frame),
+                     drawDetection(*photograph, frame.camera, frames[static_cast<std::size_t>(i)].highlights));
           const std::optional<Parting>& parting = frames[static_cast<std::size_t>(i)].parting;
-          if (a.parts && parting && parting->parted) writeParts(folder, i, frame, source, *parting);
+          if (a.parts && parting && parting->parted) writeParts(folder, frame, source, *parting);
         },
         context.progress(), "overlays");
     context.write((folder / "highlights.json").string(), json);
@@ -290,11 +288,11 @@ int run(const DetectArguments& a, const Context& context) {
   Outputs outputs(a.input, scene);
   std::vector<int> all(scene.frames.size());
   std::iota(all.begin(), all.end(), 0);
-  std::vector<std::string> names = picturesOf(all);
+  std::vector<std::string> names = picturesOf(scene, all);
   if (a.parts && (a.out.empty() || a.separate == "off")) throw InputError("", "--parts", "needs --out DIR and --separate auto");
   if (a.parts)
-    for (const int i : all)
-      for (std::string& name : partsOf(i)) names.push_back(std::move(name));
+    for (const Frame& frame : scene.frames)
+      for (std::string& name : partsOf(frame)) names.push_back(std::move(name));
   names.emplace_back("highlights.json");
   outputs.inFolder(a.out, "--out", names, "highlights.json", "glint_detection");
   outputs.file(a.json, "--json", OutputKind::document("glint_detection"));

@@ -11,9 +11,11 @@
 #include "core/base/parallel.h"
 #include "core/highlight/report.h"
 #include "core/inspect/photograph.h"
+#include "core/inspect/summary.h"
 #include "core/report/labels.h"
 #include "core/report/masks.h"
 #include "core/report/warnings.h"
+#include "core/scene/frame_name.h"
 #include "core/scene/frame_spec.h"
 #include "core/scene/outputs.h"
 #include "core/session/session.h"
@@ -25,17 +27,18 @@ namespace {
 constexpr int kPictureWidth = 1280, kPictureHeight = 960;
 
 std::string predictionTable(const Inspection& inspection, const std::vector<int>& frames) {
-  std::string out =
-      formatted("%-12s %6s %-16s %-10s %10s %9s  %s\n", "model", "frame", "id", "light", "highlights", "coverage", "reason");
+  std::string out = formatted("%-12s %-16s %-10s %10s %9s  %s\n", "model", "frame", "light", "highlights", "coverage", "reason");
   for (const std::string& name : inspection.request.models)
     for (const FrameComparison& c : inspection.models.at(name).frames) {
       if (std::find(frames.begin(), frames.end(), c.frame) == frames.end()) continue;
       double coverage = 0;
       for (const PredictedHighlight& h : c.prediction.highlights())
         coverage += h.coverage / double(c.prediction.highlights().size());
-      const std::string reason =
-          c.prediction.highlights().empty() && c.prediction.failure() ? c.prediction.failure()->message() : "";
-      out += formatted("%-12s %6d %-16s %-10s %10zu %9.3f  ", name.c_str(), c.frame, inspection.scene->frames[c.frame].id.c_str(),
+      const std::string poor = poorFit(inspection.models.at(name), c);
+      const std::string reason = !c.prediction.highlights().empty() ? (poor.empty() ? "" : poorWarning(poor))
+                                 : c.prediction.failure()           ? c.prediction.failure()->message()
+                                                                    : "";
+      out += formatted("%-12s %-16s %-10s %10zu %9.3f  ", name.c_str(), frameName(*inspection.scene, c.frame).c_str(),
                        c.light.c_str(), c.prediction.highlights().size(), coverage) +
              reason + "\n";
     }
@@ -119,7 +122,7 @@ Command predictCommand() {
       for (int i = 0; i < static_cast<int>(scene.frames.size()); ++i) frames.push_back(i);
     Outputs outputs(a->session, scene);
     outputs.file(a->json, "--json", OutputKind::document("glint_predictions"));
-    std::vector<std::string> names = picturesOf(frames);
+    std::vector<std::string> names = picturesOf(scene, frames);
     for (const std::string& model : opened.session.request.models) names.push_back("labels_" + model + ".json");
     names.emplace_back("predictions.json");
     if (!formats) outputs.inFolder(a->out, "--out", names, "predictions.json", "glint_predictions");
@@ -132,8 +135,7 @@ Command predictCommand() {
         parallelFor(
             static_cast<int>(frames.size()),
             [&](int i) {
-              const std::string name = formatted("%04d.png", frames[i]);  // by position: an id may hold what no file name may
-              writePng(folder / name,
+              writePng(folder / pictureName(scene.frames[static_cast<std::size_t>(frames[i])]),
                        viz::framePicture(result, frames[i], photographOf(result, frames[i]), kPictureWidth, kPictureHeight));
             },
             context.progress(), "overlays");

@@ -53,7 +53,8 @@ Command tradeoffCommand() {
   c.declare = [a](Options& o) {
     a->declare(o, "Models to compare (default: the session's, else all)");
     o.option(a->budget, "--budget-us", "T", "Choose the most accurate setting within this many microseconds per frame");
-    o.option(a->maxError, "--max-error-pct", "E", "Choose the fastest setting with at most this contour error in percent");
+    o.option(a->maxError, "--max-error-pct", "E",
+             "Choose the fastest setting with at most this contour error in percent; what it misses counts as 100");
     o.option(a->json, "--json", "FILE", "Write everything as JSON (- = standard output)");
     o.option(a->html, "--html", "FILE", "Write a self-contained HTML page with the Pareto front");
     o.option(a->out, "-o,--out", "FILE.glint", "Write a session with the chosen settings, their results and the Pareto front");

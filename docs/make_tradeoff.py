@@ -40,10 +40,10 @@ def table(glint, title, scene, train):
     for preset, index in t["presets"].items():
         marks.setdefault(index, []).append(preset)
     text = f"### {title}\n`--train {train}`, {seconds:.0f} s: {t['trials']} settings tried on few frames, {len(t['points'])} measured in full, {len(t['pruned'])} dropped.\n\n"
-    text += "| front | µs a frame | error % | IoU | predicted | fit ms | peak MB | setting | preset |\n|---|---|---|---|---|---|---|---|---|\n"
+    text += "| front | µs a frame | error % | found | error of those found % | IoU | fit ms | peak MB | setting | preset |\n|---|---|---|---|---|---|---|---|---|---|\n"
     number = lambda v, digits=3: "–" if v is None else f"{v:.{digits}g}" if abs(v) < 1000 else f"{v:.0f}"
     for i, p in enumerate(t["points"]):
-        text += (f"| {'*' if p['pareto'] else ''} | {number(p['predict_us'])} | {number(p['contour_error_pct'])} | {number(p['iou'], 4)} | {p['predicted']}/{p['frames']} | "
+        text += (f"| {'*' if p['pareto'] else ''} | {number(p['predict_us'])} | {number(p['ranked_error_pct'])} | {p['matched']}/{p['matched'] + p['missed']} | {number(p['contour_error_pct'])} | {number(p['iou'], 4)} | "
                  f"{number(None if p['fit_us'] is None else p['fit_us'] / 1000)} | {number(p['peak_mb'])} | {setting(p)} | {', '.join(marks.get(i, []))} |\n")
     return text + f"\n{t['reason']}\n"
 

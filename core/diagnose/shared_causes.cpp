@@ -10,6 +10,7 @@
 
 #include "core/base/light_name.h"
 #include "core/base/number_text.h"
+#include "core/selection/selection.h"
 
 namespace glint {
 namespace {
@@ -149,7 +150,9 @@ std::vector<SharedCause> sharedCauses(const Inspection& inspection, const std::v
   };
   for (const HighlightRow& r : rows) {
     if (r.model != model || r.role == RowRole::Excluded || r.status == RowStatus::NotCompared) continue;
-    (r.status == RowStatus::Ok ? all.right : all.wrong).push_back(&r);
+    const bool right =
+        r.status == RowStatus::Ok || (r.status == RowStatus::Poor && r.value(RowValue::ErrorPct) <= kLargestExpectedPct);
+    (right ? all.right : all.wrong).push_back(&r);
     lights.insert(r.light);
     surfaces.insert(surfaceOf(r));
   }

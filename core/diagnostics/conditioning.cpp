@@ -12,6 +12,8 @@
 #include "core/highlight/peak.h"
 #include "core/light/estimate.h"
 #include "core/model/fit_ellipsoid.h"
+#include "core/model/plausible.h"
+#include "core/scene/frame_name.h"
 
 namespace glint {
 namespace {
@@ -94,7 +96,7 @@ class Findings {
     c_.surface = fit.surface;
     estimate_ = inspection.lightOf(fit.key());
     outlines_ = outlinesOf(model_, views_);
-    if (model_.traits().mirrored) findStrayPeaks(inspection);  // without a mirror it looks at ellipses only
+    if (model_.traits().mirrored) findStrayPeaks();  // without a mirror it looks at ellipses only
   }
 
   Conditioning all() {
@@ -117,30 +119,23 @@ class Findings {
     c_.findings.push_back({id, title, value, std::move(valueText), verdict, std::move(reason)});
   }
 
-  void findStrayPeaks(const Inspection& inspection) {
+  void findStrayPeaks() {
     for (const TrainingView& v : views_) {
       if (!v.seen) continue;
       const double away = outsideOfContour(v.highlight);
       if (away == 0) continue;
       farthestStray_ = std::max(farthestStray_, away);
-      strayFrames_.push_back(inspection.scene && v.frame >= 0 && std::size_t(v.frame) < inspection.scene->frames.size()
-                                 ? inspection.scene->frames[std::size_t(v.frame)].id
-                                 : std::to_string(v.frame));
+      strayFrames_.push_back(frameNameOf(v));
     }
   }
 
   void addPeaks() {
     if (strayFrames_.empty()) return;
-    constexpr std::size_t kMostNamed = 4;
-    std::string frames;
-    for (std::size_t i = 0; i < std::min(kMostNamed, strayFrames_.size()); ++i) frames += (i ? ", " : "") + strayFrames_[i];
-    if (strayFrames_.size() > kMostNamed) frames += ", \u2026";
     const int stray = int(strayFrames_.size());
     add("peaks", "peaks", stray, formatted("%d outside", stray), Verdict::Red,
-        formatted(
-            "The peak lies outside its own contour in %d of %d training views (frame %s), by up to %.3g px: the ray through it "
-            "does not come from the highlight, so the light is sought in the wrong place.",
-            stray, int(rays_.size()), frames.c_str(), farthestStray_));
+        formatted("The peak lies outside its own contour in %d of %d training views (%s), by up to %.3g px: the ray through it "
+                  "does not come from the highlight, so the light is sought in the wrong place.",
+                  stray, int(rays_.size()), framesText(strayFrames_).c_str(), farthestStray_));
   }
 
   void addLinearSystem() {

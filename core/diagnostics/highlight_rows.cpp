@@ -10,6 +10,7 @@
 #include "core/base/median.h"
 #include "core/geometry/polyline.h"
 #include "core/inspect/frame_score.h"
+#include "core/inspect/summary.h"
 #include "core/model/plausible.h"
 #include "core/selection/selection.h"
 
@@ -131,7 +132,8 @@ class Rows {
 };
 
 RowStatus Rows::statusOf(const FrameComparison& c, const FrameComparison::Row& r) const {
-  if (r.metrics) return r.metrics->contourErrorPct > kLargestExpectedPct ? RowStatus::Poor : RowStatus::Ok;
+  if (r.metrics && !poorFit(*result_, c).empty()) return RowStatus::Poor;
+  if (r.metrics) return r.metrics->contourErrorPct > kLargestExpectedPct ? RowStatus::FarOff : RowStatus::Ok;
   if (r.observed < 0 && r.predicted < 0 && !c.rows.empty()) return RowStatus::NotCompared;
   if (r.predicted >= 0 && r.observed < 0) return RowStatus::Spurious;
   if (!c.prediction.failure()) return RowStatus::Missed;
@@ -229,7 +231,9 @@ void Rows::add(const FrameComparison& c, std::vector<HighlightRow>& rows) const 
       row.reason = r.failure->message();
     else if (failure)
       row.reason = failure->message();
-    else if (!r.metrics)
+    else if (r.metrics)
+      row.reason = poorFit(*result_, c);
+    else
       row.reason = r.observed < 0 ? "no observed highlight overlaps it" : "no prediction overlaps it";
     measure(c, r, row);
     for (double& v : row.values)
@@ -243,6 +247,7 @@ void Rows::add(const FrameComparison& c, std::vector<HighlightRow>& rows) const 
 const char* nameOf(RowStatus status) {
   switch (status) {
     case RowStatus::Ok: return "ok";
+    case RowStatus::FarOff: return "far off";
     case RowStatus::Poor: return "poor";
     case RowStatus::Missed: return "missed";
     case RowStatus::Spurious: return "spurious";
@@ -254,8 +259,8 @@ const char* nameOf(RowStatus status) {
 }
 
 const std::vector<RowStatus>& allRowStatuses() {
-  static const std::vector<RowStatus> all{RowStatus::Ok,     RowStatus::Poor,    RowStatus::Missed,     RowStatus::Spurious,
-                                          RowStatus::Failed, RowStatus::Refused, RowStatus::NotCompared};
+  static const std::vector<RowStatus> all{RowStatus::Ok,       RowStatus::FarOff, RowStatus::Poor,    RowStatus::Missed,
+                                          RowStatus::Spurious, RowStatus::Failed, RowStatus::Refused, RowStatus::NotCompared};
   return all;
 }
 

@@ -13,14 +13,15 @@ namespace glint {
 /// What became of one highlight under one model.
 enum class RowStatus {
   Ok,           ///< matched, off by at most kLargestExpectedPct
-  Poor,         ///< matched, off by more
+  FarOff,       ///< matched, off by more
+  Poor,         ///< matched, by a fit that is poor, however far off: as files and reports say it
   Missed,       ///< observed, and no prediction overlaps it
   Spurious,     ///< predicted, and no observed highlight overlaps it
   Failed,       ///< the prediction of this frame failed
   Refused,      ///< the model has no fit, so that nothing was predicted
   NotCompared,  ///< the frame cannot be read
 };
-const char* nameOf(RowStatus status);  ///< "ok", "poor", "missed", "spurious", "failed", "refused", "not compared"
+const char* nameOf(RowStatus status);  ///< "ok", "far off", "poor", "missed", "spurious", "failed", "refused", "not compared"
 const std::vector<RowStatus>& allRowStatuses();
 
 enum class RowRole { Training, HeldOut, Excluded };

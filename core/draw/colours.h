@@ -16,6 +16,11 @@ inline Colour modelColour(const std::string& model) {
   const std::array<int, 3> rgb = modelRgb(model);
   return {rgb[0] / 255.0, rgb[1] / 255.0, rgb[2] / 255.0};
 }
+/// Nearer to grey, for what counts less: filtered predictions, and those of a poor fit.
+inline Colour pale(Colour colour) {
+  for (double& channel : colour) channel = 0.5 * (channel + 0.5);
+  return colour;
+}
 /// What lies on the tangent planes: canonical contours, their ellipses and the walks to them.
 inline Colour canonicalColour() { return modelColour(canonicalModel().id()); }
 inline constexpr Colour kObserved{1.0, 1.0, 1.0};  ///< drawn with a dark halo

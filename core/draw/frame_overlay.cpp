@@ -47,12 +47,6 @@ void addBand(const PredictedHighlight& highlight, const Camera& camera, const Ov
   }
 }
 
-/// Nearer to grey, for what counts less.
-Colour pale(Colour colour) {
-  for (double& channel : colour) channel = 0.5 * (channel + 0.5);
-  return colour;
-}
-
 void addPrediction(const PredictedHighlight& highlight, const Camera& camera, const OverlayLine& style,
                    std::vector<OverlayLine>& lines) {
   for (const ContourRun& run : contourRuns(highlight)) {

@@ -9,6 +9,7 @@
 #include "core/draw/plot_text.h"
 #include "core/draw/plots.h"
 #include "core/inspect/frame_score.h"
+#include "core/inspect/summary.h"
 
 namespace glint::draw {
 namespace {
@@ -32,18 +33,14 @@ void shadeFrames(const Inspection& inspection, PlotData& plot) {
   shade(kExcluded, "excluded", [&](int f) { return isExcluded(inspection, f); });
 }
 
-/// "canonical: mean 0.42 % over 30 of 33 held-out frames"
-std::string withMean(const Inspection& inspection, const std::string& model, const std::vector<FrameScore>& scores) {
-  double sum = 0;
-  int answered = 0, asked = 0;
-  for (std::size_t f = 0; f < scores.size(); ++f) {
-    if (!inspection.isHeldOut(int(f))) continue;
-    ++asked;
-    if (const std::optional<double> pct = wholeErrorPct(scores[f])) sum += *pct, ++answered;
-  }
-  if (answered == 0) return model + ": no held-out frame predicted";
-  return model + formatted(": mean of frames %.3g %%, over %d of %d ", sum / answered, answered, asked) +
-         (inspection.train.perSurface ? "frames" : "held-out frames");
+/// "canonical: mean 0.42 % over 30 of 33 held-out highlights, 3 missed": the mean and the counts of summarise(), which tables show.
+std::string withMean(const Inspection& inspection, const std::string& model) {
+  const ModelSummary s = summarise(inspection, inspection.models.at(model));
+  const std::string of = inspection.train.perSurface ? "highlights" : "held-out highlights";
+  if (s.contourErrorPct.count == 0) return model + ": none of the " + of + " found";
+  return model + formatted(": mean %.3g %% over ", s.contourErrorPct.mean) + std::to_string(s.contourErrorPct.count) +
+         (s.missed == 0 ? " " + of
+                        : " of " + std::to_string(s.matched + s.missed) + " " + of + ", " + std::to_string(s.missed) + " missed");
 }
 
 }  // namespace
@@ -60,9 +57,11 @@ PlotData errorPlot(const Inspection& inspection, const ErrorPlotOptions& options
   plot.triangles = "spurious highlight";
   const std::size_t n = inspection.evidence.size();
   if (n == 0) return nothing(plot, "No results yet");
-  // The axis counts frames; where their names are no such count, it says so.
+  // The axis counts frames, by their ids where these are no such count.
+  bool counted = true;
   for (std::size_t i = 0; i < n && inspection.scene; ++i)
-    if (std::atoi(inspection.scene->frames[i].id.c_str()) != int(i)) plot.x.title = "frame, by position in the sequence";
+    counted = counted && std::atoi(inspection.scene->frames[i].id.c_str()) == int(i);
+  for (std::size_t i = 0; i < n && !counted; ++i) plot.x.names.emplace_back(double(i), frameName(inspection, int(i)));
   std::vector<double> values;
   std::vector<std::string> silent;  // models that matched no highlight at all: their crosses would fill the plot
   for (const std::string& model : modelsInOrder(inspection, options.models)) {
@@ -72,7 +71,7 @@ PlotData errorPlot(const Inspection& inspection, const ErrorPlotOptions& options
     series.pointSize = n <= 40 ? 6 : 4;
     series.width = n <= 400 ? 1.75 : 1.25;
     const std::vector<FrameScore> scores = frameScores(inspection.models.at(model), int(n));
-    series.name = options.means ? withMean(inspection, model, scores) : model;
+    series.name = options.means ? withMean(inspection, model) : model;
     bool matched = false;
     for (std::size_t f = 0; f < n; ++f) {
       const FrameScore& score = scores[f];

@@ -187,7 +187,7 @@ std::string fitting(const std::string& title, const std::function<bool(const std
 
 std::string plotCsv(const PlotData& plot) {
   std::string csv = "series," + quoted(plot.x.title) + "," + quoted(plot.y.title) +
-                    ",lower,upper,frame,model,light,highlight,direction,label\n";
+                    ",lower,upper,index,model,light,highlight,direction,label\n";
   for (const PlotSeries& series : plot.series)
     for (const PlotPoint& p : series.points) {
       const PlotTarget& t = p.target;

@@ -6,6 +6,7 @@
 
 #include "core/draw/plot_data.h"
 #include "core/inspect/inspection.h"
+#include "core/scene/frame_name.h"
 
 namespace glint::draw {
 
@@ -20,11 +21,9 @@ inline PlotData nothing(PlotData plot, std::string why) {
   return plot;
 }
 
-/// As the scene names it; its number where it does not.
+/// Of the scene; its number where there is none.
 inline std::string frameName(const Inspection& inspection, int frame) {
-  if (inspection.scene && frame >= 0 && frame < int(inspection.scene->frames.size()))
-    return inspection.scene->frames[std::size_t(frame)].id;
-  return std::to_string(frame);
+  return inspection.scene ? glint::frameName(*inspection.scene, frame) : std::to_string(frame);
 }
 
 }  // namespace glint::draw

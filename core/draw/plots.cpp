@@ -428,7 +428,7 @@ PlotData tradeoffPlot(const Tradeoff& tradeoff) {
   plot.id = "tradeoff";
   plot.title = "Speed against accuracy";
   plot.x.title = "microseconds per frame";
-  plot.y.title = "contour error (%)";
+  plot.y.title = "contour error (%; missed = 100)";
   plot.x.log = plot.y.log = true;
   plot.y.floor = kSmallestPct;
   PlotSeries front;
@@ -444,16 +444,16 @@ PlotData tradeoffPlot(const Tradeoff& tradeoff) {
     p.x = t.predictUs;
     p.y = t.rankedErrorPct;
     p.target.setting = i;
-    p.label = describe(tradeoff, t) + formatted(
-                                          "\nerror %.3g %%, IoU %.4f, coverage %.3f, %d of %d frames predicted\n%.4g µs per "
-                                          "frame, fit %.3g ms, peak memory %.4g MB",
-                                          t.contourErrorPct, t.iou, t.coverage, t.predicted, t.frames, t.predictUs,
-                                          t.fitUs / 1000, t.peakMb);
-    for (const auto& [name, index] : tradeoff.presets) {
-      if (index != i) continue;
-      p.label += "\npreset '" + name + "'";
-      p.note += (p.note.empty() ? "" : ", ") + name;
-    }
+    p.label =
+        describe(tradeoff, t) +
+        formatted(
+            "\nerror %.3g %%: what is missed or spurious counts as 100 %%\nfound %s highlights with %.3g %%, %d spurious, IoU "
+            "%.4f, coverage %.3f\n%.4g µs per frame, fit %.3g ms, peak memory %.4g MB",
+            t.rankedErrorPct, foundText(t).c_str(), t.contourErrorPct, t.spurious, t.iou, t.coverage, t.predictUs, t.fitUs / 1000,
+            t.peakMb);
+    if (!t.poor.empty()) p.label += "\npoor: " + t.poor;
+    p.note = presetNames(tradeoff, i);
+    if (!p.note.empty()) p.label += "\npreset " + p.note;
     if (tradeoff.chosen == i) p.note += p.note.empty() ? "chosen" : " (chosen)";
     p.hollow = !t.pareto;
     if (t.pareto) {

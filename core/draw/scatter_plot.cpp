@@ -21,7 +21,8 @@ constexpr Colour kLights[] = {{0.90, 0.62, 0.00}, {0.34, 0.71, 0.91}, {0.00, 0.6
 Colour colourOf(RowStatus status) {
   switch (status) {
     case RowStatus::Ok: return {0.00, 0.62, 0.45};
-    case RowStatus::Poor: return {0.90, 0.62, 0.00};
+    case RowStatus::FarOff: return {0.90, 0.62, 0.00};
+    case RowStatus::Poor: return {0.60, 0.58, 0.20};
     case RowStatus::Missed: return kFailed;
     case RowStatus::Spurious: return {0.80, 0.47, 0.65};
     default: return {0.34, 0.71, 0.91};
@@ -89,7 +90,7 @@ void Maker::add(const HighlightRow& row, int index) {
   PlotPoint p;
   p.x = row.value(options_.x);
   p.y = row.value(options_.y);
-  p.hollow = row.status != RowStatus::Ok && row.status != RowStatus::Poor;
+  p.hollow = row.status != RowStatus::Ok && row.status != RowStatus::FarOff && row.status != RowStatus::Poor;
   p.target = {row.frame, row.model, row.light, row.observed, {}, -1};
   p.label = labelOf(in_, row, options_.x, options_.y);
   Group* group = &none_;

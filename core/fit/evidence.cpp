@@ -122,6 +122,7 @@ FrameEvidence gatherEvidence(const Scene& scene, int index, FrameSource source, 
   const Frame& frame = scene.frames[index];
   FrameEvidence evidence;
   evidence.frame = index;
+  evidence.id = frame.id;
   const double level = settings.number("detect.level");
   for (const Highlight& h : frame.highlights)
     if (std::abs(h.level - level) < kSameLevel) evidence.highlights.push_back(h);

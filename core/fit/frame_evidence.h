@@ -21,6 +21,7 @@ struct WithheldTexture {
 /// One frame's evidence.
 struct FrameEvidence {
   int frame = -1;
+  std::string id;                           ///< of the frame: what a person is told
   std::vector<Highlight> highlights;        ///< each with its light
   std::optional<Failure> failure;           ///< why there are no highlights: NoHighlight, FrameUnreadable, ...
   std::vector<RejectedCandidate> rejected;  ///< what detection saw and did not take, measured pixels

@@ -33,6 +33,7 @@ TrainingView trainingView(const FrameEvidence& evidence, int index, const Camera
                           std::shared_ptr<const Surface> surface) {
   TrainingView view;
   view.frame = evidence.frame;
+  view.frameId = evidence.id;
   view.camera = camera;
   view.highlight = evidence.highlights[index];
   view.levels = view.highlight.otherLevels;
@@ -44,6 +45,7 @@ TrainingView trainingView(const FrameEvidence& evidence, int index, const Camera
 TrainingView seenAgain(const TrainingView& view, const Camera& camera, std::shared_ptr<const Surface> surface) {
   FrameEvidence evidence;
   evidence.frame = view.frame;
+  evidence.id = view.frameId;
   evidence.highlights = {view.highlight};
   return trainingView(evidence, 0, camera, std::move(surface));
 }

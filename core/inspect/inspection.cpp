@@ -22,6 +22,13 @@ TrainSpec parseTrainSpec(const std::string& text, const Scene& scene) {
   return spec;
 }
 
+std::string trainText(const TrainSpec& train, const Scene& scene) {
+  if (train.perSurface) return train.text;
+  const bool rule = train.text.find(':') != std::string::npos && parseFrames(train.text, scene, "--train") == train.frames &&
+                    (train.text.rfind("first:", 0) == 0 || train.text.rfind("spread:", 0) == 0);
+  return (rule ? train.text + ", " : "") + frameSpec(train.frames, scene);
+}
+
 TrainingView Inspection::viewAsGiven(int view) const {
   const auto given = viewsAsGiven.find(view);
   TrainingView v = given != viewsAsGiven.end() ? given->second : views[static_cast<std::size_t>(view)];

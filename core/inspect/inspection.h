@@ -30,6 +30,8 @@ struct TrainSpec {
 };
 /// InputError (place "--train") when it does not parse or names a frame that does not exist.
 TrainSpec parseTrainSpec(const std::string& text, const Scene& scene);
+/// What trains, for a person: "0000-0003,0007" by ids, "first:6, 0000-0005", "per-surface".
+std::string trainText(const TrainSpec& train, const Scene& scene);
 
 /// What to compute. Plain data: the session file stores it, the inspector edits it.
 struct InspectionRequest {

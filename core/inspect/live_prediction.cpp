@@ -106,7 +106,7 @@ Outcome<LiveAnswer> LivePredictor::predict(const std::string& id, const Eigen::I
       Prediction prediction = predictionFor(inspection_, fit, model, frame.value_or(-1), answer.camera, surface.get());
       if (const auto band = bands_.find({name, fit.key()}); band != bands_.end())
         for (PredictedHighlight& h : prediction.editable()) h.sigmaPx = band->second->sigmaPx(h, answer.camera, surface.get());
-      answer.highlights.push_back({name, fit.light, std::move(prediction)});
+      answer.highlights.push_back({name, fit.light, std::move(prediction), fit.fit ? fit.fit->poor : ""});
     }
   }
   return answer;

@@ -31,6 +31,7 @@ Prediction predictionFor(const Inspection& inspection, const ModelResult::Fit& f
 struct LiveHighlights {
   std::string model, light;
   Prediction prediction;
+  std::string poor{};  ///< why its fit is poor; "" where it is ok
 };
 
 struct LiveAnswer {

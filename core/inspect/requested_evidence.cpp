@@ -15,6 +15,7 @@ FrameEvidence evidenceFor(const Scene& scene, int frame, const InspectionRequest
   FrameEvidence evidence;
   if (request.whatIf.synthesise && f.highlights.empty()) {
     evidence.frame = frame;
+    evidence.id = f.id;
     evidence.failure = Failure{Reason::NoHighlight, "no light produces one in frame " + f.id};
     return evidence;
   }

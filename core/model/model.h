@@ -56,6 +56,7 @@ struct SeenOnSurface {
 /// One observation used for training: one highlight of one light in one frame, with what was derived from it.
 struct TrainingView {
   int frame = -1;
+  std::string frameId;  ///< what a person is told; "" where no scene names the frame
   Camera camera;
   std::shared_ptr<const Surface> surface;  ///< may be null only for `primal`
   Highlight highlight;

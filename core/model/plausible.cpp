@@ -32,8 +32,10 @@ double noisePx(const Polyline& contour) {
 }
 
 UsedContour usedContour(const TrainingView& view, double unit) {
-  return {radiusPx(view.highlight.contour), noisePx(view.highlight.contour), unit};
+  return {radiusPx(view.highlight.contour), noisePx(view.highlight.contour), unit, frameNameOf(view)};
 }
+
+std::string frameNameOf(const TrainingView& view) { return view.frameId.empty() ? std::to_string(view.frame) : view.frameId; }
 
 std::optional<Failure> tooSmall(const Polyline& contour) {
   const double radius = radiusPx(contour);
@@ -47,18 +49,19 @@ void dropTooSmall(Prediction& prediction) {
 }
 
 std::optional<Failure> lightBehind(const std::vector<TrainingView>& views, const Light& light) {
-  int behind = 0, usable = 0, first = -1;
+  int behind = 0, usable = 0;
+  std::string first;
   for (const TrainingView& v : views) {
     if (!v.seen) continue;
     ++usable;
     const SurfacePoint p = facing(v.seen->brightest.point, v.camera.centreInWorld());
     if (p.normal.dot(light.directionFrom(p.position)) > 0) continue;
-    if (behind++ == 0) first = v.frame;
+    if (behind++ == 0) first = frameNameOf(v);
   }
   if (behind == 0) return std::nullopt;
   return Failure{Reason::LightBehindSurface, "the best-fitting light lies behind the surface at " + std::to_string(behind) +
                                                  " of " + std::to_string(usable) + " training highlights, first in frame " +
-                                                 std::to_string(first)};
+                                                 first};
 }
 
 std::string unusedViews(const std::vector<TrainingView>& views,
@@ -67,7 +70,7 @@ std::string unusedViews(const std::vector<TrainingView>& views,
   std::string first;
   for (const TrainingView& v : views)
     if (const std::optional<Failure> reason = why(v); reason && unused++ == 0)
-      first = "frame " + std::to_string(v.frame) + ": " + reason->message();
+      first = "frame " + frameNameOf(v) + ": " + reason->message();
   if (unused == 0) return "";
   return "; " + std::to_string(unused) + " of " + std::to_string(views.size()) + " views could not be used, " + first;
 }
@@ -131,9 +134,10 @@ Left leftOf(const ModelFit& fit, const std::vector<UsedContour>& used) {
 Outcome<ModelFit> explaining(ModelFit fit, const std::vector<UsedContour>& used, bool robust, double mostShare) {
   require(used.size() == fit.residualPx.size() && used.size() == fit.frames.size(), "explaining: one contour for every view");
   if (used.empty()) return fit;
+  const auto name = [&](std::size_t i) { return used[i].frame.empty() ? std::to_string(fit.frames[i]) : used[i].frame; };
   for (std::size_t i = 0; i < used.size(); ++i)
     if (!std::isfinite(fit.residualPx[i] / used[i].unit))
-      return Failure{Reason::NotFinite, "the fit predicts no highlight in training frame " + std::to_string(fit.frames[i])};
+      return Failure{Reason::NotFinite, "the fit predicts no highlight in training frame " + name(i)};
   const Left left = leftOf(fit, used);
   if (const std::optional<std::string> none = left.tooMuch(std::max(kNoAnswerShare, mostShare), robust))
     return Failure{Reason::NotConverged, *none + ", beyond which a fit is no answer"};
@@ -143,8 +147,8 @@ Outcome<ModelFit> explaining(ModelFit fit, const std::vector<UsedContour>& used,
   }
   const std::vector<std::size_t> inconsistent = left.over(mostShare);
   for (const std::size_t i : inconsistent)
-    fit.remarks.push_back("frame " + std::to_string(fit.frames[i]) + " is inconsistent with the other training views: " +
-                          figure(left.px[i]) + " px remain of a contour of " + figure(used[i].radius) + " px radius");
+    fit.remarks.push_back("frame " + name(i) + " is inconsistent with the other training views: " + figure(left.px[i]) +
+                          " px remain of a contour of " + figure(used[i].radius) + " px radius");
   if (inconsistent.empty() && (left.residual > kRemarkPx || left.share > kRemarkShare))
     fit.remarks.push_back("the fit explains its training views poorly: " + left.text());
   return fit;

@@ -22,8 +22,11 @@ struct UsedContour {
   double radius = 0, noise = 0;  ///< px
   double unit =
       1;  ///< how many units of ModelFit::residualPx a pixel of the photograph is; canonical contours are larger than the highlight
+  std::string frame = {};  ///< its name: frameNameOf()
 };
 UsedContour usedContour(const TrainingView& view, double unit = 1);
+/// The id of the view's frame; its number where no scene names it.
+std::string frameNameOf(const TrainingView& view);
 
 /// "the highlight has a radius of 0.0003 px, ..." for one below kLeastRadiusPx; NoHighlight.
 std::optional<Failure> tooSmall(const Polyline& contour);

@@ -12,6 +12,7 @@
 #include "core/base/number_text.h"
 #include "core/base/version.h"
 #include "core/report/command_text.h"
+#include "core/scene/frame_name.h"
 #include "core/selection/selection.h"
 
 namespace glint {
@@ -177,7 +178,9 @@ std::string diagnosisJson(const Inspection& inspection, const Diagnosis& diagnos
                {"program", "glint " GLINT_VERSION},
                {"input", input},
                {"train", inspection.train.frames},
+               {"train_ids", frameIds(*inspection.scene, inspection.train.frames)},
                {"excluded", inspection.request.excluded},
+               {"excluded_ids", frameIds(*inspection.scene, inspection.request.excluded)},
                {"models", std::move(models)}};
   return prettyJson(j.dump(-1, ' ', false, Ordered::error_handler_t::replace));
 }

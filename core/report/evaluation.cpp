@@ -2,6 +2,7 @@
 #include "core/report/evaluation.h"
 
 #include "core/inspect/summary.h"
+#include "core/scene/frame_name.h"
 #include "core/selection/selection.h"
 
 namespace glint {
@@ -82,7 +83,7 @@ std::vector<std::string> unusedTrainingFrames(const Inspection& inspection) {
       reason = v.failure();
       if (!reason) break;
     }
-    if (reason) lines.push_back("frame " + inspection.scene->frames[frame].id + ": " + reason->message());
+    if (reason) lines.push_back("frame " + frameName(*inspection.scene, frame) + ": " + reason->message());
   }
   return lines;
 }

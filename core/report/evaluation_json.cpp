@@ -9,6 +9,7 @@
 #include "core/report/band_text.h"
 #include "core/report/detection_error.h"
 #include "core/report/warnings.h"
+#include "core/scene/frame_name.h"
 #include "core/what_if/json.h"
 
 namespace glint {
@@ -98,7 +99,7 @@ Json selectionJson(const Selection& s) {
   return j;
 }
 
-Json fitJson(const ModelResult::Fit& entry) {
+Json fitJson(const Inspection& inspection, const ModelResult::Fit& entry) {
   Json j;
   j["light"] = entry.light;
   j["surface"] = entry.surface ? Json(*entry.surface) : Json(nullptr);
@@ -149,6 +150,7 @@ Json fitJson(const ModelResult::Fit& entry) {
   j["residual_px"] = Json::array();
   for (const double r : f.residualPx) j["residual_px"].push_back(numberOrNull(r));
   j["training_frames"] = f.frames;
+  j["training_ids"] = frameIds(*inspection.scene, f.frames);
   j["warnings"] = f.remarks;
   j["time_us"] = entry.failure() ? Json(nullptr) : numberOrNull(f.timeUs);
   return j;
@@ -252,7 +254,7 @@ Json modelJson(const Inspection& inspection, const ModelResult& result) {
   j["status"] = s.status();
   j["reason"] = s.reason;
   j["fits"] = Json::array();
-  for (const ModelResult::Fit& f : result.fits) j["fits"].push_back(fitJson(f));
+  for (const ModelResult::Fit& f : result.fits) j["fits"].push_back(fitJson(inspection, f));
   j["summary"] = summaryValues(s);
   if (inspection.request.settings.flag("predict.band")) {
     const std::optional<BandScore> band = bandSummary(inspection, result);
@@ -339,8 +341,10 @@ std::string evaluationJson(const Inspection& inspection, const ReportContext& co
   j["glint_evaluation"] = 1;
   j["input"] = context.input;
   j["train"] = inspection.train.frames;
+  j["train_ids"] = frameIds(*inspection.scene, inspection.train.frames);
   j["train_spec"] = inspection.train.text;
   j["excluded"] = inspection.request.excluded;
+  j["excluded_ids"] = frameIds(*inspection.scene, inspection.request.excluded);
   j["training"] = trainingJson(inspection);
   j["level"] = inspection.request.settings.number("detect.level");
   if (!context.levelReason.empty()) j["level_reason"] = context.levelReason;

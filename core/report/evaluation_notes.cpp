@@ -5,7 +5,7 @@
 #include <map>
 #include <utility>
 
-#include "core/base/number_list.h"
+#include "core/scene/frame_name.h"
 
 namespace glint {
 
@@ -13,6 +13,7 @@ FrameNote noteOf(const Inspection& inspection, int frame) {
   const FrameEvidence& e = inspection.evidence[static_cast<std::size_t>(frame)];
   FrameNote note;
   note.frame = frame;
+  note.id = frameName(*inspection.scene, frame);
   note.training = inspection.isTraining(frame);
   note.heldOut = inspection.isHeldOut(frame);
   for (const Highlight& h : e.highlights) {
@@ -34,28 +35,27 @@ std::vector<FrameNote> notesOf(const Inspection& inspection) {
 
 /// Clipping takes the peak away to which the contour's level refers.
 std::string clippedWarning(const std::vector<FrameNote>& notes) {
-  std::vector<int> training, others;
+  std::vector<std::string> training, others;
   bool known = true;  // a lobe says what was cut off
   for (const FrameNote& n : notes) {
     if (!n.clipped || !(n.training || n.heldOut)) continue;
     known = known && n.levelKnown;
-    (n.training ? training : others).push_back(n.frame);
+    (n.training ? training : others).push_back(n.id);
   }
   if (training.empty() && others.empty()) return "";
   std::string text = "clipped (saturated) highlights in ";
-  if (!training.empty()) text += "training frames " + shortList(training);
-  if (!others.empty()) text += (training.empty() ? "frames " : " and other frames ") + shortList(others);
+  if (!training.empty()) text += "training " + framesText(training);
+  if (!others.empty()) text += (training.empty() ? "" : " and other ") + framesText(others);
   return text + (known ? ": the peak, and so the level of the contour, comes from the lobe fitted around the clipped pixels"
                        : ": the peak is unknown, so a contour lies at a smaller fraction of it than the stated level");
 }
 
 std::string notPartedWarning(const std::vector<FrameNote>& notes) {
-  std::map<std::string, std::vector<int>> frames;
+  std::map<std::string, std::vector<std::string>> frames;
   for (const FrameNote& n : notes)
-    if (!n.notParted.empty() && (n.training || n.heldOut)) frames[n.notParted].push_back(n.frame);
+    if (!n.notParted.empty() && (n.training || n.heldOut)) frames[n.notParted].push_back(n.id);
   std::string text;
-  for (const auto& [reason, which] : frames)
-    text += (text.empty() ? "frames " : "; frames ") + shortList(which) + " (" + reason + ")";
+  for (const auto& [reason, which] : frames) text += (text.empty() ? "" : "; ") + framesText(which) + " (" + reason + ")";
   return text.empty() ? "" : "colours do not tell what is specular, and the smooth background is used, in " + text;
 }
 

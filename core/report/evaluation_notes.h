@@ -11,6 +11,7 @@ namespace glint {
 /// What the evidence of one frame adds to what an evaluation says, whatever the model: plain data, which another process may have found.
 struct FrameNote {
   int frame = -1;
+  std::string id;                          ///< of the frame
   bool training = false, heldOut = false;  ///< neither: excluded
   bool clipped = false;                    ///< shows a clipped highlight
   bool levelKnown = true;                  ///< a lobe says what was cut off every clipped one

@@ -13,6 +13,7 @@
 #include "core/report/evaluation.h"
 #include "core/report/evaluation_json.h"
 #include "core/report/warnings.h"
+#include "core/scene/frame_name.h"
 
 namespace glint {
 namespace {
@@ -20,7 +21,6 @@ namespace {
 constexpr int kFewHighlights = 5;       // a mean of fewer says little about the next frame
 constexpr double kStandsOut = 3;        // times the median: one frame that is nothing like the others
 constexpr double kWhole = 0.98;         // coverage below which some contour has a gap that can be seen (36 directions by default)
-constexpr std::size_t kMostNamed = 6;   // frames in one sentence
 constexpr std::size_t kMostUnused = 4;  // training frames with their reasons, before the rest is counted
 
 using Summaries = std::vector<std::pair<std::string, ModelSummary>>;
@@ -28,13 +28,6 @@ using Summaries = std::vector<std::pair<std::string, ModelSummary>>;
 std::string counted(int n, const std::string& what) { return std::to_string(n) + " " + what + (n == 1 ? "" : "s"); }
 std::string percent(double v) { return formatted("%.3g %%", v); }
 std::string sentence(const std::string& text) { return text.empty() || text.back() == '.' ? text : text + "."; }
-
-std::string frameNames(const Inspection& inspection, const std::vector<int>& frames) {
-  std::string text = frames.size() == 1 ? "frame " : "frames ";
-  for (std::size_t i = 0; i < std::min(kMostNamed, frames.size()); ++i)
-    text += (i ? ", " : "") + inspection.scene->frames[std::size_t(frames[i])].id;
-  return text + (frames.size() > kMostNamed ? formatted(" and %zu more", frames.size() - kMostNamed) : "");
-}
 
 /// Held-out frames in which a model missed highlights, or predicted some that are not there.
 std::vector<int> framesWith(const Inspection& inspection, const std::string& model, int FrameScore::*count) {
@@ -55,11 +48,12 @@ std::string bestInWords(const Inspection& inspection, const std::string& model, 
                      counted(heldOutFrames(inspection).all, scored + "frame") + " it ";
   text += s.missed == 0 ? (s.matched == 1 ? "found it" : "found all")
                         : "missed " + std::to_string(s.missed) + " (" +
-                              frameNames(inspection, framesWith(inspection, model, &FrameScore::missed)) + ")";
+                              framesText(frameIds(*inspection.scene, framesWith(inspection, model, &FrameScore::missed))) + ")";
   return text + ", and it predicted " +
-         (s.spurious == 0 ? "none that is not there."
-                          : std::to_string(s.spurious) + (s.spurious == 1 ? " that is" : " that are") + " not there (" +
-                                frameNames(inspection, framesWith(inspection, model, &FrameScore::spurious)) + ").");
+         (s.spurious == 0
+              ? "none that is not there."
+              : std::to_string(s.spurious) + (s.spurious == 1 ? " that is" : " that are") + " not there (" +
+                    framesText(frameIds(*inspection.scene, framesWith(inspection, model, &FrameScore::spurious))) + ").");
 }
 
 /// The next best of those that answered, as bestModel() ranks them.

@@ -13,6 +13,7 @@
 #include "core/inspect/frame_score.h"
 #include "core/inspect/photograph.h"
 #include "core/report/html_parts.h"
+#include "core/scene/frame_name.h"
 
 namespace glint::html {
 namespace {
@@ -87,9 +88,8 @@ std::string frameFigure(const Inspection& inspection, int frame, const std::stri
   std::string caption;
   for (const draw::OverlayCaption& c : overlay.captions)
     caption += (c.model.empty() ? "" : swatch(c.model)) + escaped(c.text) + "<br>";
-  const std::string name = std::to_string(frame);
-  const std::string named = "<b>frame " + name + "</b> (" + escaped(inspection.scene->frames[std::size_t(frame)].id) + ")";
-  return "<figure>" + painter.element("contours of frame " + name) + "<figcaption>" +
+  const std::string name = "frame " + frameName(*inspection.scene, frame), named = "<b>" + escaped(name) + "</b>";
+  return "<figure>" + painter.element("contours of " + name) + "<figcaption>" +
          (title.empty() ? named : "<b>" + escaped(title) + "</b>, " + named) + "<br>" + caption + "</figcaption></figure>\n";
 }
 

@@ -9,6 +9,7 @@
 #include "core/report/band_text.h"
 #include "core/report/html_parts.h"
 #include "core/report/warnings.h"
+#include "core/scene/frame_name.h"
 
 namespace glint::html {
 namespace {
@@ -70,11 +71,10 @@ std::vector<Unmatched> unmatchedOf(const Inspection& inspection, const std::stri
   return groups;
 }
 
-/// "6 (0012), 7 (0014)".
-std::string namesOf(const Inspection& inspection, const std::vector<int>& frames) {
+/// "0012, 0014": all of them.
+std::string idsOf(const Inspection& inspection, const std::vector<int>& frames) {
   std::string text;
-  for (const int f : frames)
-    text += (text.empty() ? "" : ", ") + std::to_string(f) + " (" + inspection.scene->frames[std::size_t(f)].id + ")";
+  for (const std::string& id : frameIds(*inspection.scene, frames)) text += (text.empty() ? "" : ", ") + id;
   return text;
 }
 
@@ -89,7 +89,7 @@ std::string unmatchedTable(const Inspection& inspection, const std::string& mode
     const Unmatched& g = groups[i];
     html += std::string("<tr><td>") + std::to_string(g.frames.size()) + (g.missed ? " missed" : " spurious") +
             "</td><td class=\"text\">" + escaped(g.light) + "</td><td class=\"text\">" + escaped(g.why) +
-            "</td><td class=\"text\">" + escaped(namesOf(inspection, g.frames)) + "</td></tr>\n";
+            "</td><td class=\"text\">" + escaped(idsOf(inspection, g.frames)) + "</td></tr>\n";
   }
   html += "</tbody></table>\n";
   return groups.size() > kMost ? html + "<p>And " + std::to_string(groups.size() - kMost) + " more.</p>\n" : html;

@@ -46,7 +46,7 @@ std::string head(const Inspection& inspection) {
 /// What was evaluated.
 std::string about(const Inspection& inspection, const ReportContext& context) {
   std::string text = "<h1>" + escaped(inspection.scene->name) + "</h1>\n<p>Input <code>" + escaped(context.input) +
-                     "</code>, training <code>" + escaped(inspection.train.text) + "</code> (" +
+                     "</code>, training <code>" + escaped(trainText(inspection.train, *inspection.scene)) + "</code> (" +
                      std::to_string(inspection.train.frames.size()) + " of " + std::to_string(inspection.scene->frames.size()) +
                      " frames), level " + format("%g", inspection.request.settings.number("detect.level")) +
                      (inspection.request.whatIf.synthesise              ? ""

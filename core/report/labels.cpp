@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/json_dom.h"
+#include "core/inspect/summary.h"
 #include "core/report/label_shapes.h"
 #include "core/report/warnings.h"
 
@@ -62,8 +63,10 @@ std::string predictionsJson(const Inspection& inspection, const std::vector<int>
       row["index"] = c.frame;
       row["id"] = inspection.scene->frames[c.frame].id;
       row["light"] = c.light;
-      row["status"] = c.prediction.highlights().empty() ? "failed" : "ok";
-      row["reason"] = c.prediction.highlights().empty() && c.prediction.failure() ? c.prediction.failure()->message() : "";
+      const bool answered = !c.prediction.highlights().empty();
+      const std::string poor = answered ? poorFit(inspection.models.at(name), c) : "";
+      row["status"] = !answered ? "failed" : poor.empty() ? "ok" : "poor";
+      row["reason"] = !answered && c.prediction.failure() ? c.prediction.failure()->message() : poor;
       row["time_us"] = numberOrNull(c.prediction.timeUs);
       row["highlights"] = ordered_json::array();
       for (const PredictedHighlight& h : c.prediction.highlights()) row["highlights"].push_back(highlightJson(h));
@@ -119,6 +122,8 @@ std::string cocoJson(const Inspection& inspection, const std::string& model, con
   const LabelSet labels = labelsOf(inspection, model, frames);
   ordered_json j;
   j["info"] = {{"description", "Specular highlights predicted by Glint, model " + model}};
+  if (const std::string poor = reasonsOf(inspection.models.at(model)).poor; !poor.empty())
+    j["info"].update({{"status", "poor"}, {"reason", poor}});
   j["images"] = ordered_json::array();
   int without = 0;
   for (const int f : frames) {

@@ -19,6 +19,7 @@ ordered_json liveHighlight(const LiveHighlights& of, const PredictedHighlight& h
   ordered_json j;
   j["light"] = of.light;
   j["model"] = of.model;
+  j["status"] = of.poor.empty() ? "ok" : "poor";
   const auto pixel = [](const Pixel& p) { return ordered_json::array({numberOrNull(p.x()), numberOrNull(p.y())}); };
   j["peak"] = pixel(h.brightest.pixel);
   j["coverage"] = numberOrNull(h.coverage);
@@ -43,8 +44,13 @@ ordered_json liveHighlight(const LiveHighlights& of, const PredictedHighlight& h
 
 std::string liveLine(const LivePose& pose, const LiveAnswer& answer, double timeUs) {
   ordered_json highlights = ordered_json::array(), failures = ordered_json::array();
-  std::string reason;
+  std::string reason, poor;
+  bool anyOk = false;
   for (const LiveHighlights& of : answer.highlights) {
+    if (!of.prediction.highlights().empty()) {
+      anyOk = anyOk || of.poor.empty();
+      if (poor.empty() && !of.poor.empty()) poor = of.model + ": " + of.poor;
+    }
     for (const PredictedHighlight& h : of.prediction.highlights()) highlights.push_back(liveHighlight(of, h, answer.camera));
     const Failure* const why = of.prediction.failure();
     if (!why) continue;
@@ -57,8 +63,8 @@ std::string liveLine(const LivePose& pose, const LiveAnswer& answer, double time
   j["id"] = pose.id;
   j["time"] = pose.time ? numberOrNull(*pose.time) : ordered_json();
   j["frame"] = answer.frame ? ordered_json(*answer.frame) : ordered_json();
-  j["status"] = found ? "ok" : "failed";
-  j["reason"] = found ? "" : reason;
+  j["status"] = !found ? "failed" : anyOk ? "ok" : "poor";
+  j["reason"] = !found ? reason : anyOk ? "" : poor;
   j["highlights"] = std::move(highlights);
   j["failures"] = std::move(failures);
   j["time_us"] = numberOrNull(timeUs);

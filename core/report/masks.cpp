@@ -12,12 +12,12 @@
 
 #include "core/base/atomic_file.h"
 #include "core/base/atomic_folder.h"
-#include "core/base/number_text.h"
 #include "core/base/parallel.h"
 #include "core/codecs/codecs.h"
 #include "core/geometry/polyline.h"
 #include "core/report/labels.h"
 #include "core/report/yolo.h"
+#include "core/scene/outputs.h"
 
 namespace glint {
 namespace {
@@ -154,7 +154,7 @@ void writeMasks(const Inspection& inspection, const std::vector<int>& frames, co
   for (const std::string& source : of)
     for (const auto& [light, name] : folders) fs::create_directories(out / "masks" / source / name);
   const auto fileOf = [&](const Task& t) {
-    const std::string name = formatted("%04d.png", t.frame);  // by position: an id may hold what no file name may
+    const std::string name = pictureName(inspection.scene->frames[static_cast<std::size_t>(t.frame)]);
     return fs::path("masks") / t.of / folders.at(t.light) / name;
   };
   std::vector<long long> pixels(tasks.size());

@@ -22,7 +22,7 @@ struct LabelFormats {
 LabelFormats labelFormatsFrom(const std::string& list);
 
 /// The labels of an inspection as a folder:
-///   masks/observed/LIGHT/0007.png  and  masks/MODEL/LIGHT/0007.png    one 8-bit mask per frame (by position) and light, all 0
+///   masks/observed/LIGHT/0007.png  and  masks/MODEL/LIGHT/0007.png    one 8-bit mask per frame (by its id) and light, all 0
 ///                                                                      where there is no highlight
 ///   masks.json      keys: glint_masks 1, scene, masks[]: frame, id, light, of ("observed" or the model), file, pixels, reason
 ///   labels_MODEL.json                                                  COCO, see `cocoJson`

@@ -79,13 +79,14 @@ std::vector<FrameRecord> frameRecords(const std::vector<PartFile>& parts) {
       continue;
     }
     if (frame < static_cast<int>(i))
-      throw InputError(found[i].second->file, "shard.frames", "frame " + std::to_string(frame) + " is in another part, too");
+      throw InputError(found[i].second->file, "shard.frames", "frame " + found[i].first.note.id + " is in another part, too");
     throw InputError(found[i].second->file, "shard.frames",
-                     frame >= n ? "frame " + std::to_string(frame) + " is none of the scene's " + std::to_string(n)
-                                : "no part has frame " + std::to_string(i));
+                     frame >= n ? "frame " + found[i].first.note.id + " is at position " + std::to_string(frame) +
+                                      ", and the scene has " + std::to_string(n) + " frames"
+                                : "no part has the frame at position " + std::to_string(i));
   }
   if (static_cast<int>(all.size()) != n)
-    throw InputError(parts.back().file, "shard.frames", "no part has frame " + std::to_string(all.size()));
+    throw InputError(parts.back().file, "shard.frames", "no part has the frame at position " + std::to_string(all.size()));
   return all;
 }
 

@@ -41,20 +41,23 @@ int countIn(const JsonNode& node) {
 }  // namespace
 
 std::string jsonOf(const FrameRecord& r) {
-  Json j = {{"frame", r.note.frame},       {"training", r.note.training},      {"held_out", r.note.heldOut},
-            {"clipped", r.note.clipped},   {"level_known", r.note.levelKnown}, {"given", r.note.given},
-            {"detected", r.note.detected}, {"unreadable", r.note.unreadable}};
+  Json j = {{"frame", r.note.frame},          {"id", r.note.id},
+            {"training", r.note.training},    {"held_out", r.note.heldOut},
+            {"clipped", r.note.clipped},      {"level_known", r.note.levelKnown},
+            {"given", r.note.given},          {"detected", r.note.detected},
+            {"unreadable", r.note.unreadable}};
   if (!r.note.notParted.empty()) j["not_parted"] = r.note.notParted;
   if (r.detection)
     j["detection"] = {{"missed", r.detection->missed},
                       {"contour_error_pct", numbersJson(r.detection->percent)},
                       {"contour_error_px", numbersJson(r.detection->pixels)}};
-  return j.dump();
+  return j.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 FrameRecord readFrameRecord(const JsonNode& j) {
   FrameRecord r;
   r.note.frame = countIn(j.at("frame"));
+  r.note.id = j.at("id").text();
   r.note.training = j.at("training").boolean();
   r.note.heldOut = j.at("held_out").boolean();
   r.note.clipped = j.at("clipped").boolean();

@@ -34,8 +34,8 @@ std::string captionOf(const Inspection& inspection) {
   int heldOut = 0;
   for (int frame = 0; frame < static_cast<int>(inspection.scene->frames.size()); ++frame) heldOut += inspection.isHeldOut(frame);
   return "contour errors of held-out frames (" + std::to_string(heldOut) + "); trained on " +
-         std::to_string(inspection.train.frames.size()) + " of " + all + " frames (" + inspection.train.text +
-         "); % of a highlight's diameter\n";
+         std::to_string(inspection.train.frames.size()) + " of " + all + " frames (" +
+         trainText(inspection.train, *inspection.scene) + "); % of a highlight's diameter\n";
 }
 
 }  // namespace

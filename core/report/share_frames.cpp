@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <cmath>
 
+#include "core/base/number_text.h"
 #include "core/draw/frame_overlay.h"
 #include "core/draw/on_surface.h"
 #include "core/fit/training.h"
+#include "core/inspect/summary.h"
 #include "core/report/share_parts.h"
 #include "core/surface/mesh_policy.h"
 
@@ -33,6 +36,14 @@ std::string chains(const std::vector<draw::WorldChain>& all, const Rounding& rou
   return array(drawn, [&](const draw::WorldChain& chain) { return rounding.world(chain); });
 }
 
+/// "#00719e", as the picture draws it: paler where the fit is poor.
+std::string hexOf(const draw::Colour& colour) {
+  std::string text = "#";
+  for (const double channel : colour)
+    text += formatted("%02x", static_cast<int>(std::lround(255 * std::clamp(channel, 0.0, 1.0))));
+  return text;
+}
+
 std::string cameraJson(const Camera& camera) {
   const Eigen::Matrix3d& k = camera.pixelFromRay;
   std::string pose;
@@ -57,7 +68,8 @@ std::string overlayJson(const Inspection& inspection, int frame) {
     if (shown.count(layer.role) == 0) options.hidden.insert(layer.role);
   const draw::FrameOverlay overlay = draw::frameOverlay(inspection, frame, options);
   const auto line = [](const draw::OverlayLine& l) {
-    return "{\"model\":" + quoted(l.model) + ",\"light\":" + quoted(l.light) + ",\"closed\":" + truth(l.closed) + ",\"dash\":" +
+    return "{\"model\":" + quoted(l.model) + ",\"colour\":" + quoted(hexOf(l.colour)) + ",\"light\":" + quoted(l.light) +
+           ",\"closed\":" + truth(l.closed) + ",\"dash\":" +
            std::to_string(l.dash == draw::Dash::Dashed       ? 1
                           : l.dash == draw::Dash::Dotted     ? 2
                           : l.dash == draw::Dash::DashDotted ? 3
@@ -68,7 +80,8 @@ std::string overlayJson(const Inspection& inspection, int frame) {
   for (const draw::OverlayMark& mark : overlay.marks)
     if (mark.at.allFinite()) marks.push_back(mark);
   const auto mark = [](const draw::OverlayMark& m) {
-    return "{\"model\":" + quoted(m.model) + ",\"label\":" + quoted(m.label) + ",\"at\":" + Rounding::pixels({m.at}) + "}";
+    return "{\"model\":" + quoted(m.model) + ",\"colour\":" + quoted(hexOf(m.colour)) + ",\"label\":" + quoted(m.label) +
+           ",\"at\":" + Rounding::pixels({m.at}) + "}";
   };
   const auto caption = [](const draw::OverlayCaption& c) {
     return "{\"model\":" + quoted(c.model) + ",\"text\":" + quoted(c.text) + ",\"problem\":" + truth(c.problem) + "}";
@@ -113,18 +126,20 @@ std::string onSurfaceJson(const Inspection& inspection, int frame, const Surface
                           const Rounding& rounding) {
   const Camera& camera = inspection.scene->frames[static_cast<std::size_t>(frame)].camera;
   std::vector<std::string> all;
-  const auto add = [&](const std::string& model, Polyline contour, bool gap) {
+  const auto add = [&](const std::string& model, Polyline contour, const draw::Colour& colour, bool dashed) {
     contour.points = thinned(contour, kMostPoints);
-    all.push_back("{\"model\":" + quoted(model) + ",\"gap\":" + truth(gap) +
+    all.push_back("{\"model\":" + quoted(model) + ",\"colour\":" + quoted(hexOf(colour)) + ",\"dashed\":" + truth(dashed) +
                   ",\"chains\":" + chains(draw::castContour(camera, surface, contour, surfaceSize, 0), rounding) + "}");
   };
   for (const Highlight& h : inspection.evidence[static_cast<std::size_t>(frame)].scored())
-    if (h.contour.points.size() > 1) add("", h.contour, false);
+    if (h.contour.points.size() > 1) add("", h.contour, draw::kObserved, false);
   for (const std::string& name : modelsInOrder(inspection))
     for (const FrameComparison& comparison : inspection.models.at(name).frames) {
       if (comparison.frame != frame) continue;
+      const bool poor = !poorFit(inspection.models.at(name), comparison).empty();
+      const draw::Colour colour = poor ? draw::pale(draw::modelColour(name)) : draw::modelColour(name);
       for (const PredictedHighlight& h : comparison.prediction.highlights())
-        for (const draw::ContourRun& run : draw::contourRuns(h)) add(name, {run.points, run.closed}, run.gap);
+        for (const draw::ContourRun& run : draw::contourRuns(h)) add(name, {run.points, run.closed}, colour, run.gap || poor);
     }
   return array(all, [](const std::string& text) { return text; });
 }

@@ -55,33 +55,27 @@ std::string tradeoffHtml(const Tradeoff& t) {
       "4em}"
       ".faded{color:var(--faded)}</style></head><body>\n";
   html += "<h1>Speed against accuracy</h1>\n<p>Input <code>" + escaped(t.input) + "</code>, training <code>" +
-          escaped(t.trainSpec) + "</code> (" + std::to_string(t.train.size()) + " frames).</p>\n<p><b>" + escaped(t.reason) +
+          escaped(trainedOn(t)) + "</code> (" + std::to_string(t.train.size()) + " frames).</p>\n<p><b>" + escaped(t.reason) +
           "</b></p>\n";
+  if (const std::string note = presetNote(t); !note.empty()) html += "<p>" + escaped(note) + "</p>\n";
   html += svgOf(t) + kLegend;
   html +=
       "<h2>Settings measured in full</h2>\n<table><tr><th></th><th class=\"text\">setting</th><th>&micro;s/frame</th><th>error "
-      "%</th><th>IoU</th>"
-      "<th>coverage</th><th>predicted</th><th>matched / missed / spurious</th><th>fit ms</th><th>peak MB</th></tr>\n";
+      "%</th><th>highlights found</th><th>error of those found %</th><th>spurious</th><th>IoU</th><th>coverage</th><th>fit "
+      "ms</th><th>peak MB</th></tr>\n";
   for (int i = 0; i < static_cast<int>(t.points.size()); ++i) {
     const TradeoffPoint& p = t.points[i];
-    std::string marks = p.pareto ? "&#9679;" : "";
-    for (const auto& [name, index] : t.presets)
-      if (index == i) marks += " " + name;
+    const std::string names = presetNames(t, i), marks = (p.pareto ? "&#9679; " : "") + names;
     html += std::string("<tr") + (t.chosen == i ? " class=\"chosen\"" : "") + "><td>" + marks +
             "</td><td class=\"text\"><span class=\"swatch\" style=\"background:" + modelHex(p.model) + "\"></span>" +
             escaped(describe(t, p) + (p.poor.empty() ? "" : ", poor: " + p.poor)) + "</td><td>" + format("%.1f", p.predictUs) +
-            "</td><td>" + format("%.3g", p.contourErrorPct) + "</td><td>" + format("%.4f", p.iou) + "</td><td>" +
-            format("%.3f", p.coverage) + "</td><td>" + std::to_string(p.predicted) + "/" + std::to_string(p.frames) +
-            "</td><td>" + std::to_string(p.matched) + " / " + std::to_string(p.missed) + " / " + std::to_string(p.spurious) +
-            "</td><td>" + format("%.2f", p.fitUs * 1e-3) + "</td><td>" + format("%.1f", p.peakMb) + "</td></tr>\n";
+            "</td><td>" + format("%.3g", p.rankedErrorPct) + "</td><td>" + foundText(p) + "</td><td>" +
+            format("%.3g", p.contourErrorPct) + "</td><td>" + std::to_string(p.spurious) + "</td><td>" + format("%.4f", p.iou) +
+            "</td><td>" + format("%.3f", p.coverage) + "</td><td>" + format("%.2f", p.fitUs * 1e-3) + "</td><td>" +
+            format("%.1f", p.peakMb) + "</td></tr>\n";
   }
-  html +=
-      "</table>\n<p class=\"faded\">Only settings that differ from the defaults are listed. Error: symmetric mean "
-      "distance between predicted and "
-      "observed contour, in percent of the equivalent diameter of the observed region, mean over held-out highlights. Where a "
-      "setting missed highlights, predicted "
-      "spurious ones or left directions out, the plot counts these as 100 %. " +
-      escaped(t.measurement) + "</p>\n";
+  html += "</table>\n<p class=\"faded\">Only settings that differ from the defaults are listed. " + escaped(kTradeoffErrors) +
+          " " + escaped(t.measurement) + "</p>\n";
   std::map<std::string, std::vector<const PrunedPoint*>> kinds;
   for (const PrunedPoint& p : t.pruned) kinds[p.kind].push_back(&p);
   html += "<h2>Not measured in full</h2>\n<p>" + std::to_string(t.trials) + " settings were tried on a few frames; " +

@@ -12,8 +12,8 @@ namespace glint {
 /// Sorted and unique. InputError (place: `flag`) when it does not parse or names a frame that does not exist.
 std::vector<int> parseFrames(const std::string& text, const Scene& scene, const std::string& flag);
 
-/// The shortest SPEC of numbers and ranges that names these frames in this scene: an id that reads like another frame's number, or like a
-/// range, makes a frame's own id stand there. "" for none.
+/// A SPEC of ids and ranges of ids that names these frames in this scene; numbers stand where an id would be read as something else (a comma, a
+/// range). "" for none.
 /// @param frames  sorted and unique
 std::string frameSpec(const std::vector<int>& frames, const Scene& scene);
 

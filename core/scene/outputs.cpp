@@ -9,6 +9,7 @@
 
 #include "core/base/document_kind.h"
 #include "core/base/number_text.h"
+#include "core/base/safe_text.h"
 #include "core/scene/scene_files.h"
 
 namespace glint {
@@ -138,12 +139,11 @@ void Outputs::inFolder(const std::string& folder, const std::string& flag, const
   }
 }
 
-std::vector<std::string> picturesOf(const std::vector<int>& frames) {
+std::string pictureName(const Frame& frame, const std::string& part) { return fileNameOf(frame.id) + part + ".png"; }
+
+std::vector<std::string> picturesOf(const Scene& scene, const std::vector<int>& frames) {
   std::vector<std::string> names;
-  for (const int frame : frames) {
-    const std::string name = formatted("%04d.png", frame);
-    names.emplace_back(name);
-  }
+  for (const int frame : frames) names.push_back(pictureName(scene.frames[static_cast<std::size_t>(frame)]));
   return names;
 }
 

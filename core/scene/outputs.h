@@ -57,7 +57,9 @@ class Outputs {
   std::vector<std::filesystem::path> asked_;
 };
 
-/// 0000.png and so on, for these frames.
-std::vector<std::string> picturesOf(const std::vector<int>& frames);
+/// The name of a frame's picture: its id, with what no file name may hold replaced, the part, ".png". "0012.png", "0012_diffuse.png".
+std::string pictureName(const Frame& frame, const std::string& part = "");
+/// Of these frames.
+std::vector<std::string> picturesOf(const Scene& scene, const std::vector<int>& frames);
 
 }  // namespace glint

@@ -95,8 +95,10 @@ void choosePoint(Tradeoff& t, const TradeoffBound& bound) {
   if (presets.fast == presets.exact)
     t.reason = said(presets.exact) + " is both the fastest usable and the most accurate setting.";
   else
-    t.reason = "The balanced preset, the knee of the front: " + said(presets.balanced) + ", between fast, " + said(presets.fast) +
-               ", and exact, " + said(presets.exact) + ".";
+    // Where it is one of the others, presetNote() says so.
+    t.reason = "The balanced preset, the knee of the front: " + said(presets.balanced) +
+               (presets.balanced == presets.fast ? "" : "; fast: " + said(presets.fast)) +
+               (presets.balanced == presets.exact ? "" : "; exact: " + said(presets.exact)) + ".";
 }
 
 const TradeoffPoint& pointOfPreset(const Tradeoff& t, const std::string& name) {

@@ -5,7 +5,6 @@
 
 #include "core/base/json_dom.h"
 #include "core/base/json_text.h"
-#include "core/base/number_text.h"
 #include "core/base/outcome.h"
 #include "core/tradeoff/knobs.h"
 #include "core/tradeoff/tradeoff.h"
@@ -56,7 +55,8 @@ Settings readSet(const JsonNode& node) {
 }  // namespace
 
 std::string tradeoffJson(const Tradeoff& t) {
-  Json j = {{"glint_tradeoff", 1}, {"input", t.input}, {"train", t.train}, {"train_spec", t.trainSpec}, {"knobs", t.knobs}};
+  Json j = {{"glint_tradeoff", 1},     {"input", t.input},          {"train", t.train},
+            {"train_ids", t.trainIds}, {"train_spec", t.trainSpec}, {"knobs", t.knobs}};
   j["points"] = Json::array();
   for (const TradeoffPoint& p : t.points) {
     Json point;
@@ -103,6 +103,8 @@ Tradeoff readTradeoff(const JsonNode& node) {
   if (node.at("glint_tradeoff").integer() != 1) node.at("glint_tradeoff").fail("only version 1 is supported");
   t.input = node.at("input").text();
   for (std::size_t i = 0; i < node.at("train").size(); ++i) t.train.push_back(node.at("train").at(i).integer());
+  if (const auto ids = node.find("train_ids"))  // files before it name frames by position alone
+    for (std::size_t i = 0; i < ids->size(); ++i) t.trainIds.push_back(ids->at(i).text());
   t.trainSpec = node.at("train_spec").text();
   for (std::size_t i = 0; i < node.at("knobs").size(); ++i) {
     t.knobs.push_back(node.at("knobs").at(i).text());
@@ -160,28 +162,6 @@ std::string describe(const Tradeoff& t, const TradeoffPoint& p) {
     if (const auto it = p.settings.values().find(key); it != p.settings.values().end())
       text += ", " + knobName(key) + " " + textOf(it->second);
   return text;
-}
-
-std::string tradeoffTable(const Tradeoff& t) {
-  std::string out = "front  us/frame    error %      IoU  coverage  predicted     fit ms  peak MB  setting\n";
-  for (int i = 0; i < static_cast<int>(t.points.size()); ++i) {
-    const TradeoffPoint& p = t.points[i];
-    std::string marks;
-    for (const auto& [name, index] : t.presets)
-      if (index == i) marks += "  <- " + name;
-    if (t.chosen == i) marks += "  <- chosen";
-    const std::string predicted = std::to_string(p.predicted) + "/" + std::to_string(p.frames);
-    out += formatted("%-5s %9.1f %10.4g %8.4f %9.3f %10s %10.2f %8.1f  ", p.pareto ? "*" : "", p.predictUs, p.contourErrorPct,
-                     p.iou, p.coverage, predicted.c_str(), p.fitUs * 1e-3, p.peakMb) +
-           describe(t, p) + (p.poor.empty() ? "" : "  poor: " + p.poor) + marks + "\n";
-  }
-  std::map<std::string, int> kinds;
-  for (const PrunedPoint& p : t.pruned) ++kinds[p.kind];
-  out += "\n" + std::to_string(t.points.size()) + " settings measured in full, " + std::to_string(t.trials) +
-         " tried on a few frames, " + std::to_string(t.pruned.size()) + " dropped";
-  std::string list;
-  for (const auto& [kind, count] : kinds) list += (list.empty() ? ": " : ", ") + std::to_string(count) + " " + kind;
-  return out + list + ".\n" + t.measurement + "\n" + t.reason + "\n";
 }
 
 }  // namespace glint

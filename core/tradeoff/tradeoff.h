@@ -39,8 +39,9 @@ struct PrunedPoint {
 
 /// Speed against accuracy on one input. Plain data: what `tradeoff --json` writes and the session stores.
 struct Tradeoff {
-  std::string input;  ///< as the user named it
-  std::vector<int> train;
+  std::string input;                  ///< as the user named it
+  std::vector<int> train;             ///< positions
+  std::vector<std::string> trainIds;  ///< the same frames as a person knows them
   std::string trainSpec;
   std::vector<std::string> knobs;      ///< dotted names of the settings that were varied
   std::vector<TradeoffPoint> points;   ///< fastest first
@@ -68,6 +69,19 @@ std::string describe(const Tradeoff& tradeoff, const TradeoffPoint& point);
 std::string tradeoffJson(const Tradeoff& tradeoff);
 /// Reads it back (from a session). InputError with the place.
 Tradeoff readTradeoff(const JsonNode& node);
+/// What trained, for a person: "first:2, 0000, 0001".
+std::string trainedOn(const Tradeoff& tradeoff);
+
+// One number is the error of a setting wherever settings are compared: rankedErrorPct, `error %`. The mean over the highlights that were found,
+// which `evaluate` prints, stands beside it under its own name.
+/// One sentence that says what both are.
+extern const char* const kTradeoffErrors;
+/// "29 of 54": highlights that were found, of those observed.
+std::string foundText(const TradeoffPoint& point);
+/// The presets that mean this point: "fast and balanced"; "" where none does.
+std::string presetNames(const Tradeoff& tradeoff, int point);
+/// That presets coincide, and why, in one sentence; "" where each has a point of its own.
+std::string presetNote(const Tradeoff& tradeoff);
 /// A plain-text table of the front and the presets.
 std::string tradeoffTable(const Tradeoff& tradeoff);
 

@@ -6,6 +6,7 @@
 
 #include "core/base/number_text.h"
 #include "core/base/sha256.h"
+#include "core/scene/frame_name.h"
 #include "core/session/session.h"
 #include "core/surface/mesh_policy.h"
 #include "core/trials/measure.h"
@@ -65,6 +66,7 @@ Tradeoff emptyTradeoff(const Scene& scene, const InspectionRequest& request, con
   t.train = parseTrainSpec(request.train, scene).frames;
   std::erase_if(t.train,
                 [&](int f) { return std::find(request.excluded.begin(), request.excluded.end(), f) != request.excluded.end(); });
+  t.trainIds = frameIds(scene, t.train);
   for (const Knob& k : knobsOf(request.settings)) t.knobs.push_back(k.key);
   return t;
 }

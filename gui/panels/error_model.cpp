@@ -31,7 +31,8 @@ const ColumnInfo kTexts[] = {
      QT_TRANSLATE_NOOP("ErrorModel", "Light id; with several highlights of one light, which highlight")},
     {"status", QT_TRANSLATE_NOOP("ErrorModel", "Status"),
      QT_TRANSLATE_NOOP("ErrorModel",
-                       "ok; poor: off by more than 5 %; missed: observed, not predicted; spurious: predicted, not observed; "
+                       "ok; far off: by more than 5 %; poor: the model explains its training views badly; missed: observed, not "
+                       "predicted; spurious: predicted, not observed; "
                        "failed: no prediction in this frame; refused: the model has no fit")}};
 const ColumnInfo kLast[] = {
     {"pinned", QT_TRANSLATE_NOOP("ErrorModel", "Pinned %"),

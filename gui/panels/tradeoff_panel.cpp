@@ -167,11 +167,17 @@ void TradeoffPanel::refresh() {
   presets_->setEnabled(t && !t->presets.empty());
   for (const auto& name : {"fast", "balanced", "exact"}) {
     auto* b = presets_->findChild<QPushButton*>(QStringLiteral("preset_%1").arg(QLatin1String(name)));
-    b->setToolTip(t && t->presets.count(name) ? toQString(describe(*t, t->points[std::size_t(t->presets.at(name))])) : QString());
+    const bool known = t && t->presets.count(name);
+    const QString names = known ? toQString(presetNames(*t, t->presets.at(name))) : QLatin1String(name);
+    b->setText(names);
+    b->setVisible(names.startsWith(QLatin1String(name)));  // presets that are one setting share the first one's button
+    b->setToolTip(known ? toQString(describe(*t, t->points[std::size_t(t->presets.at(name))])) : QString());
   }
   QString words = t ? withMicro(toQString(t->reason)) : QString();
+  if (t)
+    if (const QString note = toQString(presetNote(*t)); !note.isEmpty()) words += QStringLiteral(" ") + note;
   if (t && document_.scene() && t->trainSpec != document_.request().train)
-    words += tr(" (Measured on training frames %1.)").arg(toQString(t->trainSpec));
+    words += tr(" (Measured on training frames %1.)").arg(toQString(trainedOn(*t)));
   sentence_->setText(words);
   sentence_->setVisible(!words.isEmpty());
 }

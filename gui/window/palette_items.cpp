@@ -179,7 +179,7 @@ void addKnobAssignments(QList<PaletteItem>& items, const QString& value, Documen
 void addFrames(QList<PaletteItem>& items, Document& document) {
   for (int i = 0; i < document.frameCount(); ++i)
     items.append({QObject::tr("Frame %1").arg(nameText(document.scene()->frames[std::size_t(i)].id)),
-                  QObject::tr("Select frame number %1").arg(i),
+                  QObject::tr("Select it: %1 of %2").arg(i + 1).arg(document.frameCount()),
                   {},
                   true,
                   [&document, i] { document.selectFrame(i); }});

@@ -419,7 +419,7 @@ def _training(answers, view):
         where = {"frame": v.frame, "light": v.highlight.light}
         if v.tangent_plane is None:
             for block in cameras, planes, ellipses, points:
-                block.missing(f"frame {v.frame}: {v.failure or 'no tangent plane'}")
+                block.missing(f"frame {answers.inspection.scene.frames[v.frame].id}: {v.failure or 'no tangent plane'}")
             continue
         try:
             surface = answers.inspection.scene.surface(v.frame)

@@ -28,6 +28,7 @@
     const e = element(parent, 'span', '', 'swatch');
     e.style.background = colour;
   }
+  const shortList = (words) => words.slice(0, 8).join(', ') + (words.length > 8 ? ' and ' + (words.length - 8) + ' more' : '');
   const plural = (n, word) => n + ' ' + word + (n === 1 ? '' : 's');
 
   // What is known of the whole.
@@ -36,16 +37,19 @@
   const perSurface = evaluation.train_spec === 'per-surface';
   function whatIsScored() {
     return (perSurface ? 'All frames are scored, because each surface has its own model of all its frames' :
-        'Held-out frames alone are scored; trained on ' + plural(evaluation.train.length, 'frame') + ' (' + evaluation.train_spec + ')') +
+        'Held-out frames alone are scored; trained on ' + plural(evaluation.train_ids.length, 'frame') + ' (' + shortList(evaluation.train_ids) + ')') +
         '. Scored against ' + scoredAgainst + '.';
   }
+  const answers = (e) => e && e.status !== 'failed' && isNumber(e.summary.contour_error_pct.mean);
+  /// A poor one counts only where no other answers.
   function best() {
     let found = null;
+    const anyOk = data.models.some((m) => answers(evaluation.models[m.id]) && evaluation.models[m.id].status === 'ok');
     for (const model of data.models) {
       const e = evaluation.models[model.id];
-      if (!e || e.status !== 'ok' || !isNumber(e.summary.contour_error_pct.mean)) continue;
+      if (!answers(e) || (anyOk && e.status !== 'ok')) continue;
       if (!found || e.summary.predicted > found.summary.predicted || (e.summary.predicted === found.summary.predicted &&
-          e.summary.contour_error_pct.mean < found.summary.contour_error_pct.mean)) found = { id: model.id, summary: e.summary };
+          e.summary.contour_error_pct.mean < found.summary.contour_error_pct.mean)) found = { id: model.id, poor: e.status === 'poor', summary: e.summary };
     }
     return found;
   }
@@ -55,8 +59,9 @@
     const top = best();
     at('summary').textContent = plural(data.frames_in_all, 'frame') +
         (data.frames.length < data.frames_in_all ? ', of which this page shows ' + data.frames.length : '') + '. ' + (top ?
-        'Smallest mean contour error: ' + top.id + ', ' + percent(top.summary.contour_error_pct.mean) + ' % of the highlight\u2019s diameter (' +
-        top.summary.predicted + ' of ' + top.summary.frames + ' predicted).' : 'No model was scored.');
+        'Smallest mean contour error: ' + top.id + (top.poor ? ' (poor)' : '') + ', ' + percent(top.summary.contour_error_pct.mean) +
+        ' % of the highlight\u2019s diameter over the ' + top.summary.matched + ' of ' + plural(top.summary.matched + top.summary.missed, 'highlight') +
+        ' that it found.' : 'No model was scored.');
     at('made').textContent = 'Made by ' + (data.program || 'Glint') + ' from ' + data.input + '. This page loads nothing from a network.';
     if (evaluation.warnings.length) {
       at('warnings').hidden = false;
@@ -75,7 +80,7 @@
     for (const model of data.models) {
       const e = evaluation.models[model.id];
       const row = element(body, 'tr');
-      const label = element(element(row, 'td'), 'label');
+      const name = element(row, 'td'), label = element(name, 'label');
       label.title = model.title + ': ' + model.assumption;
       const box = element(label, 'input');
       box.type = 'checkbox';
@@ -87,7 +92,12 @@
       label.append(' ');
       swatch(label, model.colour);
       label.append(model.id);
-      if (!e || e.status !== 'ok') {
+      if (e && e.status === 'poor') {
+        row.className = 'poor';
+        name.append(', poor');
+        label.title += '\npoor: ' + e.reason;
+      }
+      if (!e || e.status === 'failed') {
         const cell = element(row, 'td', e ? e.reason : '', 'words problem');
         cell.colSpan = 8;
         continue;
@@ -98,13 +108,16 @@
       element(row, 'td', fixed(s.contour_error_px.mean, 3));
       element(row, 'td', fixed(s.iou.mean, 4));
       element(row, 'td', s.matched + ' / ' + s.missed + ' / ' + s.spurious);
+      if (e.status !== 'poor') continue;
+      const why = element(element(body, 'tr', undefined, 'poor'), 'td', 'poor: ' + e.reason, 'words');
+      why.colSpan = 9;
     }
   }
   /// One cell of a frame: the mean of its highlights, or what went wrong in words.
   function cellOf(model, frame) {
     const rows = ((evaluation.models[model] || {}).frames || []).filter((r) => r.index === frame.index);
     if (!rows.length) return { text: frame.role === 'training' ? 'trains' : frame.role === 'excluded' ? 'excluded' : '–', quiet: true };
-    const measured = rows.filter((r) => r.status === 'ok' && isNumber(r.contour_error_pct)).map((r) => r.contour_error_pct);
+    const measured = rows.filter((r) => isNumber(r.contour_error_pct)).map((r) => r.contour_error_pct);
     const wrong = rows.filter((r) => r.status !== 'ok');
     const words = [];
     for (const status of [...new Set(wrong.map((r) => r.status))]) {
@@ -174,7 +187,7 @@
       const attributes = { points: line.points.join(' '), fill: 'none', 'vector-effect': 'non-scaling-stroke', 'stroke-linejoin': 'round' };
       const name = line.closed ? 'polygon' : 'polyline';
       if (line.model === '') svg(picture, name, { ...attributes, stroke: '#1f2126', 'stroke-width': 4.5 });
-      const drawn = svg(picture, name, { ...attributes, stroke: line.model === '' ? '#ffffff' : colourOf(line.model), 'stroke-width': line.model === '' ? 2.5 : 2 });
+      const drawn = svg(picture, name, { ...attributes, stroke: line.colour, 'stroke-width': line.model === '' ? 2.5 : 2 });
       if (line.dash) drawn.setAttribute('stroke-dasharray', line.dash === 1 ? '7 4' : line.dash === 2 ? '2 4' : '8 3 2 3');
       svg(drawn, 'title', {}).textContent = line.label || line.model || 'observed';
     }
@@ -182,7 +195,7 @@
     for (const mark of frame.marks) {
       if (!state.layers.peaks || (mark.model !== '' && !shown(mark.model))) continue;
       const [x, y] = mark.at;
-      const attributes = { stroke: mark.model === '' ? '#ffffff' : colourOf(mark.model), fill: 'none', 'stroke-width': 1.6, 'vector-effect': 'non-scaling-stroke' };
+      const attributes = { stroke: mark.colour, fill: 'none', 'stroke-width': 1.6, 'vector-effect': 'non-scaling-stroke' };
       const drawn = mark.model === '' ?
           svg(picture, 'path', { ...attributes, d: `M${x - unit},${y}H${x + unit}M${x},${y - unit}V${y + unit}` }) :
           svg(picture, 'circle', { ...attributes, cx: x, cy: y, r: 0.7 * unit });

@@ -265,9 +265,9 @@ function glintScene(data, canvas, labelBox, select) {
     frame.on_surface.forEach((contour, order) => {
       const observed = contour.model === '';
       if (observed ? !state.layers['observed-contours'] : !state.layers['predicted-contours'] || state.hiddenModels.has(contour.model)) return;
-      const chains = contour.chains.map(flat), colour = observed ? '#ffffff' : data.models.find((m) => m.id === contour.model).colour;
+      const chains = contour.chains.map(flat), colour = contour.colour;
       if (observed) lines(group, chains, '#1f2126', 4.6, { nearer: 0.0050, order: 6 });
-      lines(group, contour.gap ? chains.map((c) => c.filter((p, i) => i % 3 === 0)) : chains, colour, observed ? 2.8 : 2.2, { nearer: 0.0052 + 0.0001 * order, order: 6 });
+      lines(group, contour.dashed ? chains.map((c) => c.filter((p, i) => i % 3 === 0)) : chains, colour, observed ? 2.8 : 2.2, { nearer: 0.0052 + 0.0001 * order, order: 6 });
     });
   }
 

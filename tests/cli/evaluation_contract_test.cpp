@@ -178,7 +178,7 @@ TEST_F(EvaluationContract, ClippedHighlightsAreNamedWithTheirFrames) {
     writeRadiance(frame, m * (1e4 / top));  // its peak at 10,000, all others far below
   }
   const ProgramRun run = on("evaluate", "--models limit-angle --set detect.clip=6000 --json - --html " + out("e.html"));
-  const std::string expected = "clipped (saturated) highlights in training frames 2 and other frames 6";
+  const std::string expected = "clipped (saturated) highlights in training frame 0002 and other frame 0006";
   EXPECT_THAT(run.err, testing::HasSubstr("warning: " + expected));
   EXPECT_THAT(Json::parse(run.out)["warnings"][0].get<std::string>(), testing::HasSubstr(expected));
   EXPECT_THAT(contentOf(folder_ / "e.html"), testing::HasSubstr(expected));

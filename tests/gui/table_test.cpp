@@ -58,7 +58,7 @@ class TableTest : public QObject {
     choose("errorStatusFilter", QStringLiteral("any status"));
     // Errors of the second model are 4 to 5.2 %: 4 + 0.1 ((5 i) mod 12).
     choose("errorModelFilter", QStringLiteral("dual"));
-    choose("errorStatusFilter", QStringLiteral("poor"));
+    choose("errorStatusFilter", QStringLiteral("far off"));
     for (int r = 0; r < rows(); ++r) QVERIFY(cell(r, ErrorModel::ErrorPct).toDouble() > 5);
     choose("errorStatusFilter", QStringLiteral("ok"));
     for (int r = 0; r < rows(); ++r) QVERIFY(cell(r, ErrorModel::ErrorPct).toDouble() <= 5);

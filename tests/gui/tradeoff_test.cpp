@@ -75,6 +75,14 @@ class TradeoffTest : public QObject {
     QVERIFY(!exact->isEnabled());
     document.setTradeoff(std::make_shared<const Tradeoff>(threePoints()));
     QVERIFY(document.hasUnsavedChanges());
+    // Two presets of one setting share a button, and the sentence says it.
+    auto* fast = panel.findChild<QPushButton*>(QStringLiteral("preset_fast"));
+    QCOMPARE(fast->text(), QStringLiteral("fast and balanced"));
+    QVERIFY(!panel.findChild<QPushButton*>(QStringLiteral("preset_balanced"))->isVisibleTo(&panel));
+    QVERIFY(fast->isVisibleTo(&panel) && exact->isVisibleTo(&panel));
+    QVERIFY(panel.findChild<QLabel*>(QStringLiteral("tradeoffSentence"))
+                ->text()
+                .contains(QStringLiteral("The presets fast and balanced are the same setting")));
     QTest::mouseClick(exact, Qt::LeftButton);
     QCOMPARE(document.request().models, std::vector<std::string>{"limit-angle"});
     QTest::keyClick(panel.plot(), Qt::Key_Left);  // along the front: not to the beaten point
@@ -123,7 +131,7 @@ class TradeoffTest : public QObject {
                         const ProgressFn&, const Inspection*) {
       asked = goodEnough.value_or(0);
       glint::Selection s;
-      s.model = "dual";
+      s.model = s.best = "dual";
       s.why = "because";
       return s;
     };

@@ -140,19 +140,23 @@ TEST(PlotData, CsvHasOneLinePerSample) {
   plot.series[0].name = "a \"quoted\", name";
   plot.series[0].points[0].target.direction = 0.25;
   EXPECT_EQ(plotCsv(plot),
-            "series,\"\",\"error (%)\",lower,upper,frame,model,light,highlight,direction,label\n"
+            "series,\"\",\"error (%)\",lower,upper,index,model,light,highlight,direction,label\n"
             "\"a \"\"quoted\"\", name\",0,1.5,,,0,\"canonical\",\"\",,0.25,\"\"\n"
             "\"a \"\"quoted\"\", name\",1,,,,1,\"canonical\",\"\",,,\"\"\n");
 }
 
-TEST(Plots, FramesThatAreNoCountAreSaidToBePlaces) {
+TEST(Plots, TheAxisNamesFramesByTheirIds) {
   const TemporaryFolder folder;
   Inspection inspection = *smallInspection(folder.path());
   EXPECT_EQ(errorPlot(inspection).x.title, "frame");
+  EXPECT_TRUE(errorPlot(inspection).x.names.empty()) << "a count needs no names";
   auto scene = std::make_shared<Scene>(*inspection.scene);
   scene->frames[1].id = "0002";  // every second frame of a sequence
   inspection.scene = scene;
-  EXPECT_THAT(errorPlot(inspection).x.title, HasSubstr("position in the sequence"));
+  const PlotAxis axis = errorPlot(inspection).x;
+  EXPECT_EQ(axis.title, "frame");
+  ASSERT_EQ(axis.names.size(), inspection.evidence.size());
+  EXPECT_EQ(axis.names[1], std::pair(1.0, std::string("0002")));
 }
 
 TEST(Plots, ErrorsOfEveryFrame) {

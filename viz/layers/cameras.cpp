@@ -19,7 +19,7 @@ namespace {
 
 std::string cameraText(const Inspection& inspection, const std::vector<std::string>& models, int index) {
   const Frame& frame = inspection.scene->frames[static_cast<std::size_t>(index)];
-  std::string text = line("frame", frame.id) + line("index", std::to_string(index));
+  std::string text = line("frame", frame.id);
   text += line("role", inspection.isTraining(index) ? "training" : inspection.isHeldOut(index) ? "held out" : "excluded");
   text += line("centre", frame.camera.centreInWorld(), "m");
   text += line("axis", Eigen::Vector3d(frame.camera.camFromWorld.linear().row(2).transpose()));

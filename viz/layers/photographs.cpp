@@ -62,7 +62,7 @@ LayerContent photographsLayer(const LayerInput& in) {
     Picked info;
     info.layer = "photographs";
     info.frame = index;
-    info.text = line("frame", frame.id) + line("index", std::to_string(index)) +
+    info.text = line("frame", frame.id) +
                 line("photograph",
                      synthesised ? "synthesised" : (frame.image.empty() ? frame.radiance : frame.image).filename().string());
     content.add(actor.Get(), info);

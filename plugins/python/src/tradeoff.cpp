@@ -82,7 +82,7 @@ void declarePoint(py::module_& module) {
       .def_readonly("peak_mb", &TradeoffPoint::peakMb, "Most memory of this process meanwhile, 2^20 bytes; Python's counts, too.")
       .def_readonly("pareto", &TradeoffPoint::pareto, "Whether no other point beats it in both error and time.")
       .def("__repr__", [](const TradeoffPoint& p) {
-        return "<glint.TradeoffPoint " + p.model + ", " + std::to_string(p.contourErrorPct) + " %, " +
+        return "<glint.TradeoffPoint " + p.model + ", " + std::to_string(p.rankedErrorPct) + " %, " +
                std::to_string(p.predictUs) + " us>";
       });
 }

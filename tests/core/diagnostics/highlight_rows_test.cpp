@@ -91,6 +91,18 @@ FrameComparison::Row pair(int observed, int predicted, double pct) {
 }
 FrameComparison::Row alone(int observed, int predicted) { return {observed, predicted, {}, {}, {}}; }
 
+/// One word, one meaning: as `evaluate --json` says it, with the same reason.
+TEST(HighlightRows, AMatchByAPoorFitSaysSo) {
+  Inspection in = sequence({{seenAt({50, 50})}, {seenAt({50, 50})}}, "first:1");
+  predict(in, 0, std::vector{predictedAt({50, 50})}, {pair(0, 0, 1.0)});
+  predict(in, 1, std::vector{predictedAt({50, 50})}, {pair(0, 0, 9.0)});
+  in.models.at("canonical").fits[0].fit->poor = "4 px remain";
+  for (const HighlightRow& row : highlightRows(in)) {
+    EXPECT_EQ(nameOf(row.status), std::string("poor"));
+    EXPECT_EQ(row.reason, "4 px remain");
+  }
+}
+
 TEST(HighlightRows, EveryStatusHasItsRow) {
   Inspection in = sequence({{seenAt({50, 50})}, {seenAt({50, 50}), seenAt({90, 50})}, {}, {seenAt({50, 50})}, {}}, "first:1");
   in.request.excluded = {3};
@@ -101,7 +113,7 @@ TEST(HighlightRows, EveryStatusHasItsRow) {
   predict(in, 4, Failure{Reason::NoBrightestPoint, "x"}, {{-1, -1, {}, Failure{Reason::FrameUnreadable, "no file"}, {}}});
   const std::vector<HighlightRow> rows = highlightRows(in);
   ASSERT_EQ(rows.size(), 7u);
-  const std::vector<RowStatus> statuses{RowStatus::Ok,     RowStatus::Poor,   RowStatus::Missed,     RowStatus::Spurious,
+  const std::vector<RowStatus> statuses{RowStatus::Ok,     RowStatus::FarOff, RowStatus::Missed,     RowStatus::Spurious,
                                         RowStatus::Failed, RowStatus::Failed, RowStatus::NotCompared};
   for (std::size_t i = 0; i < rows.size(); ++i) EXPECT_EQ(nameOf(rows[i].status), std::string(nameOf(statuses[i]))) << i;
   EXPECT_EQ(rows[0].role, RowRole::Training);

@@ -47,20 +47,21 @@ TEST(ColoursAsBackground, GreyFramesKeepTheSmoothOneAndSayWhy) {
   const std::vector<std::string> warnings = warningsOf(inspectionOf(c, parted));
   ASSERT_EQ(warnings.size(), 1U);
   EXPECT_EQ(warnings[0],
-            "colours do not tell what is specular, and the smooth background is used, in frames 0 (the image is grey)");
+            "colours do not tell what is specular, and the smooth background is used, in frame 0 (the image is grey)");
 }
 
 TEST(ColoursAsBackground, ReasonsAreListedWithTheirFrames) {
   std::vector<FrameNote> notes(5);
   for (int f = 0; f < 5; ++f) {
     notes[std::size_t(f)].frame = f;
+    notes[std::size_t(f)].id = "00" + std::to_string(20 + f);
     notes[std::size_t(f)].heldOut = f != 4;  // the last one is excluded
     notes[std::size_t(f)].notParted = f == 1 ? "too much noise" : f == 3 ? "" : "the image is grey";
   }
   EXPECT_EQ(
       notPartedWarning(notes),
-      "colours do not tell what is specular, and the smooth background is used, in frames 0, 2 (the image is grey); frames 1 "
-      "(too much noise)");
+      "colours do not tell what is specular, and the smooth background is used, in frames 0020, 0022 (the image is grey); frame "
+      "0021 (too much noise)");
 }
 
 }  // namespace glint::parted_inspection_tests

@@ -78,7 +78,7 @@ Scene withIds(const std::vector<std::string>& ids) {
 TEST(CommandText, ExcludedFramesAreNamed) {
   InspectionRequest q;
   q.excluded = {1, 3, 4, 5};
-  EXPECT_EQ(*commandOf(withIds({"a", "b", "c", "d", "e", "f", "g"}), q), "glint evaluate /s/scene.json --exclude 1,3-5");
+  EXPECT_EQ(*commandOf(withIds({"a", "b", "c", "d", "e", "f", "g"}), q), "glint evaluate /s/scene.json --exclude b,d-f");
 }
 
 /// Ids win over numbers: where the ids are numbers themselves, "1" is the frame of that id.
@@ -96,6 +96,27 @@ TEST(CommandText, WhatNamesFramesIsReadBackAsTheSameFrames) {
           << ids[0] << " " << set << ": " << frameSpec(frames, scene);
     }
   }
+}
+
+/// A person reads what names frames, so it names them by their ids; numbers stand where an id would not be read back.
+TEST(CommandText, FramesAreNamedByTheirIds) {
+  const std::vector<int> frames = {0, 2, 3, 4};
+  EXPECT_EQ(frameSpec(frames, withIds({"0008", "0004", "0012", "0016", "0020"})), "0008,0012-0020");
+  EXPECT_EQ(frameSpec({1}, withIds({"4", "0", "1", "2", "3"})), "0") << "the id of frame 1";
+  EXPECT_EQ(frameSpec({0, 1}, withIds({"a,b", "c"})), "0-1") << "a comma separates";
+  EXPECT_EQ(frameSpec({0}, withIds({"first:1", "c"})), "0") << "a rule";
+  EXPECT_EQ(frameSpec({}, withIds({"a"})), "");
+}
+
+/// The same for what trains: a rule with what it means.
+TEST(CommandText, WhatTrainsIsNamedByItsIds) {
+  const Scene scene = withIds({"0008", "0012", "0016", "0020"});
+  const auto text = [&](const char* spec) { return trainText(parseTrainSpec(spec, scene), scene); };
+  EXPECT_EQ(text("0,2,3"), "0008,0016-0020");
+  EXPECT_EQ(text("0008,0012"), "0008-0012");
+  EXPECT_EQ(text("first:3"), "first:3, 0008-0016");
+  EXPECT_EQ(text("spread:2"), "spread:2, 0008,0016");
+  EXPECT_EQ(text("per-surface"), "per-surface");
 }
 
 TEST(CommandText, EverythingThatHasAFlagIsThere) {

@@ -36,12 +36,12 @@ TEST(HtmlReport, NamesWhatWasMissedAndWhy) {
   }
   const std::string html = evaluationHtml(run, {});
   EXPECT_THAT(html, HasSubstr("<td>1 missed</td>"));
-  EXPECT_THAT(html, HasSubstr("frame 5 &lt;went astray&gt;</td><td class=\"text\">5 (v5)</td>"));
+  EXPECT_THAT(html, HasSubstr("frame 5 &lt;went astray&gt;</td><td class=\"text\">v5</td>"));
   EXPECT_THAT(html.substr(html.find("Models</h2>")), Not(HasSubstr("frame 0 &lt;went")));
-  EXPECT_THAT(html.substr(html.find("Worst frames")), HasSubstr("<b>frame 5</b>")) << "it is shown, and first";
+  EXPECT_THAT(html.substr(html.find("Worst frames")), HasSubstr("<b>frame v5</b>")) << "it is shown, and first";
   const std::string worst = html.substr(html.find("Worst frames"));
-  EXPECT_LT(worst.find("<b>frame 5</b>"), worst.find("<b>frame 4</b>"));
-  EXPECT_THAT(html, HasSubstr("<b>Missed</b>, <b>frame 5</b>")) << "the summary shows it, too";
+  EXPECT_LT(worst.find("<b>frame v5</b>"), worst.find("<b>frame v4</b>"));
+  EXPECT_THAT(html, HasSubstr("<b>Missed</b>, <b>frame v5</b>")) << "the summary shows it, too";
 }
 
 TEST(HtmlReport, WhatIsMissedForOneReasonIsOneRow) {
@@ -52,7 +52,7 @@ TEST(HtmlReport, WhatIsMissedForOneReasonIsOneRow) {
   }
   const std::string html = evaluationHtml(run, {});
   EXPECT_THAT(html, HasSubstr("<td>2 missed</td>"));
-  EXPECT_THAT(html, HasSubstr(">4 (v4), 5 (v5)</td>"));
+  EXPECT_THAT(html, HasSubstr(">v4, v5</td>"));
 }
 
 /// Words of models come from the models themselves, so that they are the same everywhere.
@@ -122,6 +122,29 @@ TEST(HtmlReport, AFrameWithAMissHasACrossAndNoErrorInThePlot) {
   EXPECT_THAT(html, HasSubstr(">missed a highlight</text>")) << "the legend says what the cross is";
   EXPECT_THAT(html, Not(HasSubstr("dual  1e-06 %")));
   EXPECT_THAT(html, HasSubstr("<title>frame v4 (held out)\ndual  "));
+}
+
+/// The legend of the plot, the table and the sentence speak of the same highlights: those that were found, and it says how many were not.
+TEST(HtmlReport, LegendTableAndSentenceHaveOneMean) {
+  InspectionRequest q;
+  q.models = {"dual"};
+  q.train = "first:4";
+  Inspection run = inspect(exactScene(sheet(0), 9), q);  // 4 to 8 are held out
+  int found = 0;
+  for (FrameComparison& c : run.models.at("dual").frames) {
+    if (c.frame < 4) continue;
+    c.rows.at(0).metrics->contourErrorPct = 10 * (c.frame - 3);  // 10, 20, 30, 40, 50
+    if (c.frame < 7) c.rows.push_back({1, -1, {}, Failure{Reason::NotReached, "no prediction overlaps this highlight"}, {}});
+    found += 1;
+  }
+  ASSERT_EQ(found, 5);
+  const std::string html = evaluationHtml(run, {});
+  EXPECT_THAT(html, HasSubstr(">dual: mean 30 % over 5 of 8 held-out highlights, 3 missed</text>"));
+  EXPECT_THAT(html, HasSubstr("</span>dual</td><td>5/5</td><td>30</td>"));
+  EXPECT_THAT(html, HasSubstr("<td>5 / 3 / 0</td>"));
+  EXPECT_THAT(html, HasSubstr("off by 30 % of a highlight"));
+  EXPECT_THAT(html, HasSubstr("Of 8 highlights in 5 held-out frames it missed 3 (frames v4, v5, v6)"));
+  EXPECT_THAT(evaluationTable(run), testing::ContainsRegex("dual +5/5 +30[.]000 .* 5/3/0 "));
 }
 
 TEST(HtmlReport, SaysWithWhichSettingsAndByWhich) {

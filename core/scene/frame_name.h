@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/base/number_list.h"
+#include "core/scene/scene.h"
+
+namespace glint {
+
+// How a person is told of a frame: always by its id. Its place in the sequence would read like the id of another frame ("0004" is not
+// frame 4 where frames were left out of a capture).
+
+/// The frame's id. "at position N" for a number that names no frame of this scene, as a file of another scene may hold.
+inline std::string frameName(const Scene& scene, int frame) {
+  return frame >= 0 && frame < static_cast<int>(scene.frames.size()) ? scene.frames[static_cast<std::size_t>(frame)].id
+                                                                     : "at position " + std::to_string(frame);
+}
+
+/// Of all, in the same order.
+inline std::vector<std::string> frameIds(const Scene& scene, const std::vector<int>& frames) {
+  std::vector<std::string> ids;
+  for (const int frame : frames) ids.push_back(frameName(scene, frame));
+  return ids;
+}
+
+/// "frame 0012", "frames 0012, 0014 and 5 more".
+inline std::string framesText(const std::vector<std::string>& ids) {
+  return (ids.size() == 1 ? "frame " : "frames ") + shortList(ids);
+}
+
+}  // namespace glint
