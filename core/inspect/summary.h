@@ -58,6 +58,8 @@ struct FitReasons {
 FitReasons reasonsOf(const ModelResult& result);
 const char* fitStatus(const ModelResult::Fit& fit);  ///< "ok", "poor", "failed"
 std::string fitReason(const ModelResult::Fit& fit);  ///< "" where it is ok
+/// The model was fitted, and failed for this light on every surface: it says nothing there.
+bool failedFor(const Inspection& inspection, const std::string& model, const std::string& light);
 
 /// The same summary from tallies of all comparisons of held-out frames, in the order of the inspection.
 ModelSummary summaryOf(const std::vector<ComparisonTally>& tallies, const FitReasons& fits, const HeldOutFrames& heldOut);
