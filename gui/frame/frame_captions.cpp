@@ -11,13 +11,15 @@
 
 namespace glint::gui {
 
+namespace {
+QString cell(const QString& text, const char* align = "right") {
+  return QStringLiteral("<td align='%1' style='padding-right:16px; white-space:nowrap'>%2</td>").arg(QLatin1String(align), text);
+}
+}  // namespace
+
 FrameCaptions frameCaptions(const Document& document, const draw::FrameOverlay& overlay, const QPalette& palette, bool earlier) {
   const QString faded = palette.color(QPalette::PlaceholderText).name(), warning = warningColour().name();
   const QString plain = earlier ? faded : palette.color(QPalette::Text).name();
-  const auto cell = [](const QString& text, const char* align = "right") {
-    return QStringLiteral("<td align='%1' style='padding-right:16px; white-space:nowrap'>%2</td>")
-        .arg(QLatin1String(align), text);
-  };
   const auto error = [&](const std::optional<double>& value) {
     return cell(value ? toQString(errorText(*value)) : QStringLiteral("–"));
   };
@@ -48,7 +50,8 @@ FrameCaptions frameCaptions(const Document& document, const draw::FrameOverlay& 
       else if (reason.contains(QStringLiteral(": ")))
         reasons += QStringLiteral("<div style='color:%1'>%2</div>").arg(warning, line);
     }
-    if (c.score.missed > 0 && (c.score.reason.empty() || c.score.matched > 0)) said << QObject::tr("%1 missed").arg(c.score.missed);
+    if (c.score.missed > 0 && (c.score.reason.empty() || c.score.matched > 0))
+      said << QObject::tr("%1 missed").arg(c.score.missed);
     if (c.score.spurious > 0) said << QObject::tr("%1 spurious").arg(c.score.spurious);
     const bool any = c.score.matched > 0, selected = document.selection().model == c.model;
     const QString model = toQString(c.model).toHtmlEscaped();
