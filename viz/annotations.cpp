@@ -181,33 +181,53 @@ struct Annotations::Impl {
     }
     actor->SetInput(shorter(fits).c_str());
   }
+  /// Entries that may be left out share rows where one for each would take too much of the picture, and are left out in a low one.
+  enum class LegendRows { Own, Shared, Fewer };
+  LegendRows legendRows(double rowHeight, int height) const {
+    const auto rows = [&](double each) {
+      double count = double(legend.size()) - double(entries);
+      for (const bool always : entryAlways) count += always ? 1 : each;
+      return count * rowHeight;
+    };
+    constexpr double kShare = 0.3, kMost = 0.5, kInARow = 2;
+    return rows(1) <= kShare * height            ? LegendRows::Own
+           : rows(1 / kInARow) <= kMost * height ? LegendRows::Shared
+                                                 : LegendRows::Fewer;
+  }
   /// @param points  size of the text for VTK. @param font  its height in pixels
-  void placeLegend(int width, int height, int points, double font, bool narrow) {
+  void placeLegend(int width, int height, int points, double font) {
     const double row = 1.5 * font, left = 0.9 * font;
+    const LegendRows rows = legendRows(row, height);
     const bool room = width > kLeastLegend * font;              // one that is a row of "…" says nothing
-    double y = height - 1.9 * font - (titleVisible ? 0 : row);  // the view's name stands beside where the title would
+    double y = height - 0.4 * font - (titleVisible ? 0 : row);  // the view's name stands beside where the title would
+    double next = width;                                        // where the next entry begins if it shares the row
     const std::size_t before = taken.size();
     for (std::size_t i = 0; i < legend.size(); ++i) {
       auto& [actor, colour] = legend[i];
-      const bool entry = i >= 1 && i <= entries;
-      const bool shown = legendVisible && room && (i > 0 || titleVisible) && (!narrow || !entry || entryAlways[i - 1]);
+      const bool entry = i >= 1 && i <= entries, always = !entry || entryAlways[i - 1];
+      const bool shown = legendVisible && room && (i > 0 || titleVisible) && (rows != LegendRows::Fewer || always);
       actor->SetVisibility(shown);
       if (entry) swatches[i - 1]->actor->SetVisibility(shown);
       if (entry) outlines[i - 1]->actor->SetVisibility(shown);
       if (!shown) continue;
-      const double x = left + (entry ? 2.4 * font : 0);
+      const double indent = entry ? 2.4 * font : 0;
       const int size = i == 0 ? points + 1 : points;
       actor->GetTextProperty()->SetFontSize(size);
-      fitLegendText(i, width - x - left, size);
       setColour(actor, entry || i == 0 ? ink() : asText(colour, dark));
-      background(actor, onPicture ? 0 : 0.55);
+      background(actor, onPicture ? 0 : 0.55);  // first: with it a text is larger
+      fitLegendText(i, width - 2 * left - indent, size);
+      const double wide = indent + sizeOf(actor).x();
+      const bool shares = rows == LegendRows::Shared && !always && next + wide <= width - left;
+      const double start = shares ? next : left, x = start + indent;
+      if (!shares) y -= row;
+      next = always ? width : start + wide + font;
       move(actor, x, y);
       taken.push_back({0, y - 0.3 * font, x + sizeOf(actor).x(), row});
       if (entry) {
         Strokes& swatch = *swatches[i - 1];
         swatch.clear();
         swatch.origin = origin;
-        swatch.add(left, y + 0.42 * font, left + 1.8 * font, y + 0.42 * font);
+        swatch.add(start, y + 0.42 * font, start + 1.8 * font, y + 0.42 * font);
         const double stroke = std::max(3.0, font / 4.0);
         swatch.finish(colour, stroke);
         // White on a light background is told by its edge, as the contour itself is.
@@ -215,10 +235,9 @@ struct Annotations::Impl {
         outline.clear();
         outline.origin = origin;
         const bool faint = draw::contrast(colour, dark ? kDarkBackground : kLightBackground) < kClearSwatch;
-        if (faint) outline.add(left - 1, y + 0.42 * font, left + 1.8 * font + 1, y + 0.42 * font);
+        if (faint) outline.add(start - 1, y + 0.42 * font, start + 1.8 * font + 1, y + 0.42 * font);
         outline.finish(ink(), stroke + 2);
       }
-      y -= row;
     }
     panel.hide();
     if (!onPicture || taken.size() == before) return;
@@ -541,7 +560,7 @@ Eigen::Vector2d Annotations::legendSize() {
   const double scale = impl_->pixelsPerPoint();
   const int points = impl_->pointsFor(size[1]);
   impl_->taken.clear();
-  impl_->placeLegend(size[0], size[1], points, scale * points, size[0] < scale * kNarrowPicture);
+  impl_->placeLegend(size[0], size[1], points, scale * points);
   Eigen::Vector2d reach(0, 0);
   for (const Rectangle& r : impl_->taken) reach = reach.cwiseMax(Eigen::Vector2d(r.x + r.width, size[1] - r.y));
   return reach;
@@ -566,7 +585,7 @@ void Annotations::place(const Eigen::Vector3d& reference) {
   const double font = scale * points;
   impl_->origin = Eigen::Vector2d(impl_->renderer->GetOrigin()[0], impl_->renderer->GetOrigin()[1]);
   impl_->taken.clear();
-  impl_->placeLegend(size[0], size[1], points, font, size[0] < scale * kNarrowPicture);
+  impl_->placeLegend(size[0], size[1], points, font);
   impl_->placeBar(size[0], points, font, reference);
   impl_->placeColourBar(size[0], points, font);
   impl_->placeBorder(size[0], size[1], points, font);

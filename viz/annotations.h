@@ -18,9 +18,8 @@ namespace glint::viz {
 struct LegendEntry {
   Colour colour;
   std::string text;
-  bool always = false;  ///< also in a narrow picture, which would be covered by the whole legend
+  bool always = false;  ///< in a row of its own, also in a low picture, which would be covered by the whole legend
 };
-constexpr int kNarrowPicture = 600;  ///< px at 100 % scaling
 
 /// A scale with its ticks, 0..1 from left to right.
 struct ColourBar {

@@ -85,6 +85,19 @@ std::set<OverlayRole> hiddenRoles(const PictureOptions& options) {
   return hidden;
 }
 
+bool showsObserved(const FrameOverlay& overlay) {
+  return std::any_of(overlay.lines.begin(), overlay.lines.end(),
+                     [](const OverlayLine& line) { return line.role == OverlayRole::ObservedContour && line.highlight >= 0; });
+}
+
+/// A swatch with an edge, which it needs on a light page, and the word. @param at  where the word's line begins
+void drawObservedKey(Canvas& canvas, const Eigen::Vector2d& at, double font, const Theme& theme) {
+  const Box swatch{at.x(), at.y() - 0.75 * font, 1.6 * font, 0.6 * font};
+  canvas.fill(swatch, kObserved);
+  outlineBox(canvas, swatch, theme.ink, 1);
+  canvas.text({at.x() + 2.2 * font, at.y()}, "observed", font, theme.ink);
+}
+
 }  // namespace
 
 std::optional<Crop> highlightCrop(const Inspection& inspection, int frame, const std::set<std::string>& models, double aspect) {
@@ -152,7 +165,8 @@ Image framePicture(const Inspection& inspection, int frame, const Outcome<Image>
   overlayOptions.hidden = hiddenRoles(options);
   const FrameOverlay overlay = frameOverlay(inspection, frame, overlayOptions);
 
-  const double head = 2 * font, foot = (0.8 + 1.45 * static_cast<double>(overlay.captions.size())) * font;
+  const bool observed = showsObserved(overlay);
+  const double head = 2 * font, foot = (0.8 + 1.45 * static_cast<double>(overlay.captions.size() + (observed ? 1 : 0))) * font;
   const Box room{0.5 * font, head, width - font, std::max(16.0, height - head - foot)};
   canvas.text({0.8 * font, 1.4 * font}, canvas.fitted(titleOf(inspection, frame), 1.1 * font, width - 1.6 * font), 1.1 * font,
               theme.ink);
@@ -198,6 +212,10 @@ Image framePicture(const Inspection& inspection, int frame, const Outcome<Image>
                 Align::Right);
   }
   double y = height - foot + 1.3 * font;
+  if (observed) {
+    drawObservedKey(canvas, {0.8 * font, y}, font, theme);
+    y += 1.45 * font;
+  }
   for (const OverlayCaption& caption : overlay.captions) {
     canvas.fill({0.8 * font, y - 0.75 * font, 1.6 * font, 0.6 * font}, caption.colour);
     canvas.text({3 * font, y}, canvas.fitted(caption.text, font, width - 4 * font), font,
@@ -213,8 +231,14 @@ Image ladderPicture(const Inspection& inspection, int frame, const Outcome<Image
   const Theme theme = themeOf(options.dark);
   Canvas canvas(width, height, theme.background);
   const double font = std::clamp(height / 42.0, 10.0, 40.0), ink = std::max(1.0, height / 900.0);
+  constexpr double kKeyWidth = 8;  // of "observed" and its swatch, in heights of the text
+  OverlayOptions all;
+  all.hidden = hiddenRoles(options);
+  const bool observed = width > 4 * kKeyWidth * font && showsObserved(frameOverlay(inspection, frame, all));
+  if (observed) drawObservedKey(canvas, {width - kKeyWidth * font, 1.4 * font}, font, theme);
   canvas.text({0.8 * font, 1.4 * font},
-              canvas.fitted(titleOf(inspection, frame) + ": from simplest to richest", 1.1 * font, width - 1.6 * font),
+              canvas.fitted(titleOf(inspection, frame) + ": from simplest to richest", 1.1 * font,
+                            width - (observed ? kKeyWidth + 1.6 : 1.6) * font),
               1.1 * font, theme.ink);
   const std::vector<std::string> models = modelsInOrder(inspection, options.models);
   if (models.empty()) {

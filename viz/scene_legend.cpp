@@ -8,6 +8,7 @@
 #include "core/base/error_text.h"
 #include "core/draw/frame_overlay.h"
 #include "core/inspect/frame_score.h"
+#include "core/inspect/summary.h"
 #include "core/scene/scene_files.h"
 #include "viz/style.h"
 
@@ -88,11 +89,14 @@ SceneLegend legendOf(const LayerInput& in, const std::vector<ShownLayer>& layers
   }
   if (shown("predicted-contours") || shown("ellipsoids")) {
     for (const std::string& model : in.models) {
-      const FrameScore score = frameScore(in.inspection->models.at(model), in.selection.frame);
+      const ModelResult& result = in.inspection->models.at(model);
+      const FrameScore score = frameScore(result, in.selection.frame);
+      const bool poor = !reasonsOf(result).poor.empty();
       const std::string error = score.missed > 0 && score.matched > 0 ? "  " + missedText(score)
                                 : score.errorPct                      ? "  " + errorText(*score.errorPct) + " %"
                                                                       : "";
-      legend.entries.push_back({modelColour(model), model + error, true});
+      legend.entries.push_back(
+          {poor ? draw::pale(modelColour(model)) : modelColour(model), model + error + (poor ? ", poor" : ""), true});
       // What is wrong with the frame itself is said once, not for every model; a fit that is no ellipsoid by its layer.
       if (!score.errorPct && !score.reason.empty() && score.reason != noEvidence &&
           !(shown("ellipsoids") && isItsQuadric(in, model, score.reason)))

@@ -8,6 +8,7 @@
 
 #include "core/draw/frame_overlay.h"
 #include "core/inspect/frame_score.h"
+#include "core/inspect/summary.h"
 #include "viz/style.h"
 
 namespace glint::viz {
@@ -77,7 +78,7 @@ TimelineData timelineData(const Scene& scene, const Inspection* inspection) {
   data.lights = lightRows(scene, inspection);
   if (!inspection) return data;
   for (const std::string& model : modelsInOrder(*inspection)) {
-    TimelineData::Series series{model, {}, {}, {}, {}, {}};
+    TimelineData::Series series{model, {}, {}, {}, {}, {}, !reasonsOf(inspection->models.at(model)).poor.empty()};
     for (const FrameScore& score : frameScores(inspection->models.at(model), n)) {
       series.errorPct.push_back(wholeErrorPct(score));
       series.missed.push_back(score.missed > 0);

@@ -29,6 +29,7 @@ struct TimelineData {
     std::vector<char> spurious;                   ///< one per frame: one was predicted that is not seen there
     std::vector<std::string> spuriousWords;       ///< one per frame
     std::vector<std::string> reason;              ///< where there is no error: why
+    bool poor = false;                            ///< a fit of it is poor: dashed and pale, as everywhere
     bool answers() const;                         ///< it has an error somewhere: else missing everything tells nothing new
   };
   std::vector<Series> series;    ///< from simple to rich; empty before the first result

@@ -152,8 +152,8 @@ Margins marginsBeside(const Eigen::Vector2d& legendPx, double barPx, const Pictu
   Margins margins;
   const double beside = std::min(margins.left, 1 - 2 * legendPx.x() / whole.width),
                below = std::min(margins.top, 1 - 2 * legendPx.y() / whole.height);
-  if (whole.width > 1 && whole.height > 1 && std::max(beside, below) > -0.6)
-    (beside >= below ? margins.left : margins.top) = std::max(beside, below);
+  constexpr double kMost = -0.6;  // beside a legend that takes more, what is looked at would be a dot
+  if (whole.width > 1 && whole.height > 1) (beside >= below ? margins.left : margins.top) = std::max({beside, below, kMost});
   if (barPx > 0) margins.bottom = std::clamp(1 - 2 * barPx / whole.height, 0.3, margins.bottom);
   return margins;
 }

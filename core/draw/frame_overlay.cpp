@@ -152,6 +152,7 @@ class FrameLayers {
     if (!shown_(OverlayRole::CanonicalEllipse) || !drawn_(canonicalModel().id())) return;
     for (const TrainingView& view : inspection_.views) {
       if (view.frame != frame_ || !view.canonical || !view.canonical->ellipse) continue;
+      if (failedFor(inspection_, canonicalModel().id(), view.highlight.light)) continue;  // it was fitted to nothing
       OverlayLine line;
       line.colour = canonicalColour();
       line.label = "canonical ellipse on the tangent plane";
@@ -176,9 +177,10 @@ class FrameLayers {
       line.light = comparison.light;
       line.colour = options_.colourByRole ? roleColour : modelColour(model);
       line.halo = options_.colourByRole;
-      line.label = model + (score.errorPct ? " " + errorText(*score.errorPct) + " %" : std::string{});
       const bool poor = !poorFit(result, comparison).empty();
-      if (poor) line.colour = pale(line.colour);
+      line.label = model + (score.errorPct ? " " + errorText(*score.errorPct) + " %" : std::string{}) + (poor ? ", poor" : "") +
+                   (options_.predictionsEarlier ? ", updating" : "");
+      if (poor || options_.predictionsEarlier) line.colour = pale(line.colour);
       for (std::size_t i = 0; i < comparison.prediction.highlights().size(); ++i)
         addPredicted(comparison, static_cast<int>(i), line, poor);
       for (const FilteredHighlight& filtered : comparison.prediction.filtered) addGhost(filtered, line);
@@ -374,6 +376,11 @@ const std::vector<OverlayLayer>& overlayLayers() {
        "Colours as in the plot Every lobe",
        false}};
   return layers;
+}
+
+Colour pale(Colour colour) {
+  for (double& channel : colour) channel = 0.5 * (channel + 0.5);
+  return colour;
 }
 
 std::vector<ContourRun> contourRuns(const PredictedHighlight& highlight) {

@@ -94,12 +94,16 @@ struct FrameOverlay {
   std::vector<OverlayCaption> captions;
 };
 
+/// Nearer to grey, for what counts less: of a poor model, of an earlier request, taken out by a filter.
+Colour pale(Colour colour);
+
 struct OverlayOptions {
   std::set<std::string> models;                   ///< models to draw; empty = all
   std::set<std::string> hiddenModels;             ///< of these only the caption
   std::set<OverlayRole> hidden;                   ///< roles left out
   int ellipseSegments = 96;                       ///< samples per ellipse, >= 8
   bool colourByRole = false;                      ///< predictions in the colour of the frame's role instead of the model's
+  bool predictionsEarlier = false;                ///< of an older request than what is observed: pale, and their labels say so
   double residualScale = 1;                       ///< residual arrows are drawn so many times their length
   std::optional<Selection> selection{};           ///< drawn thicker, its contour point marked, when it is of this frame
   std::shared_ptr<const FrameSamples> samples{};  ///< of the layer of lobes, which is empty without them; ignored in other frames

@@ -14,7 +14,6 @@
 #include "core/inspect/lobe_stage.h"
 #include "core/inspect/requested_evidence.h"
 #include "core/inspect/stage_inputs.h"
-#include "core/score/comparison.h"
 #include "core/surface/mesh_policy.h"
 
 namespace glint {
@@ -50,8 +49,8 @@ std::optional<Observation> observeFrame(std::shared_ptr<const Scene> scene, cons
   return seen;
 }
 
-Inspection heldAgainst(const Inspection& earlier, const Observation& observation) {
-  require(earlier.given == observation.given, "heldAgainst: results of another scene");
+Inspection besideObservation(const Inspection& earlier, const Observation& observation) {
+  require(earlier.given == observation.given, "besideObservation: results of another scene");
   const int frame = observation.frame;
   Inspection r;
   r.scene = observation.scene;
@@ -67,7 +66,6 @@ Inspection heldAgainst(const Inspection& earlier, const Observation& observation
   r.corrections = earlier.corrections;
   r.correctedDepthMaps = std::make_shared<CorrectedDepthMaps>();  // the frame may stand elsewhere now
   r.inputs = observation.inputs;
-  const Camera& camera = observation.scene->frames[std::size_t(frame)].camera;
   for (const auto& [name, before] : earlier.models) {
     ModelResult& now = r.models[name];
     now.model = before.model;
@@ -75,8 +73,7 @@ Inspection heldAgainst(const Inspection& earlier, const Observation& observation
     now.oneFrame = true;
     for (const FrameComparison& c : before.frames) {
       if (c.frame != frame || !isOn(*observation.scene, observation.request.whatIf, frame, c.light)) continue;
-      now.frames.push_back(compareFrame(observation.evidence, c.light, camera, c.prediction));
-      now.frames.back().fit = c.fit;
+      now.frames.push_back({c.frame, c.light, c.fit, c.prediction, {}, 0});
     }
   }
   return r;

@@ -25,9 +25,10 @@ struct Observation {
 std::optional<Observation> observeFrame(std::shared_ptr<const Scene> scene, const InspectionRequest& request, int frame,
                                         const ProgressFn& progress = {}, const Inspection* known = nullptr);
 
-/// What earlier results say about the frame, held against a newer observation of it: their fits and predictions, the new
-/// evidence, and errors between the two. Only this frame's, as ModelResult says (`oneFrame`).
+/// What earlier results say about the frame, beside a newer observation of it: their fits and predictions, and the new evidence.
+/// The two are compared with nothing (no rows): an error between them would be of no state that there ever was. Only this
+/// frame's, as ModelResult says (`oneFrame`).
 /// @param earlier  of the same scene as read
-Inspection heldAgainst(const Inspection& earlier, const Observation& observation);
+Inspection besideObservation(const Inspection& earlier, const Observation& observation);
 
 }  // namespace glint

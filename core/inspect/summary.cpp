@@ -85,6 +85,18 @@ HeldOutFrames heldOutFrames(const Inspection& inspection) {
   return frames;
 }
 
+bool failedFor(const Inspection& inspection, const std::string& model, const std::string& light) {
+  const auto result = inspection.models.find(model);
+  if (result == inspection.models.end()) return false;
+  bool any = false;
+  for (const ModelResult::Fit& fit : result->second.fits) {
+    if (fit.light != light) continue;
+    if (!fit.failure()) return false;
+    any = true;
+  }
+  return any;
+}
+
 ModelSummary summaryOf(const std::vector<ComparisonTally>& tallies, const FitReasons& fits, const HeldOutFrames& heldOut) {
   ModelSummary s;
   std::vector<double> pct, px, ellipse, hausdorff, peak, coverage, iou, time;

@@ -60,6 +60,8 @@ const char* fitStatus(const ModelResult::Fit& fit);  ///< "ok", "poor", "failed"
 std::string fitReason(const ModelResult::Fit& fit);  ///< "" where it is ok
 /// Why the fit behind a comparison is poor; "" where it is ok, has failed, or there is none.
 std::string poorFit(const ModelResult& result, const FrameComparison& comparison);
+/// The model was fitted, and failed for this light on every surface: it says nothing there.
+bool failedFor(const Inspection& inspection, const std::string& model, const std::string& light);
 
 /// The same summary from tallies of all comparisons of held-out frames, in the order of the inspection.
 ModelSummary summaryOf(const std::vector<ComparisonTally>& tallies, const FitReasons& fits, const HeldOutFrames& heldOut);

@@ -4,6 +4,7 @@
 
 #include "core/base/plugin_hint.h"
 #include "core/scene/capture_scene.h"
+#include "core/scene/folder_below.h"
 #include "core/scene/scene.h"
 #include "core/scene/scene_reader.h"
 
@@ -95,8 +96,8 @@ std::string whatIsUnderstood() {
                        UndecidedInput::Question::Reading, std::move(answers));
 }
 
-/// "; its folder 'text' holds a COLMAP model": one level below, where people often stand one level too high. "" where there is none.
-std::string recognisedBelow(const fs::path& folder) {
+/// Throws FolderBelow where something is recognised one level below: people often stand one level too high.
+void lookBelow(const fs::path& folder, const std::string& what) {
   constexpr int kMostLooked = 200;  // entries: a folder of photographs has thousands, and each costs reads
   std::vector<fs::path> inside;
   std::error_code error;
@@ -108,9 +109,11 @@ std::string recognisedBelow(const fs::path& folder) {
     const std::vector<Reading> readings = readingsOf(sub);
     if (readings.empty()) continue;
     const std::string& words = readings.front().description;
-    return "; its folder '" + sub.filename().string() + "' is: " + words.substr(0, std::min(words.find(" ("), words.find(", ")));
+    const std::string holds = words.substr(0, std::min(words.find(" ("), words.find(", ")));
+    throw FolderBelow(folder.string(),
+                      what + "; its folder '" + sub.filename().string() + "' is: " + holds + "; supported: " + whatIsUnderstood(),
+                      sub, holds);
   }
-  return "";
 }
 
 [[noreturn]] void refuseUnknown(const fs::path& input) {
@@ -129,7 +132,8 @@ std::string recognisedBelow(const fs::path& folder) {
   const bool empty = folder ? fs::is_empty(input, error) : fs::file_size(input, error) == 0;
   const std::string what = folder ? (empty ? "the folder is empty" : "nothing in this folder is recognised")
                                   : (empty ? "the file is empty" : "the content is not recognised");
-  throw InputError(input.string(), "", what + (folder ? recognisedBelow(input) : "") + "; supported: " + whatIsUnderstood());
+  if (folder) lookBelow(input, what);
+  throw InputError(input.string(), "", what + "; supported: " + whatIsUnderstood());
 }
 
 /// Of images or a video, because poses are given.

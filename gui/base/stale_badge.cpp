@@ -3,6 +3,7 @@
 
 #include <QEvent>
 #include <algorithm>
+#include <utility>
 
 namespace glint::gui {
 
@@ -17,6 +18,7 @@ StaleBadge::StaleBadge(QWidget* panel, Qt::Corner corner) : QLabel(tr("updatingâ
     place();
     raise();
     show();
+    mark(true);
   });
   panel->installEventFilter(this);
   hide();
@@ -26,9 +28,14 @@ void StaleBadge::setStale(bool stale) {
   if (!stale) {
     later_.stop();
     hide();
+    mark(false);
   } else if (isHidden() && !later_.isActive()) {
     later_.start();
   }
+}
+
+void StaleBadge::mark(bool stale) {
+  if (std::exchange(marks_, stale) != stale) emit marked(stale);
 }
 
 void StaleBadge::setUpdating(bool updating) {

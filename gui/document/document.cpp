@@ -51,7 +51,7 @@ void Document::setInspection(std::shared_ptr<const Inspection> inspection, const
   if (inspection_ && !stale_ && computedFor != state_.request) return;
   inspection_ = std::move(inspection);
   ahead_.reset();
-  holdAgainstObservation();
+  setBesideObservation();
   setStale(computedFor != state_.request);
   emit inspectionChanged();
 }
@@ -60,7 +60,7 @@ void Document::setFrameInspection(std::shared_ptr<const Inspection> inspection, 
   if (!inspection || inspection->given != scene_ || frame != state_.selection.frame) return;
   if (inspection_ && !stale_ && inspection->request != state_.request) return;  // of a run that was overtaken
   ahead_ = std::move(inspection);
-  holdAgainstObservation();
+  setBesideObservation();
   emit frameInspectionChanged();
 }
 
@@ -70,11 +70,11 @@ void Document::setObservation(std::shared_ptr<const Observation> observation) {
     return;
   const bool shown = observed_ != nullptr;
   observation_ = std::move(observation);
-  holdAgainstObservation();
+  setBesideObservation();
   if (shown || observed_) emit frameInspectionChanged();
 }
 
-void Document::holdAgainstObservation() {
+void Document::setBesideObservation() {
   observed_.reset();
   const std::shared_ptr<const Inspection> newest = ahead_ ? ahead_ : inspection_;
   if (!observation_ || !newest) return;
@@ -83,7 +83,7 @@ void Document::holdAgainstObservation() {
   if (caughtUp)
     observation_.reset();
   else
-    observed_ = std::make_shared<const Inspection>(heldAgainst(*newest, *observation_));
+    observed_ = std::make_shared<const Inspection>(besideObservation(*newest, *observation_));
 }
 
 RowsPtr Document::rowsOf(const std::shared_ptr<const Inspection>& inspection) const {

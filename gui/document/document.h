@@ -78,9 +78,11 @@ class Document : public QObject {
   const std::set<RowKey>& brushed() const { return brushed_; }
   void brush(std::set<RowKey> rows);
   bool stale() const { return stale_; }
+  /// inspection() is not what the request asks for, nor pinned on purpose: nothing is written of it.
+  bool shownStale() const { return stale_ && !pinnedShown_; }
   /// Newest results for the selected frame: inspection(), or those that came before it was complete.
   std::shared_ptr<const Inspection> results() const { return pinnedShown_ ? pinned_ : ahead_ ? ahead_ : inspection_; }
-  /// results(), held against what was observed in the frame since then.
+  /// results(), beside what was observed in the frame since then.
   std::shared_ptr<const Inspection> frameInspection() const { return observed_ && !pinnedShown_ ? observed_ : results(); }
   /// results() are not what the request asks for.
   bool frameStale() const { return stale_ && !(ahead_ && ahead_->request == state_.request); }
@@ -173,7 +175,7 @@ class Document : public QObject {
   void followRequest();
   bool historyLeadsTo(const InspectionRequest& request) const;
   void updateTraining();
-  void holdAgainstObservation();
+  void setBesideObservation();
   void setStale(bool stale);
   RowsPtr rowsOf(const std::shared_ptr<const Inspection>& inspection) const;
   FrameRole requestedRole(int frame) const;

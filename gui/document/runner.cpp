@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/scene/folder_below.h"
 #include "core/session/session.h"
 #include "gui/base/text.h"
 #include "gui/document/allowed_folders.h"
@@ -31,6 +32,13 @@ void Runner::open(const std::string& path, const Relinked& instead) {
           std::make_shared<const Missing>(Missing{exactQString(path), exactQString(file.string()), named, instead});
       token.deliver([this, missing] { emit inputMissing(missing); });
     };
+    // The part after the semicolon names options of the command line: buttons answer here.
+    const auto leftOpen = [&](const InputError& e, Undecided what) {
+      const UndecidedPtr undecided = std::make_shared<const Undecided>(std::move(what));
+      token.deliver([this, undecided] { emit inputUndecided(undecided); });
+      const std::string line = e.what();
+      return std::runtime_error(line.substr(0, line.rfind("; ")));
+    };
     try {
       const OpenedPtr opened = std::make_shared<const Opened>(engine_.open(path, instead));
       return token.overtaken() ? nullptr : opened;
@@ -41,11 +49,11 @@ void Runner::open(const std::string& path, const Relinked& instead) {
       say(e.mesh(), e.named());
       throw;
     } catch (const UndecidedInput& e) {
-      const UndecidedPtr undecided =
-          std::make_shared<const Undecided>(Undecided{exactQString(path), e.question(), e.option(), e.answers(), instead});
-      token.deliver([this, undecided] { emit inputUndecided(undecided); });
-      const std::string line = e.what();  // the part after the semicolon names options of the command line: buttons answer here
-      throw std::runtime_error(line.substr(0, line.rfind("; ")));
+      throw leftOpen(e, Undecided{exactQString(path), e.question(), e.option(), e.answers(), instead});
+    } catch (const FolderBelow& e) {
+      const std::string words = "'" + e.folder().filename().string() + "' (" + e.holds() + ")";
+      throw leftOpen(
+          e, Undecided{exactQString(path), UndecidedInput::Question::Reading, "", {{e.folder().string(), words}}, instead});
     } catch (const OutsidePath& e) {
       const OutsidePtr outside = std::make_shared<const Outside>(Outside{exactQString(path), e.folder().string(), instead});
       token.deliver([this, outside] { emit outsideNamed(outside); });

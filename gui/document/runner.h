@@ -42,7 +42,7 @@ using OutsidePtr = std::shared_ptr<const Outside>;
 struct Undecided {
   QString path;  ///< that was to be opened
   UndecidedInput::Question question;
-  std::string option;                           ///< of the command line, that answers
+  std::string option;  ///< of the command line, that answers; "" = the answer is the path to open instead
   std::vector<UndecidedInput::Answer> answers;  ///< the possible ones; none = any
   Relinked instead;                             ///< that it was opened with
 };

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "gui/base/stale_badge.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
 #include "gui/explain/paint_picture.h"
@@ -84,6 +85,7 @@ DualityWindow::DualityWindow(Document& document, QWidget* parent)
   words_->setAlignment(Qt::AlignLeft | Qt::AlignTop);
   column->addWidget(subject_);
   column->addWidget(picture_, 1);
+  connect(&document_, &Document::staleChanged, new StaleBadge(picture_), &StaleBadge::setStale);
   column->addWidget(words_);
   for (const auto signal : {&Document::inspectionChanged, &Document::selectionChanged, &Document::sceneOpened})
     connect(&document_, signal, this, [this] {

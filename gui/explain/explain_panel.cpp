@@ -20,6 +20,7 @@
 
 #include "gui/base/eliding_delegate.h"
 #include "gui/base/flow_layout.h"
+#include "gui/base/stale_badge.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
 #include "gui/explain/duality_window.h"
@@ -105,6 +106,10 @@ ExplainPanel::ExplainPanel(Document& document, QWidget* parent)
   split_->setChildrenCollapsible(false);
   column->addWidget(split_, 1);
   setMinimumWidth(220);
+  auto* const badge = new StaleBadge(text_);  // over its numbers, which the introduction has none of
+  const auto markStale = [this, badge] { badge->setStale(document_.stale() && step() >= 0); };
+  connect(&document_, &Document::staleChanged, badge, markStale);
+  connect(&document_, &Document::optionsChanged, badge, markStale);
 
   connect(back_, &QToolButton::clicked, this, &ExplainPanel::back);
   connect(next_, &QToolButton::clicked, this, &ExplainPanel::next);

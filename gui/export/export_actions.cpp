@@ -68,12 +68,22 @@ void ExportActions::setViews(ScenePanel& scene, FramePanel& frame) {
 }
 
 void ExportActions::setSnapshot(std::function<Opened()> snapshot) {
-  snapshot_ = std::move(snapshot);
+  // What a figure shows is what its session computes, also where that is pinned.
+  snapshot_ = [this, snapshot = std::move(snapshot)] {
+    Opened opened = snapshot();
+    if (document_.pinnedShown()) opened.request = document_.inspection()->request;
+    return opened;
+  };
   if (figures_) figures_->setSnapshot(snapshot_);
 }
 
+bool ExportActions::ready() {
+  if (document_.shownStale()) emit problem(notUpToDate());
+  return document_.inspection() && !document_.shownStale();
+}
+
 void ExportActions::ask(const QString& title, const QString& name, const QString& filter, const std::function<Write()>& prepare) {
-  if (!document_.inspection()) return;
+  if (!ready()) return;
   const QFileInfo proposed(name);
   const QString file =
       askForFile(window_, document_, title,
@@ -140,7 +150,7 @@ void ExportActions::addActions(Actions& actions, QMenu* menu) {
               [=, this] {
                 ask(tr("Page to hand out"), QStringLiteral("page.html"), tr("Web pages (*.html)"), [=, this]() -> Write {
                   return [inspection = document_.inspection(), context = report(),
-                          view = viewOf(document_.toSave())](const QString& file) {
+                          view = viewOf(snapshot_ ? snapshot_() : document_.toSave())](const QString& file) {
                     writeText(file, sharePage(*inspection, context, {{}, view}));
                   };
                 });
@@ -170,7 +180,7 @@ void ExportActions::addActions(Actions& actions, QMenu* menu) {
   });
   actions.add("export.masks", menu, tr("Labels with m&asks…"),
               [this] {
-                if (!document_.inspection()) return;
+                if (!ready()) return;
                 FolderDialog dialog(tr("Labels with masks"),
                                     tr("Writes a folder with COCO labels and one mask per frame, light and model."),
                                     suggestedFile(document_, "labels", {}), tr("Write"), window_);

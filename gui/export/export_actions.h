@@ -64,6 +64,7 @@ class ExportActions : public QObject {
 
  private:
   std::string sessionPath() const;
+  bool ready();  ///< there are results to write, and they are what is asked for; else says why not
   void copy(const Outcome<std::string>& command);
   using Write = std::function<void(const QString& file)>;
   void ask(const QString& title, const QString& name, const QString& filter, const std::function<Write()>& prepare);

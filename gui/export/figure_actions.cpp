@@ -61,6 +61,8 @@ void rememberExport(const Document& document, const QString& file) {
   theLastExport = {document.inputFile(), QFileInfo(file).absolutePath()};
 }
 
+QString notUpToDate() { return QObject::tr("Results on screen are of an earlier state; export when they are up to date"); }
+
 QString suggestedFile(const Document& document, const QString& what, const QString& ending) {
   const QFileInfo input(document.sessionFile().isEmpty() ? document.inputFile() : document.sessionFile());
   const QString base = input.fileName() == QLatin1String("scene.json") ? input.dir().dirName() : input.completeBaseName();
@@ -115,6 +117,7 @@ FigureActions::FigureActions(const Engine& engine, Document& document, ScenePane
 void FigureActions::addActions(Actions& actions, QMenu* menu) {
   actions.add("export.scene", menu, tr("&3D view…"),
               [this] {
+                if (document_.shownStale()) return void(emit problem(notUpToDate()));
                 if (!document_.inspection()) return;
                 FigureDialog dialog(tr("3D view as picture"), QStringLiteral("scene"), shownSize(*scene_.views().widget()),
                                     window_);
@@ -127,6 +130,7 @@ void FigureActions::addActions(Actions& actions, QMenu* menu) {
               {{}, {}, tr("As on screen, at any size, optionally with a transparent background")});
   actions.add("export.frame-view", menu, tr("Frame &view…"),
               [this] {
+                if (document_.shownStale()) return void(emit problem(notUpToDate()));
                 if (document_.frameCount() == 0) return;
                 QSize shown = shownSize(*frame_.canvas());
                 if (frame_.secondCanvas()->isVisible()) shown.rwidth() *= 2;
@@ -200,8 +204,8 @@ QImage FigureActions::sceneFigure(const FigureLook& look) const {
 void FigureActions::paintFrames(QPainter& painter, const FigureLook& look) const {
   const QColor background = backgroundOf(look);
   const QRectF all({0, 0}, QSizeF(look.size));
-  if (!frame_.secondCanvas()->isVisible()) return frame_.canvas()->drawFigure(painter, all, background);
   const double key = paintKey(painter, look);
+  if (!frame_.secondCanvas()->isVisible()) return frame_.canvas()->drawFigure(painter, all.adjusted(0, key, 0, 0), background);
   const QSizeF half((all.width() - kBetweenPx) / 2, all.height() - key);
   frame_.canvas()->drawFigure(painter, {QPointF(0, key), half}, background);
   frame_.secondCanvas()->drawFigure(painter, {QPointF(half.width() + kBetweenPx, key), half}, background);
@@ -214,11 +218,12 @@ void FigureActions::paintFigure(QPainter& painter, const FigureLook& look) const
 }
 
 double FigureActions::paintKey(QPainter& painter, const FigureLook& look) const {
-  const QList<PairBar::KeyEntry>& key = frame_.pair().key();
+  const QList<PairBar::KeyEntry> key = frame_.figureKey();
   if (key.isEmpty()) return 0;
-  // In px of the window, whose texts the two pictures below have; as large as those where the figure is larger.
+  // In px of the window, whose texts the pictures below have; as large as those where the figure is larger.
   const FrameCanvas &first = *frame_.canvas(), &second = *frame_.secondCanvas();
-  const double scale = std::min(double(look.size.width()) / std::max(1, first.width() + second.width() + kBetweenPx),
+  const int beside = second.isVisible() ? second.width() + kBetweenPx : 0;
+  const double scale = std::min(double(look.size.width()) / std::max(1, first.width() + beside),
                                 double(look.size.height()) / std::max(1, first.height()));
   const QFontMetricsF metrics(first.font());
   const double line = 1.5 * metrics.height(), square = 0.6 * metrics.height(), width = look.size.width() / scale;
@@ -240,6 +245,7 @@ double FigureActions::paintKey(QPainter& painter, const FigureLook& look) const 
     const QRectF box(places[std::size_t(i)] + QPointF(0, (line - square) / 2), QSizeF(square, square));
     painter.fillRect(box, key[i].colour);
     painter.setPen(toQColor(look.dark ? draw::kTextOnDark : draw::kTextOnLight));
+    if (key[i].colour == toQColor(draw::kObserved)) painter.drawRect(box);  // white on a white page
     painter.drawText(QPointF(box.right() + square, box.center().y() + (metrics.ascent() - metrics.descent()) / 2), key[i].text);
   }
   painter.restore();

@@ -57,6 +57,8 @@ class FigureActions : public QObject {
 /// A name for what is exported, after the session and what is shown: "vase-frame.png", where the last export of this input went,
 /// else beside the session.
 QString suggestedFile(const Document& document, const QString& what, const QString& ending);
+/// Why nothing is written of what is on screen while Document::shownStale().
+QString notUpToDate();
 /// Something was exported as `file`.
 void rememberExport(const Document& document, const QString& file);
 /// Asks for a file to write; the chosen filter's ending is added where the name has none. Files of the input are refused, and asked again.

@@ -44,6 +44,7 @@ void MovieActions::addActions(Actions& actions, QMenu* menu) {
 }
 
 void MovieActions::ask(MovieOf of) {
+  if (document_.shownStale()) return void(emit problem(notUpToDate()));
   if (!document_.inspection()) return;
   MovieDialog dialog(of, document_.frameCount(), currentTheme() == Theme::Dark, window_);
   if (dialog.exec() != QDialog::Accepted) return;

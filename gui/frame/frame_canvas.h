@@ -46,6 +46,7 @@ class FrameCanvas : public QWidget {
   void setAwaited(const QString& words);
   void setOverlay(draw::FrameOverlay overlay);
   void setStale(bool stale);
+  const StaleBadge& staleBadge() const { return *stale_; }
   /// Scale bar of false colours in a corner; empty = none.
   void setScale(std::vector<viz::ScaleTick> ticks);
   /// May be null; must outlive the canvas.

@@ -11,13 +11,15 @@
 
 namespace glint::gui {
 
-FrameCaptions frameCaptions(const Document& document, const draw::FrameOverlay& overlay, const QPalette& palette) {
+namespace {
+QString cell(const QString& text, const char* align = "right") {
+  return QStringLiteral("<td align='%1' style='padding-right:16px; white-space:nowrap'>%2</td>").arg(QLatin1String(align), text);
+}
+}  // namespace
+
+FrameCaptions frameCaptions(const Document& document, const draw::FrameOverlay& overlay, const QPalette& palette, bool earlier) {
   const QString faded = palette.color(QPalette::PlaceholderText).name(), warning = warningColour().name();
-  const QString plain = palette.color(QPalette::Text).name();
-  const auto cell = [](const QString& text, const char* align = "right") {
-    return QStringLiteral("<td align='%1' style='padding-right:16px; white-space:nowrap'>%2</td>")
-        .arg(QLatin1String(align), text);
-  };
+  const QString plain = earlier ? faded : palette.color(QPalette::Text).name();
   const auto error = [&](const std::optional<double>& value) {
     return cell(value ? toQString(errorText(*value)) : QStringLiteral("–"));
   };
@@ -27,7 +29,7 @@ FrameCaptions frameCaptions(const Document& document, const draw::FrameOverlay& 
   const auto link = [](const QString& target, const QString& colour, const QString& text) {
     return QStringLiteral("<a href='%1' style='color:%2; text-decoration:none'>%3</a>").arg(target, colour, text);
   };
-  QString rows, reasons;
+  QString rows, reasons, poor;
   QString problems, lobes;
   for (const draw::OverlayCaption& c : overlay.captions) {
     if (c.model.empty()) {
@@ -42,17 +44,20 @@ FrameCaptions frameCaptions(const Document& document, const draw::FrameOverlay& 
     if (const QString reason = toQString(c.score.reason); !reason.isEmpty()) {
       // A sentence would wrap in its narrow column and push the next models out of sight: it stands below them.
       said << reason.section(QStringLiteral(": "), 0, 0);
-      if (reason.contains(QStringLiteral(": ")))
-        reasons += QStringLiteral("<div style='color:%1'>%2</div>")
-                       .arg(warning, (toQString(c.model) + QStringLiteral(": ") + reason).toHtmlEscaped());
+      const QString line = (toQString(c.model) + QStringLiteral(": ") + reason).toHtmlEscaped();
+      if (c.score.matched > 0)
+        poor += QStringLiteral("<p>%1</p>").arg(line);  // in a tool tip: it answers, and the photograph keeps its room
+      else if (reason.contains(QStringLiteral(": ")))
+        reasons += QStringLiteral("<div style='color:%1'>%2</div>").arg(warning, line);
     }
-    if (c.score.missed > 0 && c.score.reason.empty()) said << QObject::tr("%1 missed").arg(c.score.missed);
+    if (c.score.missed > 0 && (c.score.reason.empty() || c.score.matched > 0))
+      said << QObject::tr("%1 missed").arg(c.score.missed);
     if (c.score.spurious > 0) said << QObject::tr("%1 spurious").arg(c.score.spurious);
     const bool any = c.score.matched > 0, selected = document.selection().model == c.model;
     const QString model = toQString(c.model).toHtmlEscaped();
     const bool shown = document.layerVisible(kModelLayer + c.model);
     rows +=
-        QStringLiteral("<tr>") +
+        QStringLiteral("<tr style='color:%1'>").arg(plain) +
         cell(link(QStringLiteral("show:") + model, toQColor(c.colour).name(), shown ? QStringLiteral("■") : QStringLiteral("□")) +
                  QStringLiteral("&nbsp;") +
                  link(QStringLiteral("select:") + model, shown ? plain : faded,
@@ -65,9 +70,11 @@ FrameCaptions frameCaptions(const Document& document, const draw::FrameOverlay& 
   QString html = problems;
   if (!rows.isEmpty())
     html += QStringLiteral("<table cellspacing='0' cellpadding='0'><tr style='color:%1'>").arg(faded) +
-            cell(QObject::tr("this frame"), "left") + cell(QObject::tr("error %")) + cell(QObject::tr("px")) +
-            cell(QObject::tr("IoU")) + QStringLiteral("<td></td></tr>") + rows + QStringLiteral("</table>") + reasons;
-  return {html + lobes, !reasons.isEmpty()};
+            cell(earlier ? QObject::tr("<span style='color:%1'>earlier state</span>").arg(warning) : QObject::tr("this frame"),
+                 "left") +
+            cell(QObject::tr("error %")) + cell(QObject::tr("px")) + cell(QObject::tr("IoU")) + QStringLiteral("<td></td></tr>") +
+            rows + QStringLiteral("</table>") + reasons;
+  return {html + lobes, !reasons.isEmpty(), poor};
 }
 
 }  // namespace glint::gui

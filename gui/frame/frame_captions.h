@@ -16,7 +16,9 @@ inline constexpr char kModelLayer[] = "frame/model/";  ///< and the model: the l
 struct FrameCaptions {
   QString html;          ///< "" for none
   bool failure = false;  ///< it holds the reason of one
+  QString tip;           ///< why models are poor; "" = none is
 };
-FrameCaptions frameCaptions(const Document& document, const draw::FrameOverlay& overlay, const QPalette& palette);
+/// @param earlier  the errors are of an earlier state than what is asked for: faded, and the heading says so
+FrameCaptions frameCaptions(const Document& document, const draw::FrameOverlay& overlay, const QPalette& palette, bool earlier);
 
 }  // namespace glint::gui

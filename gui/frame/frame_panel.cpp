@@ -11,6 +11,7 @@
 #include <QToolButton>
 #include <QVBoxLayout>
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "core/draw/unmatched.h"
@@ -19,8 +20,10 @@
 #include "core/what_if/knobs.h"
 #include "gui/base/flow_layout.h"
 #include "gui/base/panel_scroll.h"
+#include "gui/base/stale_badge.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
+#include "gui/base/tips.h"
 #include "gui/document/frame_roles.h"
 #include "gui/frame/develop_bar.h"
 #include "gui/frame/frame_canvas.h"
@@ -127,15 +130,24 @@ void FramePanel::connectDocument() {
     connect(&document_, signal, this, &FramePanel::showFrame);
   for (const auto signal : {&Document::inspectionChanged, &Document::frameInspectionChanged})
     connect(&document_, signal, this, [this] {
-      canvas_->setStale(document_.frameStale());
       if (!document_.frameStale()) canvas_->setHeld({}, {});  // the contour is there now
-      for (PhotoLoader* loader : {&loader_, &secondLoader_}) loader->setInspection(document_.results());
+      loader_.setInspection(document_.results());
+      secondLoader_.setInspection(document_.inspection());  // as its contours
+      markStale();
       showOverlay();
       for (FrameCanvas* canvas : {canvas_, second_})
         if (canvas->isVisible()) canvas->repaint();  // what the user tunes for is seen before the other panels follow
     });
-  connect(&document_, &Document::staleChanged, canvas_, [this] { canvas_->setStale(document_.frameStale()); });
-  connect(&document_, &Document::staleChanged, second_, &FrameCanvas::setStale);
+  connect(&document_, &Document::staleChanged, this, &FramePanel::markStale);
+  for (PhotoLoader* loader : {&loader_, &secondLoader_})
+    connect(loader, &PhotoLoader::behindChanged, this, &FramePanel::markStale);
+  connect(&canvas_->staleBadge(), &StaleBadge::marked, this, &FramePanel::showOverlay);
+}
+
+/// A photograph that is drawn anew for a what-if comes after the contours: until then the old one is not up to date either.
+void FramePanel::markStale() {
+  canvas_->setStale(document_.frameStale() || loader_.behind());
+  second_->setStale(document_.stale() || secondLoader_.behind());
 }
 
 void FramePanel::buildToolbar(QVBoxLayout* column) {
@@ -359,19 +371,31 @@ void FramePanel::showWalk(std::shared_ptr<const viz::WalkStory> walk, int step) 
   refresh_.start();
 }
 
+namespace {
+/// The errors of the last results stay in sight until new ones follow; a new contour has none yet.
+void keepErrors(const draw::FrameOverlay& results, draw::FrameOverlay& shown) {
+  std::erase_if(shown.captions, [](const draw::OverlayCaption& c) { return !c.model.empty(); });
+  std::copy_if(results.captions.begin(), results.captions.end(), std::back_inserter(shown.captions),
+               [](const draw::OverlayCaption& c) { return !c.model.empty(); });
+}
+}  // namespace
+
 void FramePanel::showOverlay() {
   const std::vector<draw::OverlayLayer>& layers = draw::overlayLayers();
   for (std::size_t i = 0; i < layers.size(); ++i) toggles_[i]->setChecked(document_.layerVisible(layers[i].name));
   for (const auto& [name, action] : layerActions_) action->setChecked(document_.layerVisible(name));
-  const draw::OverlayOptions options = overlayOptions();
+  draw::OverlayOptions options = overlayOptions();
   if (colourByRole_) colourByRole_->setChecked(options.colourByRole);
-  const std::shared_ptr<const Inspection> inspection = document_.frameInspection();
+  const std::shared_ptr<const Inspection> inspection = document_.frameInspection(), results = document_.results();
+  const bool marked = document_.frameStale() && canvas_->staleBadge().marks();
+  options.predictionsEarlier = marked && inspection != results;
   const int frame = document_.selection().frame;
   const bool two = document_.scene() && pair_->on();
   shown_ = shownSecond_ = {};
   if (inspection && frame < int(inspection->evidence.size())) shown_ = draw::frameOverlay(*inspection, frame, options);
+  if (inspection != results) keepErrors(draw::frameOverlay(*results, frame, options), shown_);
   if (walk_ && walk_->frame == frame) viz::addWalk(*walk_, walkStep_, shown_);
-  showCaptions(shown_);
+  showCaptions(shown_, marked);
   // What was changed by hand or synthesised would else be taken for what was captured.
   const auto note = [&](int f) { return inspection ? toQString(frameNote(inspection->request.whatIf, f)) : QString(); };
   if (two) {
@@ -393,8 +417,8 @@ void FramePanel::showOverlay() {
   canvas_->setOverlay(shown_);
 }
 
-void FramePanel::showCaptions(const draw::FrameOverlay& overlay) {
-  const FrameCaptions captions = frameCaptions(document_, overlay, palette());
+void FramePanel::showCaptions(const draw::FrameOverlay& overlay, bool earlier) {
+  const FrameCaptions captions = frameCaptions(document_, overlay, palette(), earlier);
   // A reason that has gone leaves no empty lines behind.
   const bool noLonger = failureShown_ && !captions.failure;
   if (overlay.captions.size() != captionCount_ || noLonger || fewerLines_) captions_->setMinimumHeight(0);
@@ -402,10 +426,31 @@ void FramePanel::showCaptions(const draw::FrameOverlay& overlay) {
   captionCount_ = overlay.captions.size();
   failureShown_ = captions.failure;
   captions_->setText(captions.html);
+  setRichTip(captions_, captions.tip);
   // It may grow but not shrink: the pictures above it would jump with every result.
   if (captions_->isVisible())  // else its width is not yet what it will be
     captions_->setMinimumHeight(std::max(captions_->minimumHeight(), captions_->heightForWidth(captions_->width())));
   captions_->setVisible(!captions.html.isEmpty());
+}
+
+QList<PairBar::KeyEntry> FramePanel::figureKey() const {
+  QList<PairBar::KeyEntry> key = pair_->on() ? pair_->key() : QList<PairBar::KeyEntry>();
+  const bool byRole = overlayOptions().colourByRole;
+  const auto add = [&key](const QColor& colour, const QString& text) {
+    const auto same = [&text](const PairBar::KeyEntry& e) { return e.text == text; };
+    if (std::none_of(key.begin(), key.end(), same)) key.append({colour, text});
+  };
+  const draw::FrameOverlay* const both[] = {&shown_, &shownSecond_};
+  for (const draw::FrameOverlay* overlay : both)
+    for (const draw::OverlayLine& line : overlay->lines)
+      if (line.role == draw::OverlayRole::ObservedContour && line.highlight >= 0) add(toQColor(draw::kObserved), tr("observed"));
+  for (const draw::FrameOverlay* overlay : both)
+    for (const draw::OverlayLine& line : overlay->lines)
+      if (line.role == draw::OverlayRole::PredictedContour && line.highlight >= 0)
+        add(toQColor(line.colour),
+            byRole ? roleName(document_.role(overlay == &shown_ ? document_.selection().frame : pair_->secondFrame()))
+                   : toQString(line.model));
+  return key;
 }
 
 void FramePanel::followLink(const QString& target) {

@@ -13,6 +13,7 @@
 #include "core/draw/frame_overlay.h"
 #include "gui/base/actions.h"
 #include "gui/document/document.h"
+#include "gui/frame/pair_bar.h"
 #include "gui/frame/photo_loader.h"
 #include "gui/frame/pixel_probe.h"
 
@@ -31,7 +32,6 @@ class FrameCanvas;
 class HandTool;
 class HighlightEdits;
 class LobeLayer;
-class PairBar;
 class PanelScroll;
 class RetextureBar;
 
@@ -60,6 +60,8 @@ class FramePanel : public QWidget {
   void look(const QString& at, int highlight);
   /// Zooms to the selected frame's highlights.
   void goToHighlight();
+  /// What the colours of the picture's lines mean: those of the pair, then the observed contour and every model that is drawn.
+  QList<PairBar::KeyEntry> figureKey() const;
 
  signals:
   void photographFailed(int frame, const QString& reason);  ///< there is nothing to show for it
@@ -78,7 +80,8 @@ class FramePanel : public QWidget {
   void showTitle();
   void showLook();
   void showOverlay();
-  void showCaptions(const draw::FrameOverlay& overlay);
+  void markStale();
+  void showCaptions(const draw::FrameOverlay& overlay, bool earlier);
   void selectAt(double x, double y);
   void selectModelAt(double x, double y);
   void followLink(const QString& link);

@@ -40,9 +40,8 @@ LadderPanel::LadderPanel(Document& document, PhotoLoader& loader, QWidget* paren
     frame_ = -1;
     moved_ = false;
   });
-  connect(&document_, &Document::staleChanged, this, [this](bool stale) {
-    for (const Tile& tile : tiles_) tile.canvas->setStale(stale);
-  });
+  connect(&document_, &Document::staleChanged, this, &LadderPanel::markStale);
+  connect(&loader_, &PhotoLoader::behindChanged, this, &LadderPanel::markStale);
   connect(&loader_, &PhotoLoader::loaded, this, [this](int frame, const FramePicture& picture) {
     if (frame != document_.selection().frame || !isVisible()) return;
     for (const Tile& tile : tiles_) tile.canvas->setPicture(picture);
@@ -68,6 +67,10 @@ std::shared_ptr<const Inspection> LadderPanel::inspection() const {
 void LadderPanel::changeEvent(QEvent* e) {
   QWidget::changeEvent(e);
   if (e->type() == QEvent::PaletteChange) scheduleRefresh();  // captions have colours of the theme
+}
+
+void LadderPanel::markStale() {
+  for (const Tile& tile : tiles_) tile.canvas->setStale(document_.stale() || loader_.behind());
 }
 
 void LadderPanel::scheduleRefresh() {
@@ -110,7 +113,7 @@ void LadderPanel::rebuild(const std::vector<std::string>& models) {
     Tile tile{model, new QWidget(this), new FrameCanvas, new QLabel};
     tile.canvas->setObjectName(QStringLiteral("ladder:") + toQString(model));
     tile.canvas->setMinimumSize(24, 24);
-    tile.canvas->setStale(document_.stale());
+    tile.canvas->setStale(document_.stale() || loader_.behind());
     tile.text->setTextFormat(Qt::RichText);
     tile.text->setMargin(2);
     auto* column = new QVBoxLayout(tile.box);
@@ -181,6 +184,7 @@ void LadderPanel::showTile(Tile& tile) {
     tile.below = some          ? toQString(missedText(c.score))
                  : tile.failed ? toQString(c.score.reason)
                                : tr("%1 %   %2 px").arg(numberText(*c.score.errorPct, 3), numberText(*c.score.errorPx, 3));
+    if (!tile.failed && !c.score.reason.empty()) tile.below += tr(", poor");  // the tool tip says why
     tile.brief = tile.failed ? tile.below : tr("%1 %").arg(numberText(*c.score.errorPct, 3));
     tile.text->setToolTip(toQString(c.text));
   }

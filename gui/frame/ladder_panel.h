@@ -49,6 +49,7 @@ class LadderPanel : public QWidget {
     bool failed = false;
   };
   void scheduleRefresh();
+  void markStale();
   void refresh();
   void rebuild(const std::vector<std::string>& models);
   void arrange();

@@ -37,11 +37,18 @@ void PhotoLoader::setScene(std::shared_ptr<const Scene> scene) {
   pictures_ = {std::move(scene)};
   last_ = {};
   wanted_ = -1;
+  setBehind(false);
+}
+
+void PhotoLoader::setBehind(bool behind) {
+  if (std::exchange(behind_, behind) != behind) emit behindChanged();
 }
 
 void PhotoLoader::setInspection(std::shared_ptr<const Inspection> inspection) {
   if (!pictures_.follow(std::move(inspection))) return;
+  const bool shown = lastFrame_ >= 0;
   forget();
+  if (shown) setBehind(true);
   want(wanted_);
 }
 
@@ -66,6 +73,7 @@ void PhotoLoader::want(int frame) {
   };
   const auto done = [this, frame](const JobResult<Outcome<FramePicture>>& result) {
     if (result.overtaken || result.stopped) return;
+    setBehind(false);
     if (!result.value) return void(emit failed(frame, result.failure()));
     const Outcome<FramePicture>& picture = *result.value;
     if (!picture) return void(emit failed(frame, toQString(picture.failure().message())));
@@ -101,6 +109,7 @@ Outcome<FramePicture> PhotoLoader::answer(const JobToken& token, int frame, cons
         token.deliver([this, token, frame, picture] {
           if (token.overtaken()) return;
           last_ = picture;
+          setBehind(false);
           emit loaded(frame, picture);
         });
         picture.complete = true;

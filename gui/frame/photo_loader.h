@@ -44,12 +44,15 @@ class PhotoLoader : public QObject {
   /// Answers with loaded() or failed(), at once when the frame was the last one.
   void want(int frame);
   bool busy() const { return jobs_.busy(); }
+  /// The last answer does not belong to these results (see setInspection): that of the last wish is on its way.
+  bool behind() const { return behind_; }
   int reads() const { return reads_; }  ///< files decoded so far
   /// The last answer.
   const FramePicture& picture() const { return last_; }
   int pictureFrame() const { return lastFrame_; }
 
  signals:
+  void behindChanged();
   void loaded(int frame, const glint::gui::FramePicture& picture);
   void failed(int frame, const QString& reason);
 
@@ -57,6 +60,7 @@ class PhotoLoader : public QObject {
   Outcome<FramePicture> answer(const JobToken& token, int frame, const FramePictures& pictures, FrameSource source,
                                const viz::Development& how);
   void forget();
+  void setBehind(bool behind);
 
   FramePictures pictures_;
   FrameSource source_ = FrameSource::Image;
@@ -64,6 +68,7 @@ class PhotoLoader : public QObject {
   int wanted_ = -1;
   FramePicture last_;
   int lastFrame_ = -1;
+  bool behind_ = false;
   std::atomic<int> reads_{0};
   JobQueue jobs_{JobQueue::Rank::Foreground};
 };

@@ -234,25 +234,30 @@ void BallControls::show(const BallQuestion& q) {
   outlineChoice_->setCurrentIndex(outlineChoice_->findData(QLatin1String(toText(q.outlines))));
 }
 
+/// Who is told why the field is wrong can correct it at once. @return the whole sentence
+QString BallControls::refused(QLineEdit* field, const QString& why) {
+  complain(field, why);
+  field->setFocus();
+  field->selectAll();
+  return tr("%1: %2").arg(field->accessibleName(), why);
+}
+
 QString BallControls::fill(BallQuestion& question) {
   question.camera.reset();
   question.ballRadius.reset();
   question.outlines = glint::outlinesOf(outlineChoice_->currentData().toString().toStdString());
   if (const QString text = camera_->text().trimmed(); !text.isEmpty()) {
     try {
-      question.camera = cameraOfNumbers(cameraNumbers(QString(text).remove(QLatin1Char(' ')).toStdString(), "camera"));
+      question.camera = cameraOfNumbers(cameraNumbers(QString(text).remove(QLatin1Char(' ')).toStdString(), ""));
     } catch (const InputError& e) {
-      complain(camera_, toQString(e.what()));
-      return toQString(e.what());
+      return refused(camera_, toQString(e.what()));
     }
   }
   if (const QString text = radius_->text().trimmed(); !text.isEmpty()) {
     QString why;
     const std::optional<double> radius = numberFromText(text, &why);
     if (!radius || !(*radius > 0)) {
-      if (radius) why = tr("The radius must be above 0");
-      complain(radius_, why);
-      return tr("Ball radius: %1").arg(why);
+      return refused(radius_, radius ? tr("must be above 0") : why);
     }
     question.ballRadius = radius;
   }

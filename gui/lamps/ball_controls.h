@@ -37,6 +37,7 @@ class BallControls : public QWidget {
   void copyRequested();
 
  private:
+  QString refused(QLineEdit* field, const QString& why);
   void buildBalls(QFormLayout* form);
   void buildCutOuts(QFormLayout* form);
   void buildCamera(QFormLayout* form);

@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/diagnostics/row_changes.h"
 #include "core/draw/frame_overlay.h"
+#include "core/inspect/summary.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
 #include "gui/base/tips.h"
@@ -73,12 +75,21 @@ void ErrorModel::rebuild() {
   rows_ = document_.rows();
   texts_.assign(rows_->size(), QString());
   counterparts_.clear();
+  poor_.clear();
   const std::shared_ptr<const Inspection> now = document_.inspection(), pinned = document_.pinned();
+  if (now)
+    for (const auto& [name, result] : now->models)
+      if (const std::string why = reasonsOf(result).poor; !why.empty()) poor_[name] = toQString(why);
   if (now && pinned && now != pinned) {
     pinnedRows_ = document_.pinnedRows();
     counterparts_ = counterparts(*pinned, *pinnedRows_, *now, *rows_);
   }
   endResetModel();
+}
+
+void ErrorModel::setEarlier(bool earlier) {
+  if (std::exchange(earlier_, earlier) == earlier || rows_->empty()) return;
+  emit dataChanged(index(0, 0), index(rowCount() - 1, ColumnCount - 1), {Qt::ForegroundRole});
 }
 
 const HighlightRow* ErrorModel::pinnedOf(int row) const {
@@ -127,7 +138,8 @@ QString ErrorModel::cell(int row, int column) const {
     case Model: return toQString(r.model);
     case Light: return nameText(r.place);
     case Status: return tr(nameOf(r.status));
-    case ReasonText: return toQString(r.reason);
+    case ReasonText:
+      return r.reason.empty() && poor_.count(r.model) ? tr("poor fit: %1").arg(poor_.at(r.model)) : toQString(r.reason);
     case Difference: return differenceText(row);
     case Pinned: {
       const HighlightRow* const before = pinnedOf(row);
@@ -150,7 +162,7 @@ QVariant ErrorModel::sorted(int row, int column) const {
 
 QVariant ErrorModel::colour(int row, int column) const {
   const HighlightRow& r = at(row);
-  if (r.role == RowRole::Excluded)  // shown, but nothing of it counts
+  if (r.role == RowRole::Excluded || earlier_)  // shown, but nothing of it counts
     return QGuiApplication::palette().brush(QPalette::Disabled, QPalette::Text);
   if (column == Difference) {
     const HighlightRow* const before = pinnedOf(row);
@@ -166,6 +178,8 @@ QVariant ErrorModel::colour(int row, int column) const {
 QVariant ErrorModel::tip(int row, int column) const {
   if (at(row).role == RowRole::Excluded && column != ReasonText && column != Light)
     return tr("Excluded frame: used neither for training nor in any summary");
+  if (const auto poor = poor_.find(at(row).model); column == Model && poor != poor_.end())
+    return plainTip(tr("%1, poor fit: %2").arg(toQString(poor->first), poor->second));
   if (column == ReasonText || column == Light) return plainTip(cell(row, column));
   if (column == Difference && differenceText(row) == tr("new")) return tr("Nothing pinned is about this highlight");
   return {};
@@ -187,7 +201,9 @@ QVariant ErrorModel::data(const QModelIndex& index, int role) const {
     case Qt::DisplayRole: return cell(index.row(), column);
     case kSortRole: return sorted(index.row(), column);
     case Qt::DecorationRole:
-      if (column == Model) return colourSwatch(toQColor(draw::modelColour(row.model)));
+      if (column == Model)
+        return colourSwatch(
+            toQColor(poor_.count(row.model) ? draw::pale(draw::modelColour(row.model)) : draw::modelColour(row.model)));
       return {};
     case Qt::ForegroundRole: return colour(index.row(), column);
     case Qt::ToolTipRole: return tip(index.row(), column);

@@ -3,6 +3,7 @@
 
 #include <QAbstractTableModel>
 #include <QString>
+#include <map>
 #include <memory>
 #include <vector>
 
@@ -58,6 +59,8 @@ class ErrorModel : public QAbstractTableModel {
   static QString idOf(int column);
   /// The models among the rows, from simple to rich.
   QStringList models() const;
+  /// All rows are of an earlier request than what is asked for: faded.
+  void setEarlier(bool earlier);
 
  private:
   void rebuild();
@@ -73,6 +76,8 @@ class ErrorModel : public QAbstractTableModel {
   RowsPtr rows_, pinnedRows_;
   std::vector<int> counterparts_;  ///< of each row among the pinned ones; empty = nothing to compare with
   mutable std::vector<QString> texts_;
+  bool earlier_ = false;
+  std::map<std::string, QString> poor_;  ///< models whose fit is poor, and why
 };
 
 }  // namespace glint::gui

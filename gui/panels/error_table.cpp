@@ -26,6 +26,7 @@
 #include "core/report/csv_text.h"
 #include "core/report/warnings.h"
 #include "gui/base/flow_layout.h"
+#include "gui/base/stale_badge.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
 #include "gui/base/tips.h"
@@ -43,6 +44,9 @@ constexpr int kLeastLetters = 6;                      // of a choice of rows; it
 constexpr int kColumnGapPx = 5;                       // of the summary
 constexpr double kWorstPct = 1000;                    // ten times the highlight's size: how far astray beyond that says nothing
 constexpr int kIou = 4, kMissed = 6, kSpurious = 7;   // columns of its values
+// What the errors leave out comes before their tails: without it, a mean over few matched highlights looks too good. The last ones
+// are left out first.
+constexpr int kColumnOrder[] = {0, 1, kMissed, kSpurious, 2, 3, kIou, 5};
 }  // namespace
 
 ErrorTable::ErrorTable(Document& document, QWidget* parent) : QWidget(parent), document_(document) {
@@ -126,7 +130,12 @@ ErrorTable::ErrorTable(Document& document, QWidget* parent) : QWidget(parent), d
     followPinned();
     selectFromDocument();
   });
-  connect(&document_, &Document::staleChanged, this, &ErrorTable::showSummary);
+  badge_ = new StaleBadge(view_, Qt::BottomRightCorner);
+  connect(&document_, &Document::staleChanged, badge_, &StaleBadge::setStale);
+  connect(badge_, &StaleBadge::marked, this, [this](bool stale) {
+    model_->setEarlier(stale);
+    fitSummary();
+  });
   connect(&document_, &Document::selectionChanged, this, &ErrorTable::selectFromDocument);
   connect(view_->selectionModel(), &QItemSelectionModel::currentRowChanged, this, &ErrorTable::selectFromTable);
   showWarnings();
@@ -261,20 +270,17 @@ void ErrorTable::showSummary() {
   summaryRows_.clear();
   const std::shared_ptr<const Inspection> inspection = document_.inspection();
   if (!inspection) return fitSummary();
-  // In place of the heading: a line of its own would make the table jump under the mouse.
   summaryRows_.push_back(
       {{},
-       document_.stale() ? tr("out of date…") : tr("Held out, % vs %1").arg(toQString(scoredAgainst(*inspection))),
+       tr("Held out, % vs %1").arg(toQString(scoredAgainst(*inspection))),
        {tr("mean"), tr("median"), tr("p95"), tr("max"), tr("IoU"), tr("predicted"), tr("missed"), tr("spurious")},
        {}});
-  int missed = 0, spurious = 0;
   for (const std::string& name : modelsInOrder(*inspection)) {
     const ModelSummary s = summarise(*inspection, inspection->models.at(name));
-    SummaryRow row{toQColor(draw::modelColour(name)).name(), toQString(name), {}, {}};
-    if (s.poor) row.name += tr(", poor");
+    SummaryRow row{
+        toQColor(draw::modelColour(name)).name(), toQString(name) + (s.poor ? tr(", poor") : QString()), {}, {}, toQString(name),
+        s.poor ? toQString(s.reason) : QString()};
     if (s.answered) {
-      missed += s.missed;
-      spurious += s.spurious;
       const Statistic& e = s.contourErrorPct;
       // As many decimals as the table below, so that points stand under points.
       const auto fixed = [](double v, int decimals) {
@@ -291,28 +297,24 @@ void ErrorTable::showSummary() {
     }
     summaryRows_.push_back(row);
   }
-  // What the errors leave out comes before their tails: without it, a mean over few matched highlights looks too good.
-  columnOrder_ = {0, 1};
-  if (missed > 0) columnOrder_.push_back(kMissed);
-  if (spurious > 0) columnOrder_.push_back(kSpurious);
-  for (int c = 2; c < int(summaryRows_.front().values.size()); ++c)
-    if (std::find(columnOrder_.begin(), columnOrder_.end(), c) == columnOrder_.end()) columnOrder_.push_back(c);
   fitSummary();
 }
 
 QString ErrorTable::summaryHtml(const std::vector<int>& columns, int problemWidth) const {
-  const QString faded = (document_.stale() ? warningColour() : palette().color(QPalette::PlaceholderText)).name();
+  const QString faded = palette().color(QPalette::PlaceholderText).name();
+  const bool earlier = badge_ && badge_->marks();
   QString html = QStringLiteral("<table cellspacing='0' cellpadding='0'>");
   for (const SummaryRow& row : summaryRows_) {
     const bool heading = row.colour.isEmpty();
-    html += heading ? QStringLiteral("<tr style='color:%1'>").arg(faded) : QStringLiteral("<tr>");
-    html += QStringLiteral("<td style='padding-right:%1px'>%2%3</td>")
+    html += heading || earlier ? QStringLiteral("<tr style='color:%1'>").arg(faded) : QStringLiteral("<tr>");
+    html += QStringLiteral("<td width='%1' style='padding-right:%2px'>%3%4</td>")
+                .arg(nameWidth())
                 .arg(kColumnGapPx)
                 .arg(heading ? QString() : QStringLiteral("<span style='color:%1'>■</span>&nbsp;").arg(row.colour), row.name);
     for (const int c : columns)
       if (c < row.values.size()) {
         // What the errors beside them leave out is seen before they are.
-        const bool leftOut = !heading && (c == kMissed || c == kSpurious) && row.values[c] != QLatin1String("0");
+        const bool leftOut = !heading && !earlier && (c == kMissed || c == kSpurious) && row.values[c] != QLatin1String("0");
         html += QStringLiteral("<td align='right' width='%1' style='padding-right:%2px%3'>%4</td>")
                     .arg(columnWidth(c) + kColumnGapPx)
                     .arg(kColumnGapPx)
@@ -322,12 +324,22 @@ QString ErrorTable::summaryHtml(const std::vector<int>& columns, int problemWidt
     if (!row.problem.isEmpty())
       html += QStringLiteral("<td colspan='%1' style='color:%2'>%3</td>")
                   .arg(std::max<std::size_t>(1, columns.size()))
-                  .arg(warningColour().name(),
+                  .arg(earlier ? faded : warningColour().name(),
                        summary_->fontMetrics().elidedText(row.problem, Qt::ElideRight, problemWidth).toHtmlEscaped());
     if (heading && int(columns.size()) < row.values.size()) html += QStringLiteral("<td>…</td>");
     html += QStringLiteral("</tr>");
   }
   return html + QStringLiteral("</table>");
+}
+
+/// Also with what a recomputation may put behind a model's name: columns stay where they are.
+int ErrorTable::nameWidth() const {
+  int width = 0;
+  for (const SummaryRow& row : summaryRows_) {
+    const QString name = row.colour.isEmpty() ? row.name : QStringLiteral("■ ") + row.model + tr(", poor");
+    width = std::max(width, summary_->fontMetrics().horizontalAdvance(name));
+  }
+  return width + kColumnGapPx;
 }
 
 int ErrorTable::columnWidth(int column) const {
@@ -345,32 +357,36 @@ void ErrorTable::fitSummary() {
     summary_->setText(tr("<span style='color:%1'>No results yet</span>").arg(palette().color(QPalette::PlaceholderText).name()));
     return;
   }
-  const int all = summaryRows_.front().values.size();
+  const int all = int(std::size(kColumnOrder));
   const QMargins margins = layout()->itemAt(0)->layout()->contentsMargins();
-  const int beside = warnings_->isHidden() ? 0 : warnings_->sizeHint().width() + kHeadGapPx;
+  // Also where there are none: they come and go with each recomputation.
+  const int beside = warnings_->fontMetrics().horizontalAdvance(tr("%1 warnings").arg(99)) + 3 * kHeadGapPx;
   const int room = width() - margins.left() - margins.right() - beside;
-  int first = 0, problems = 0;
-  for (const SummaryRow& row : summaryRows_) {
-    first = std::max(first, summary_->fontMetrics().horizontalAdvance(QStringLiteral("■ ") + row.name) + 20);
+  const int first = nameWidth() + 20;
+  int problems = 0;
+  for (const SummaryRow& row : summaryRows_)
     problems = std::max(problems, summary_->fontMetrics().horizontalAdvance(row.problem));
-  }
   const int forProblems = std::max(40, room - first);
   // Widths are estimated first: laying out a table of rich text takes milliseconds, and this follows a slider.
   int columns = 0;
   for (int used = first; columns < all; ++columns) {
-    const int column = columnOrder_[std::size_t(columns)];
+    const int column = kColumnOrder[columns];
     used += columnWidth(column) + kColumnGapPx;
     if (columns > 0 && used > room) break;
   }
   const auto html = [&](int count, int problemWidth) {
-    std::vector<int> shown(columnOrder_.begin(), columnOrder_.begin() + count);
+    std::vector<int> shown(kColumnOrder, kColumnOrder + count);
     std::sort(shown.begin(), shown.end());
     return summaryHtml(shown, problemWidth);
   };
   summary_->setText(html(columns, forProblems));
   while (columns > 1 && summary_->sizeHint().width() > room) summary_->setText(html(--columns, forProblems));
+  QString tip;
   if (columns < all || problems > forProblems)
-    setRichTip(summary_, QStringLiteral("<div style='white-space:nowrap'>") + html(all, problems + 1) + QStringLiteral("</div>"));
+    tip = QStringLiteral("<div style='white-space:nowrap'>") + html(all, problems + 1) + QStringLiteral("</div>");
+  for (const SummaryRow& row : summaryRows_)
+    if (!row.poor.isEmpty()) tip += QStringLiteral("<p>%1: %2</p>").arg(row.name, row.poor.toHtmlEscaped());
+  if (!tip.isEmpty()) setRichTip(summary_, tip);
 }
 
 void ErrorTable::changeEvent(QEvent* event) {

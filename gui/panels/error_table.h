@@ -18,6 +18,7 @@ namespace glint::gui {
 
 class ErrorColumns;
 class ErrorModel;
+class StaleBadge;
 class RowFilter;
 
 /// Sortable table of errors with a summary line per model above it; rows are chosen by frame, model, status, words and brush, columns by a
@@ -46,6 +47,7 @@ class ErrorTable : public QWidget {
   void fitSummary();
   QString summaryHtml(const std::vector<int>& columns, int problemWidth) const;
   int columnWidth(int column) const;  ///< px
+  int nameWidth() const;              ///< px, of the first column
   void showCount();
   void buildWarnings(QLayout& row);
   void buildFilters(QLayout& row);
@@ -67,14 +69,15 @@ class ErrorTable : public QWidget {
   RowFilter* proxy_;
   QTableView* view_ = nullptr;
   ErrorColumns* columns_ = nullptr;
+  StaleBadge* badge_ = nullptr;
   QLabel* summary_ = nullptr;
   struct SummaryRow {
     QString colour, name;  ///< no colour = the heading
     QStringList values;
-    QString problem;  ///< in place of values
+    QString problem;          ///< in place of values
+    QString model{}, poor{};  ///< why its fit is poor, if it is
   };
   std::vector<SummaryRow> summaryRows_;
-  std::vector<int> columnOrder_;  ///< of the values: the last ones are left out first
   QComboBox* filter_;
   QComboBox *models_ = nullptr, *statuses_ = nullptr;
   QLineEdit* search_ = nullptr;

@@ -311,6 +311,15 @@ void PlotsPanel::renderNow() {
     if (pane.canvas->isVisible()) pane.canvas->renderNow();
 }
 
+namespace {
+/// The line and the rings of what is selected are of the window, not of a figure.
+draw::Selection nothingSelected() {
+  draw::Selection none;
+  none.frame = -1;
+  return none;
+}
+}  // namespace
+
 bool PlotsPanel::saveTo(const QString& file, QString* problem, const std::optional<FigureLook>& look) {
   const PlotCanvas* canvas = panes_[std::size_t(current_)].canvas;
   const QString ending = QFileInfo(file).suffix().toLower();
@@ -326,12 +335,11 @@ bool PlotsPanel::saveTo(const QString& file, QString* problem, const std::option
       viz::writePlotCsv(canvas->plot(), file.toStdString());
     } else if (ending == QStringLiteral("svg")) {
       caption.sizePx /= scale;  // its units are px of the screen
-      viz::writePlotSvg(canvas->plot(), style, document_.selection(), int(std::lround(size.width() / scale)),
+      viz::writePlotSvg(canvas->plot(), style, nothingSelected(), int(std::lround(size.width() / scale)),
                         int(std::lround(size.height() / scale)), file.toStdString(), caption);
     } else if (ending == QStringLiteral("png")) {
       style.scale = scale;
-      QImage picture =
-          toQImage(viz::plotImage(canvas->plot(), style, document_.selection(), size.width(), size.height(), caption));
+      QImage picture = toQImage(viz::plotImage(canvas->plot(), style, nothingSelected(), size.width(), size.height(), caption));
       if (look) setDpi(picture, look->dpi);
       writePng(picture, file);
     } else {
@@ -345,6 +353,7 @@ bool PlotsPanel::saveTo(const QString& file, QString* problem, const std::option
 }
 
 void PlotsPanel::saveAs(const char* ending) {
+  if (document_.shownStale() && kind(current_) != "tradeoff") return void(emit problem(notUpToDate()));
   const QString type = QString::fromLatin1(ending);
   std::optional<FigureLook> look;
   if (type != QLatin1String("csv")) {  // numbers have no size; pictures go to light pages unless somebody asks for something else
@@ -368,7 +377,7 @@ void PlotsPanel::copyPicture() {
   const PlotCanvas* canvas = panes_[std::size_t(current_)].canvas;
   const draw::PlotStyle style{canvas->style().dark, kPictureScale};
   QApplication::clipboard()->setImage(
-      toQImage(viz::plotImage(canvas->plot(), style, document_.selection(), int(std::max(320, canvas->width()) * kPictureScale),
+      toQImage(viz::plotImage(canvas->plot(), style, nothingSelected(), int(std::max(320, canvas->width()) * kPictureScale),
                               int(std::max(200, canvas->height()) * kPictureScale))));
 }
 

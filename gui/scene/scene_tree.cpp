@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "gui/base/eliding_delegate.h"
+#include "gui/base/stale_badge.h"
 #include "gui/base/text.h"
 #include "gui/document/frame_roles.h"
 #include "gui/scene/hidden_objects_option.h"
@@ -87,6 +88,7 @@ SceneTree::SceneTree(Document& document, QWidget* parent)
   head->resizeSection(SceneTreeModel::Effect, fontMetrics().horizontalAdvance(tr("Influence, pp")) + 14);
   tree_->sortByColumn(SceneTreeModel::Name, Qt::AscendingOrder);
   column->addWidget(tree_, 1);
+  connect(&document_, &Document::staleChanged, new StaleBadge(tree_, Qt::BottomRightCorner), &StaleBadge::setStale);
 
   connect(search_, &QLineEdit::textChanged, this, &SceneTree::find);
   connect(tree_, &QTreeView::doubleClicked, this, [this](const QModelIndex& index) {

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/draw/frame_overlay.h"
+#include "gui/base/stale_badge.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
 #include "gui/document/frame_roles.h"
@@ -68,7 +70,7 @@ void TimelineStrip::paintMissed(QPainter& painter) {
   const double line = row.height() / double(marked.size()), r = std::clamp(0.5 * line - 0.75, 1.0, 3.0);
   for (std::size_t k = 0; k < marked.size(); ++k) {
     QColor colour = toQColor(draw::modelColour(marked[k]->model));
-    if (document_.stale()) colour.setAlpha(90);
+    if (badge_->marks()) colour.setAlpha(90);
     painter.setPen(QPen(colour, 1.5));
     const auto shownOf = [&](std::vector<char> marks) {
       for (const int frame : shownExcluded(document_))
@@ -139,8 +141,8 @@ void TimelineStrip::paintErrors(QPainter& painter) {
   const bool perFrame = columns >= int(inView_);
   for (const viz::TimelineData::Series& series : data_.series) {
     if (bars_ && series.model != plotted_) continue;
-    QColor colour = toQColor(draw::modelColour(series.model));
-    if (document_.stale()) colour.setAlpha(90);
+    QColor colour = toQColor(series.poor ? draw::pale(draw::modelColour(series.model)) : draw::modelColour(series.model));
+    if (badge_->marks()) colour.setAlpha(90);
     std::vector<std::optional<double>> shown = series.errorPct;
     for (const int frame : shownExcluded(document_))
       if (frame >= 0 && frame < int(shown.size())) shown[std::size_t(frame)].reset();
@@ -177,7 +179,8 @@ void TimelineStrip::paintErrors(QPainter& painter) {
         path.moveTo(at - QPointF(1, 0)), path.lineTo(at + QPointF(1, 0));  // a lone frame is seen too
       down = true;
     }
-    painter.strokePath(path, QPen(colour, series.model == document_.selection().model ? 2.4 : 1.2));
+    painter.strokePath(
+        path, QPen(colour, series.model == document_.selection().model ? 2.4 : 1.2, series.poor ? Qt::DashLine : Qt::SolidLine));
   }
   painter.setClipping(false);
 }

@@ -13,6 +13,7 @@
 
 #include "gui/base/focus_frame.h"
 #include "gui/base/picture_access.h"
+#include "gui/base/stale_badge.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
 #include "gui/base/tips.h"
@@ -57,7 +58,9 @@ TimelineStrip::TimelineStrip(Document& document, QWidget* parent) : QWidget(pare
     if (q.train != drawn_.train || q.excluded != drawn_.excluded || q.whatIf != drawn_.whatIf) readView();
   });
   connect(&document_, &Document::optionsChanged, this, &TimelineStrip::readView);
-  connect(&document_, &Document::staleChanged, this, &TimelineStrip::readView);
+  badge_ = new StaleBadge(this);
+  connect(&document_, &Document::staleChanged, badge_, &StaleBadge::setStale);
+  connect(badge_, &StaleBadge::marked, this, &TimelineStrip::repaintAll);
   connect(&document_, &Document::selectionChanged, this, &TimelineStrip::showSelection);
   connect(&thumbnails_, &Thumbnails::arrived, this, &TimelineStrip::repaintAll);
   describe();
@@ -480,11 +483,12 @@ QString TimelineStrip::toolTip(int frame) const {
   for (const viz::TimelineData::Series& series : data_.series) {
     if (excluded) break;
     const std::optional<double>& pct = series.errorPct[std::size_t(frame)];
-    text += QStringLiteral("\n%1: ").arg(toQString(series.model)) +
+    text += QStringLiteral("\n%1: ").arg(toQString(series.model) + (series.poor ? tr(", poor") : QString())) +
             (pct ? numberText(*pct, 3) + QStringLiteral(" %") : toQString(series.reason[std::size_t(frame)]));
     if (const std::string& spurious = series.spuriousWords[std::size_t(frame)]; !spurious.empty())
       text += (series.reason[std::size_t(frame)].empty() && !pct ? QString() : QStringLiteral("; ")) + toQString(spurious);
   }
+  if (document_.stale() && !data_.series.empty()) text += tr("\n(errors of an earlier state)");
   text += tr("\nCtrl+click gives the next role");
   return text;
 }

@@ -13,6 +13,8 @@ class QPainter;
 
 namespace glint::gui {
 
+class StaleBadge;
+
 /// Strip of all frames, from top to bottom: thumbnails, crosses where a model missed a highlight, errors (thin lines of all
 /// models, or bars of the selected one), lights on and off, roles by colour and shape (training: filled square, held out: ring,
 /// excluded: cross), numbers. Click and drag select; a click on a role's mark gives the frame the next role, one on a light
@@ -97,6 +99,7 @@ class TimelineStrip : public QWidget {
   viz::TimelineData data_;
   viz::ErrorAxis axis_;
   Thumbnails thumbnails_;
+  StaleBadge* badge_;
   struct Drawn {
     std::string train;
     std::vector<int> excluded;

@@ -26,6 +26,7 @@
 #include "gui/base/eliding_delegate.h"
 #include "gui/base/job_queue.h"
 #include "gui/base/panel_scroll.h"
+#include "gui/base/stale_badge.h"
 #include "gui/base/text.h"
 #include "gui/base/undo_keys.h"
 #include "gui/document/own_files.h"
@@ -110,12 +111,11 @@ MainWindow::MainWindow(Engine engine, QWidget* parent)
     if (!opened->layout.empty()) applyLayout(exactQString(opened->layout));
     scene_->setViewPoints(opened->viewPoints);
   });
-  for (const auto signal : {&ExportActions::problem, &ExportActions::message})
-    connect(exports_, signal, this, [this, signal](const QString& line) {
-      if (signal == &ExportActions::problem) return showProblem(line);
-      messageBar_->overtakeError();  // it would read as if this had failed too
-      tell(line);
-    });
+  connect(exports_, &ExportActions::problem, this, &MainWindow::showProblem);
+  connect(exports_, &ExportActions::message, this, [this](const QString& line) {
+    messageBar_->overtakeError();  // it would read as if this had failed too
+    tell(line);
+  });
   connect(exports_, &ExportActions::sessionWritten, this, [this](const QString& line, const QString& session) {
     log(line);
     messageBar_->showOffer(line, {{tr("Open"), [this, session] { files_->open(session); }}});
@@ -282,6 +282,7 @@ void MainWindow::buildDocks() {
   docks_.add("errors", tr("Errors"), errors_, Qt::BottomDockWidgetArea);
   diagnosis_ = new DiagnosisPanel(document_);
   QDockWidget* const problems = docks_.add("problems", tr("Problems"), diagnosis_, Qt::BottomDockWidgetArea, "errors");
+  connect(&document_, &Document::staleChanged, new StaleBadge(diagnosis_), &StaleBadge::setStale);
   connect(diagnosis_, &DiagnosisPanel::problem, this, &MainWindow::showProblem);
   connect(diagnosis_, &DiagnosisPanel::message, this, &MainWindow::tell);
   connect(diagnosis_, &DiagnosisPanel::runsChanged, scene_, [this](const auto& runs) { scene_->views().setRuns(runs); });
@@ -538,7 +539,7 @@ void MainWindow::showProblem(const QString& oneLine) {
                            {{tr("Allow and open"), [this, outside] { files_->allow(outside); }}});
   else if (const UndecidedPtr undecided = std::exchange(undecided_, {}))
     askIn(*messageBar_, oneLine, undecided, this,
-          [this, path = undecided->path](const Relinked& with) { files_->openRelinked(path, with); });
+          [this](const QString& path, const Relinked& with) { files_->openRelinked(path, with); });
   else if (!unreadable_->offerMesh(oneLine))
     messageBar_->showError(oneLine);
   log(oneLine);

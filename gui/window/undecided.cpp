@@ -14,14 +14,15 @@ namespace {
 constexpr int kMostButtons = 4;  // as many as a line has room for; a dialog offers the others
 
 using Question = UndecidedInput::Question;
-using Open = std::function<void(const Relinked&)>;
+using Open = std::function<void(const QString& path, const Relinked&)>;
 
 /// The options of the command line check and keep what a person says.
 void answer(const UndecidedPtr& undecided, const std::string& value, const Open& open) {
   Relinked with = undecided->instead;
+  if (undecided->option.empty()) return open(exactQString(value), with);
   for (const ChoiceOption& option : choiceOptions())
     if (undecided->option == option.flag) option.set(with.choices, value);
-  open(with);
+  open(undecided->path, with);
 }
 
 QString titleOf(const UndecidedInput::Answer& answer, Question question) {

@@ -219,7 +219,24 @@ class BallWindowTest : public QObject {
     click("measureLamps");
     QVERIFY(window_->idle() && !window_->report());
     QTRY_VERIFY(window_->findChild<QLabel*>(QStringLiteral("complaint")));
+    // Which field, and why; and it can be typed anew at once.
+    const auto told = [this] { return window_->findChild<QLabel*>(QStringLiteral("ballStatus"))->text(); };
+    QCOMPARE(told(), QStringLiteral("Camera, pixels: expected fx,fy,cx,cy or fx,fy,cx,cy,k1,k2,p1,p2[,k3]"));
+    QCOMPARE(window_->focusWidget(), static_cast<QWidget*>(camera));
+    QCOMPARE(camera->selectedText(), camera->text());
+    QApplication::clipboard()->setText(QStringLiteral("untouched"));
+    window_->findChild<QListWidget*>(QStringLiteral("ballPhotographs"))->setFocus();
+    click("copyLightsCommand");
+    QCOMPARE(QApplication::clipboard()->text(), QStringLiteral("untouched"));
+    QVERIFY(told().startsWith(QStringLiteral("Camera, pixels: ")));
+    QCOMPARE(window_->focusWidget(), static_cast<QWidget*>(camera));
     camera->clear();
+    auto* metres = window_->findChild<QLineEdit*>(QStringLiteral("ballRadius"));
+    QTest::keyClicks(metres, "-2");
+    click("measureLamps");
+    QCOMPARE(told(), QStringLiteral("Ball radius, metres: must be above 0"));
+    QCOMPARE(window_->focusWidget(), static_cast<QWidget*>(metres));
+    metres->clear();
     // An outline where no ball is: no answer, with the reason, and nothing of an earlier one.
     auto* radius = window_->findChild<NumberBox*>(QStringLiteral("ballRadiusPx"));
     radius->setValue(20);

@@ -108,6 +108,20 @@ class CapturesTest : public QObject {
     QCOMPARE(toQString(window.document().scene()->surfaces.begin()->second.mesh->string()), elsewhere.filePath("object.ply"));
   }
 
+  /// Who stands one level too high is led to the folder that is meant.
+  void aFolderInsideIsOffered() {
+    putColmap(path("work/model"));
+    put(path("work/notes.txt"), "nothing");
+    put(path("work/model/object.ply"), kMesh);
+    MainWindow window(coreEngine());
+    window.show();
+    window.open(path("work"));
+    QTRY_VERIFY2(window.lastError().endsWith("its folder 'model' is: COLMAP model"), qPrintable(window.lastError()));
+    QVERIFY2(press(window, QStringLiteral("Open 'model' (COLMAP model)")), qPrintable(window.lastError()));
+    QTRY_VERIFY_WITH_TIMEOUT(window.document().scene() && window.idle(), 20000);
+    QCOMPARE(window.document().inputFile(), path("work/model"));
+  }
+
   // A folder of images says neither poses nor intrinsics: two questions, one after the other.
   void posesOfImagesAreChosen() {
     QImage grey(64, 48, QImage::Format_Grayscale8);

@@ -96,6 +96,38 @@ class ExportTest : public QObject {
                              InputError);
   }
 
+  /// What is written belongs to one state: numbers of an earlier one never leave under the name of the new one.
+  void nothingIsWrittenOfResultsThatAreOutOfDate() {
+    Document& d = window_->document();
+    d.setSetting("detect.level", 0.4);
+    QVERIFY(d.stale());
+    for (const char* id :
+         {"export.csv", "export.json", "export.html", "export.share", "export.coco", "export.masks", "export.frame",
+          "export.ladder", "export.plots", "export.frame-view", "export.scene", "export.movie"}) {
+      emit window_->exports()->message(QStringLiteral("another"));
+      QTimer::singleShot(3000, qApp, [] {
+        if (QWidget* asked = QApplication::activeModalWidget()) asked->close();
+      });
+      window_->actions().find(id)->trigger();
+      QVERIFY2(d.stale(), "it was computed meanwhile");
+      QVERIFY2(window_->lastError().contains(QStringLiteral("earlier state")), id);
+    }
+  }
+
+  /// The pinned results are of another state than what is asked for: a picture of them opens as that one.
+  void aFigureOfPinnedResultsHoldsTheirSession() {
+    Document& d = window_->document();
+    const InspectionRequest before = d.request();
+    QVERIFY(d.pin());
+    d.setSetting("detect.level", 0.4);
+    QTRY_VERIFY_WITH_TIMEOUT(window_->idle() && !d.stale(), 60000);
+    d.showPinned(true);
+    const QString file = folder_.filePath("pinned.png");
+    window_->exports()->figures()->writeFrame({{400, 300}, false, false}, file);
+    settle();
+    QVERIFY(openInput(file.toStdString()).request == before);
+  }
+
   void theCommandComputesWhatIsOnScreen() {
     Document& d = window_->document();
     d.setModels({"canonical"});

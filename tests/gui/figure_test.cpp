@@ -265,6 +265,25 @@ class FigureTest : public QObject {
     QVERIFY2(over < 1400, qPrintable(QString::number(over)));
   }
 
+  /// A figure stands alone: it says what white and what each colour is.
+  void aFigureOfAFrameHasAKey() {
+    const auto words = [&](const char* name) {
+      window_->exports()->figures()->writeFrame({{1000, 700}, false, false}, folder_.filePath(QLatin1String(name)));
+      wait();
+      QFile svg(folder_.filePath(QLatin1String(name)));
+      return svg.open(QIODevice::ReadOnly) ? QString::fromUtf8(svg.readAll()) : QString();
+    };
+    const QString all = words("all.svg");
+    QVERIFY(all.contains(QStringLiteral(">observed<")));
+    for (const std::string& model : window_->document().request().models)
+      QVERIFY2(all.contains(QStringLiteral(">%1<").arg(toQString(model))), model.c_str());
+    window_->document().setLayerVisible("frame/observed", "Observed", false);
+    window_->document().setLayerVisible("frame/model/dual", "dual", false);
+    const QString less = words("less.svg");
+    QVERIFY(!less.contains(QStringLiteral(">observed<")) && !less.contains(QStringLiteral(">dual<")));
+    QVERIFY(less.contains(QStringLiteral(">canonical<")));
+  }
+
   /// Without it nobody can tell the lines of real and virtual cameras apart; in the window it stands above the pictures.
   void twoFramesKeepTheKeyOfTheirLines() {
     window_->document().setOption("frame/side-by-side", "on", "two frames");

@@ -10,6 +10,7 @@
 #include <QToolButton>
 
 #include "core/draw/plots.h"
+#include "gui/base/stale_badge.h"
 #include "gui/frame/frame_canvas.h"
 #include "gui/frame/frame_panel.h"
 #include "gui/frame/hand_tool.h"
@@ -241,6 +242,33 @@ class FrameViewTest : public QObject {
     hand->carry(edge + by);
     QVERIFY(!hand->holds() && document_->request().whatIf.none());
     QVERIFY(!frame_->canvas()->showsHeld());
+  }
+
+  /// A moved lamp: contours and numbers are there before the photograph is drawn anew; until then the old one is marked.
+  void aPhotographOfAnEarlierStateIsMarked() {
+    Opened opened = coreEngine().open(GLINT_SOURCE_DIR "/sessions/plane/plane.glint", {});
+    opened.request.models = {"canonical"};
+    document_->open(opened);
+    const auto compute = [&] {
+      document_->setInspection(std::make_shared<const Inspection>(inspect(opened.scene, document_->request())),
+                               document_->request());
+    };
+    compute();
+    settle();
+    const auto* badge = frame_->canvas()->findChild<StaleBadge*>();
+    QVERIFY(badge && badge->isHidden() && !frame_->loader()->behind());
+    WhatIf lit;
+    lit.synthesise = true;
+    lit.lightsBy["A"] = {0.05, 0, 0};
+    document_->setWhatIf(lit, "lamp moved");
+    QTRY_VERIFY(badge->isVisible());
+    compute();
+    QVERIFY(!document_->stale() && frame_->loader()->behind());
+    QVERIFY(badge->isVisible());
+    QTRY_VERIFY(!frame_->loader()->behind());
+    QVERIFY(badge->isHidden());
+    settle();
+    QVERIFY(frame_->loader()->picture().synthesised);
   }
 
   void resultsForTheFrameAreShownBeforeThoseForAll() {

@@ -224,6 +224,27 @@ class PlotsTest : public QObject {
     QVERIFY(!QApplication::clipboard()->image().isNull());
   }
 
+  /// The line and the rings of what is selected are of the window: a saved figure is the same whatever is selected.
+  void aSavedPlotHasNoCursor() {
+    const QTemporaryDir folder;
+    panel_->renderNow();
+    const auto saved = [&](const char* name) {
+      const QString file = folder.filePath(QLatin1String(name));
+      if (!panel_->saveTo(file)) return QByteArray();
+      QFile read(file);
+      return read.open(QIODevice::ReadOnly) ? read.readAll() : QByteArray();
+    };
+    const QByteArray svg = saved("a.svg"), png = saved("a.png");
+    draw::Selection s;
+    s.frame = 5;
+    s.model = "dual";
+    document_->select(s);
+    panel_->renderNow();
+    QVERIFY(!svg.isEmpty() && !png.isEmpty());
+    QCOMPARE(saved("b.svg"), svg);
+    QCOMPARE(saved("b.png"), png);
+  }
+
   void theWheelZoomsAndADoubleClickShowsEverything() {
     PlotCanvas* canvas = panel_->canvas(0);
     panel_->renderNow();

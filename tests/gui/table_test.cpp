@@ -130,6 +130,22 @@ class TableTest : public QObject {
     QCOMPARE(table_->view()->verticalScrollBar()->value(), 0);
   }
 
+  /// By which column, and which way: an arrow in its heading, also where numbers stand to the right.
+  void sortingShowsItsArrow() {
+    QHeaderView* const head = table_->view()->horizontalHeader();
+    for (const int column : {int(ErrorModel::ErrorPct), int(ErrorModel::Model), int(ErrorModel::Status)}) {
+      const QRect section(head->sectionViewportPosition(column), 0, head->sectionSize(column), head->height());
+      const auto clicked = [&] {
+        QTest::mouseClick(head->viewport(), Qt::LeftButton, {}, section.center());
+        return head->viewport()->grab(section).toImage();
+      };
+      const QImage one = clicked(), other = clicked();
+      QVERIFY(head->isSortIndicatorShown());
+      QCOMPARE(head->sortIndicatorSection(), column);
+      QVERIFY2(one != other, "the arrow points the other way");
+    }
+  }
+
   void sortingAgainstAColumnPutsWhatHasNoValueLast() {
     choose("errorModelFilter", QStringLiteral("dual"));
     table_->view()->sortByColumn(ErrorModel::ErrorPct, Qt::AscendingOrder);

@@ -34,7 +34,7 @@ namespace {
 
 using test::isNear;
 
-constexpr Colour kOrange{0.9, 0.6, 0}, kMagenta{0.9, 0.1, 0.9}, kWhite{1, 1, 1};
+constexpr Colour kOrange{0.9, 0.6, 0}, kMagenta{0.9, 0.1, 0.9}, kWhite{1, 1, 1}, kBlueEntry{0.1, 0.3, 0.9};
 constexpr int kHeight = 480;
 constexpr double kSame = 0.12;  // a channel: strokes are drawn without smoothing, texts with it
 
@@ -136,12 +136,32 @@ TEST_F(LegendPicture, OverAPhotographItStandsOnAPanel) {
   EXPECT_LT(pixels(false), font) << "but for the smoothed edges of letters";
 }
 
-TEST_F(LegendPicture, ANarrowPictureKeepsOnlyWhatItHasToShow) {
-  const auto fill = [](Annotations& a) { a.setLegend({{kOrange, "primal"}, {kMagenta, "true light", true}}, {}, {}, "title"); };
-  for (const int width : {kNarrowPicture + 100, kNarrowPicture - 100}) {
-    const Image image = picture(width, true, fill);
-    EXPECT_EQ(count(image, kOrange, 0, kWide) > 0, width > kNarrowPicture) << width;
-    EXPECT_GT(count(image, kMagenta, 0, kSwatch), 30) << width;
+/// Of two entries side by side in the list, how many rows of pixels lie between their strokes; nothing where the first is left out.
+TEST_F(LegendPicture, ALongLegendSharesRowsAndALowPictureKeepsOnlyWhatItHasToShow) {
+  const auto between = [&](int width, int others) -> std::optional<int> {
+    const Image image = picture(width, true, [others](Annotations& a) {
+      std::vector<LegendEntry> entries{{kOrange, "first"}, {kMagenta, "second"}};
+      for (int i = 0; i < others; ++i) entries.push_back({kWhite, "another"});
+      entries.push_back({kBlueEntry, "model", true});
+      a.setLegend(entries, {}, {}, "title");
+    });
+    EXPECT_GT(count(image, kBlueEntry, 0, kSwatch), 30) << width << ", " << others;
+    const auto firstRow = [&](const Colour& colour) {
+      for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < image.width; ++x)
+          if (isNear(image, x, y, colour, kSame)) return y;
+      return -1;
+    };
+    const int first = firstRow(kOrange), second = firstRow(kMagenta);
+    EXPECT_EQ(first < 0, second < 0);
+    return first < 0 ? std::nullopt : std::optional(second - first);
+  };
+  for (const int width : {360, 800}) {  // a narrow picture has the same rows: all of it is seen at 1366 x 768
+    const std::optional<int> own = between(width, 2);
+    ASSERT_TRUE(own) << width;
+    EXPECT_GT(*own, 10) << width;
+    EXPECT_EQ(between(width, 9), std::optional(0)) << width;
+    EXPECT_FALSE(between(width, 40)) << width;
   }
 }
 

@@ -10,10 +10,12 @@
 #include "core/model/palette.h"
 #include "tests/tolerances.h"
 #include "tests/viz/small_inspection.h"
+#include "viz/layers.h"
 
 namespace glint::viz {
 namespace {
 
+using test::heldOutInput;
 using test::smallInspection;
 using test::TemporaryFolder;
 
@@ -221,6 +223,42 @@ TEST(FrameOverlay, TheSelectedModelIsDrawnLast) {
   EXPECT_TRUE(std::any_of(predicted.begin(), predicted.end(), [](const OverlayLine& l) { return l.dash == Dash::Dotted; }));
   const auto both = ofRole(frameOverlay(*inspection, 0), OverlayRole::PredictedEllipse);
   EXPECT_TRUE(std::none_of(both.begin(), both.end(), [](const OverlayLine& l) { return l.dash == Dash::Dotted; }));
+}
+
+/// An ellipse in the colour of a model that was fitted to nothing would say that there is one.
+TEST(FrameOverlay, AFailedFitHasNoCanonicalEllipse) {
+  const TemporaryFolder folder;
+  const auto inspection = smallInspection(folder.path());
+  EXPECT_FALSE(ofRole(frameOverlay(*inspection, 0), OverlayRole::CanonicalEllipse).empty());
+  inspection->models.at("canonical").fits.at(0).fit = Failure{Reason::LightBehindSurface, "a stand-in"};
+  for (FrameComparison& c : inspection->models.at("canonical").frames) c.prediction = Failure{Reason::LightBehindSurface, ""};
+  for (const int frame : {0, 4}) EXPECT_TRUE(ofRole(frameOverlay(*inspection, frame), OverlayRole::CanonicalEllipse).empty());
+}
+
+TEST(Layers, AFailedFitHasNoCanonicalEllipse) {
+  const TemporaryFolder folder;
+  const auto inspection = smallInspection(folder.path());
+  const LayerInput input = heldOutInput(*inspection);
+  EXPECT_FALSE(canonicalEllipsesLayer(input).drawn.empty());
+  inspection->models.at("canonical").fits.at(0).fit = Failure{Reason::LightBehindSurface, "a stand-in"};
+  for (FrameComparison& c : inspection->models.at("canonical").frames) c.prediction = Failure{Reason::LightBehindSurface, ""};
+  EXPECT_TRUE(canonicalEllipsesLayer(input).drawn.empty());
+}
+
+TEST(FrameOverlay, EarlierPredictionsArePaleAndSaySo) {
+  const TemporaryFolder folder;
+  const auto inspection = smallInspection(folder.path());
+  OverlayOptions options;
+  options.predictionsEarlier = true;
+  const auto now = ofRole(frameOverlay(*inspection, 4), OverlayRole::PredictedContour),
+             earlier = ofRole(frameOverlay(*inspection, 4, options), OverlayRole::PredictedContour);
+  ASSERT_EQ(now.size(), earlier.size());
+  ASSERT_FALSE(now.empty());
+  const Colour c = modelColour("canonical");
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    EXPECT_NE(earlier[i].label.find("updating"), std::string::npos) << earlier[i].label;
+    for (int k = 0; k < 3; ++k) EXPECT_NEAR(earlier[i].colour[std::size_t(k)], 0.5 * (c[std::size_t(k)] + 0.5), 1e-12);
+  }
 }
 
 TEST(FrameOverlay, AFrameWithoutEvidenceSaysWhy) {

@@ -155,6 +155,23 @@ TEST(FramePicture, DrawsThePhotographAndTheModelsInTheirColours) {
             0.7 * countOfColour(picture, modelColour("canonical"), 0.1));
 }
 
+/// The contour that everything is compared with is in the legend: on a light page as a white swatch with an edge.
+TEST(FramePicture, TheLegendNamesWhatWasObserved) {
+  const TemporaryFolder folder;
+  const auto inspection = smallInspection(folder.path());
+  const Outcome<Image> photograph = readPhotograph(inspection->scene->frames[0]);
+  auto nothingSeen = std::make_shared<Inspection>(*inspection);
+  nothingSeen->evidence[0].highlights.clear();
+  const auto swatch = [&](const Inspection& of) {  // rows of the lower left corner that begin with a white swatch on dark
+    const Image picture = framePicture(of, 0, photograph, 900, 600);
+    int white = 0;
+    for (int y = 450; y < 600; ++y) white += isNear(picture, 16, y, kObserved, 0.02);
+    return white;
+  };
+  EXPECT_GT(swatch(*inspection), 3);
+  EXPECT_EQ(swatch(*nothingSeen), 0);
+}
+
 TEST(FramePicture, AMissingPhotographIsSaidInItsPlace) {
   const TemporaryFolder folder;
   const auto inspection = smallInspection(folder.path());

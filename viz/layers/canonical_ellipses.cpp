@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "core/inspect/summary.h"
 #include "viz/glyphs.h"
 #include "viz/layers.h"
 
@@ -23,6 +24,7 @@ LayerContent canonicalEllipsesLayer(const LayerInput& in) {
   };
   for (const TrainingView* view : in.views()) {
     if (!view->seen || !view->canonical || !view->canonical->ellipse) continue;
+    if (!in.solo && failedFor(*in.inspection, canonicalModel().id(), view->highlight.light)) continue;  // fitted to nothing
     add(view->camera, view->seen->tangentPlane, *view->canonical->ellipse, view->frame == in.selection.frame, view->frame, "");
   }
   // Of the selected frame alone: what was observed in it, whether it trains or not. A predicted ellipse beside it would look as

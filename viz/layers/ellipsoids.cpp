@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "core/diagnostics/conditioning.h"
+#include "core/draw/frame_overlay.h"
 #include "viz/annotations.h"
 #include "viz/glyphs.h"
 #include "viz/layers.h"
@@ -17,6 +18,15 @@ std::string fitText(const ModelFit& fit, const EllipsoidFit& fitted) {
     text += line("worst training residual", *std::max_element(fit.residualPx.begin(), fit.residualPx.end()), "px") +
             "(residual: " + residualMeaning(fit) + ")\n";
   return text;
+}
+
+std::vector<Segment> dashesOf(const std::vector<Points>& curves) {
+  constexpr std::size_t kOn = 2, kOff = 2;  // of a circle's 96 pieces
+  std::vector<Segment> dashes;
+  for (const Points& curve : curves)
+    for (std::size_t i = 0; i + 1 < curve.size(); ++i)
+      if (i % (kOn + kOff) < kOn) dashes.emplace_back(curve[i], curve[i + 1]);
+  return dashes;
 }
 
 /// A Q* that is no ellipsoid: a wire dashed in the colour of failures, named where it stands and in the notes.
@@ -91,8 +101,8 @@ LayerContent ellipsoidsLayer(const LayerInput& in) {
       info.light = fit->light;
       info.text = fitText(*fit, *fitted) + line("centre", e.centre(), "m") + line("semi-axes", e.semiAxes(), "m");
       content.behindSurface = content.behindSurface || hiddenBySurface(in, e.centre());
-      const Colour colour = modelColour(model);
-      const bool poor = !fit->poor.empty();  // paler
+      const bool poor = !fit->poor.empty();  // pale and dashed, as its contours in the frames
+      const Colour colour = poor ? draw::pale(modelColour(model)) : modelColour(model);
       // A vanishing axis would make the unit sphere's normals undefined: keep it thinner than a line.
       const Eigen::Vector3d axes = e.semiAxes().cwiseMax(1e-5 * std::max(e.semiAxes().maxCoeff(), 1e-300));
       const Eigen::Affine3d worldFromUnit = Eigen::Affine3d(e.worldFromBody()) * Eigen::Scaling(axes);
@@ -102,9 +112,11 @@ LayerContent ellipsoidsLayer(const LayerInput& in) {
                                          circle(c, a.col(2), a.col(0))};
       const bool selected = in.selection.model == model && (in.selection.light.empty() || in.selection.light == fit->light);
       content.add(ellipsoidActor(worldFromUnit, colour, (selected ? 0.4 : 0.15) * (poor ? 0.5 : 1)), info);
-      if (selected) content.add(lineActor(outlines, in.ink(), 5.0), info, 5.0);  // ink about the model's colour
-      const double width = selected ? 3.0 : poor ? 0.75 : 1.5;
-      content.add(lineActor(outlines, colour, width), info, width);
+      const auto outline = [&](const Colour& c, double width) {
+        content.add(poor ? segmentActor(dashesOf(outlines), c, width) : lineActor(outlines, c, width), info, width);
+      };
+      if (selected) outline(in.ink(), 5.0);  // ink about the model's colour
+      outline(colour, selected ? 3.0 : 1.5);
       // A needle far across the scene must not shrink the rest: cameras, surface and lights frame the picture.
       if (2 * e.semiAxes().maxCoeff() > in.scale.sceneSize)
         content.remarks.push_back(model + ": ellipsoid " + lengthText(2 * e.semiAxes().maxCoeff()) +
