@@ -54,14 +54,18 @@ void checkTarget(const fs::path& file) {
 }
 
 void flushAndMove(TemporaryPath& temporary, const fs::path& file, const fs::path& requested) {
+  const OpenFolder& folder = temporary.folder();
   // Opened anew: an encoder may have replaced the file that was made.
-  Descriptor d{::open(temporary.path().c_str(), O_RDONLY | O_CLOEXEC)};
+  Descriptor d{::openat(folder.descriptor(), folder.at(temporary.name()).c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW)};
   if (d.fd < 0) throw systemError(requested, "cannot be written", errno);
   if (::fsync(d.fd) != 0) throw systemError(requested, "cannot be written", errno);
   // A file that already exists keeps its permissions.
   struct stat old {};
-  if (::stat(file.c_str(), &old) == 0) (void)::fchmod(d.fd, old.st_mode & 07777);
-  if (!temporary.moveTo(file)) throw systemError(requested, "cannot be written", errno);
+  if (::fstatat(folder.descriptor(), folder.at(file.filename()).c_str(), &old, AT_SYMLINK_NOFOLLOW) == 0 && S_ISREG(old.st_mode))
+    (void)::fchmod(d.fd, old.st_mode & 07777);
+  requireAsExpected(requested, folder);
+  if (!temporary.moveTo(file.filename())) throw systemError(requested, "cannot be written", errno);
+  forgetExpected(requested);
 }
 
 bool isDevice(const fs::path& file) {
@@ -70,18 +74,21 @@ bool isDevice(const fs::path& file) {
   return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
 }
 
-/// Through a symbolic link the file it points to is replaced, not the link.
-fs::path realTarget(const fs::path& file) {
+/// Through a symbolic link the file it points to is replaced, not the link, unless somebody put it there after the check.
+fs::path expectedTarget(const fs::path& requested) {
   std::error_code error;
-  if (!fs::is_symlink(file, error)) return file;
-  const fs::path target = fs::weakly_canonical(file, error);
-  return error ? file : target;
+  fs::path file = requested;
+  if (fs::is_symlink(requested, error)) file = fs::weakly_canonical(requested, error);
+  if (error) file = requested;
+  if (fs::is_directory(file.has_parent_path() ? file.parent_path() : fs::path("."), error))
+    requireAsExpected(requested, OpenFolder(file.parent_path()));
+  return file;
 }
 
 }  // namespace
 
 void atomicWrite(const fs::path& requested, std::string_view content) {
-  const fs::path file = realTarget(requested);
+  const fs::path file = expectedTarget(requested);
   if (isDevice(file)) {
     Descriptor d{::open(file.c_str(), O_WRONLY | O_CLOEXEC)};
     if (d.fd < 0) throw systemError(requested, "cannot be written", errno);
@@ -96,7 +103,7 @@ void atomicWrite(const fs::path& requested, std::string_view content) {
 }
 
 void atomicWrite(const fs::path& requested, const std::function<void(const fs::path&)>& write) {
-  const fs::path file = realTarget(requested);
+  const fs::path file = expectedTarget(requested);
   checkTarget(file);
   TemporaryPath temporary(file.parent_path(), requested, TemporaryPath::Kind::File);
   write(temporary.path());

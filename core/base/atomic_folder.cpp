@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/base/atomic_folder.h"
 
+#include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <optional>
 #include <system_error>
 #include <vector>
 
@@ -88,38 +90,60 @@ void writeBeside(const fs::path& folder, const fs::path& given, const Write& wri
   TemporaryPath temporary(folder.parent_path(), given, TemporaryPath::Kind::Folder);
   fill(temporary.path(), given, write);
   struct stat old {};
-  if (::stat(folder.c_str(), &old) == 0) (void)::chmod(temporary.path().c_str(), old.st_mode & 07777);
-  if (!temporary.moveTo(folder)) cannotBeMade(given, errno);
+  if (::stat(folder.c_str(), &old) == 0) (void)::fchmod(temporary.descriptor(), old.st_mode & 07777);
+  requireAsExpected(given, temporary.folder());
+  if (!temporary.moveTo(folder.filename())) cannotBeMade(given, errno);
+  forgetExpected(given);
   parents.keep();
 }
 
-/// A link that somebody put into the folder would lead the files out of it.
-void requireNoLink(const fs::path& inside, const fs::path& given) {
+/// Moves one file, or a folder that is not there yet.
+void moveOne(const OpenFolder& from, const OpenFolder& to, const fs::path& name, const fs::path& given) {
+  requireAsExpected(given / name, to);
+  if (::renameat(from.descriptor(), from.at(name).c_str(), to.descriptor(), to.at(name).c_str()) != 0)
+    throw InputError((given / name).string(), "", std::string("cannot be written: ") + std::strerror(errno));
+  forgetExpected(given / name);
+}
+
+/// The folder of this name, to move files into it. Nothing where there is none. A link that somebody put there would lead them out.
+std::optional<OpenFolder> folderIn(const OpenFolder& folder, const fs::path& name, const fs::path& given) {
   std::error_code ignored;  // what cannot be asked about fails later
-  if (fs::is_symlink(inside, ignored))
-    throw InputError(given.string(), "", "is a link; nothing is written through it: remove it or choose another folder");
+  std::optional<OpenFolder> found = folder.below(name);
+  if (!found && fs::is_symlink(folder.path() / name, ignored))
+    throw InputError((given / name).string(), "", "is a link; nothing is written through it: remove it or choose another folder");
+  return found;
 }
 
 /// Moves what `from` holds into `to`: a folder as a whole where there is none yet, else file by file.
-void moveInto(const fs::path& from, const fs::path& to, const fs::path& given, const std::string& last) {
+void moveInto(const OpenFolder& from, const OpenFolder& to, const fs::path& given, const std::string& last) {
   std::vector<fs::path> names;
-  for (const fs::directory_entry& entry : fs::directory_iterator(from)) names.push_back(entry.path().filename());
+  for (const fs::directory_entry& entry : fs::directory_iterator(from.path())) names.push_back(entry.path().filename());
   std::sort(names.begin(), names.end());
   std::stable_partition(names.begin(), names.end(), [&](const fs::path& name) { return name != last; });
   for (const fs::path& name : names) {
-    std::error_code ignored;  // what cannot be asked about fails below
-    if (fs::is_directory(from / name, ignored)) requireNoLink(to / name, given / name);
-    if (fs::is_directory(from / name, ignored) && fs::is_directory(to / name, ignored))
-      moveInto(from / name, to / name, given / name, "");
-    else if (::rename((from / name).c_str(), (to / name).c_str()) != 0)
-      throw InputError((given / name).string(), "", std::string("cannot be written: ") + std::strerror(errno));
+    const std::optional<OpenFolder> own = from.below(name), there = own ? folderIn(to, name, given) : std::nullopt;
+    if (there)
+      moveInto(*own, *there, given / name, "");
+    else
+      moveOne(from, to, name, given);
   }
+}
+
+/// Moves the file by which the answer is found, where there is none yet: it comes first.
+void moveNewMain(const OpenFolder& from, const OpenFolder& to, const fs::path& main, const fs::path& given) {
+  std::error_code error;  // what cannot be asked about fails later
+  const fs::path above = main.parent_path();
+  const std::optional<OpenFolder> own = above.empty() ? from : from.below(above),
+                                  there = above.empty() ? to : folderIn(to, above, given);
+  if (own && there && !fs::exists(there->path() / main.filename(), error) && fs::exists(own->path() / main.filename(), error))
+    moveOne(*own, *there, main.filename(), given / above);
 }
 
 }  // namespace
 
 void atomicFolder(const fs::path& given, const Write& write) {
   const fs::path folder = absoluteFolder(given);
+  requireAsExpected(given, OpenFolder(folder.parent_path()));
   std::error_code error;
   const bool exists = fs::exists(folder, error);
   if (exists && !fs::is_directory(folder, error)) throw InputError(given.string(), "", "is a file, not a folder");
@@ -130,18 +154,20 @@ void atomicFolder(const fs::path& given, const Write& write) {
 
 void atomicFiles(const fs::path& given, const std::string& main, const Write& write) {
   const fs::path folder = absoluteFolder(given);
+  requireAsExpected(given, OpenFolder(folder.parent_path()));
   std::error_code error;
   const bool exists = fs::exists(folder, error);
   if (exists && !fs::is_directory(folder, error)) throw InputError(given.string(), "", "is a file, not a folder");
   if (!exists || canBeReplaced(folder)) return writeBeside(folder, given, write);
-  TemporaryPath temporary(folder, given / main, TemporaryPath::Kind::Folder);
+  const OpenFolder to(folder);
+  TemporaryPath temporary(to, given / main, TemporaryPath::Kind::Folder);
   fill(temporary.path(), given, write);
-  const fs::path whole = temporary.path() / main;
-  if (const fs::path above = fs::path(main).parent_path(); !above.empty()) requireNoLink(folder / above, given / above);
-  if (!main.empty() && !fs::exists(folder / main, error) && fs::exists(whole, error) &&
-      ::rename(whole.c_str(), (folder / main).c_str()) != 0)
-    throw InputError((given / main).string(), "", std::string("cannot be written: ") + std::strerror(errno));
-  moveInto(temporary.path(), folder, given, main);
+  requireAsExpected(given, OpenFolder(folder.parent_path()));
+  const std::optional<OpenFolder> from = to.below(temporary.name());
+  if (!from) throw InputError(given.string(), "", std::string("cannot be written: ") + std::strerror(errno));
+  if (!main.empty()) moveNewMain(*from, to, main, given);
+  moveInto(*from, to, given, main);
+  forgetExpected(given);
 }
 
 }  // namespace glint

@@ -16,6 +16,7 @@
 #include <string>
 #include <string_view>
 #include <thread>
+#include <utility>
 
 #include "core/base/atomic_file.h"
 #include "core/base/outcome.h"
@@ -115,11 +116,13 @@ void removeAbandonedTemporaries(const fs::path& folder) {
   for (const fs::path& path : found) removeIfAbandoned(path);
 }
 
-TemporaryPath::TemporaryPath(const fs::path& folder, const fs::path& target, Kind kind) {
-  cleanOnce(folder);
+TemporaryPath::TemporaryPath(OpenFolder folder, const fs::path& target, Kind kind) : folder_(std::move(folder)) {
+  cleanOnce(folder_.path());
   constexpr int kTries = 100;  // another machine's process of this number may have taken a name
   for (int i = 0; i < kTries && descriptor_ < 0; ++i) {
-    path_ = folder / nextName(target);
+    path_ = folder_.path() / nextName(target);
+    const int at = folder_.descriptor();
+    const fs::path here = folder_.at(name());
     Registry& all = registry();
     {
       // Before it is there: the lock is not held while the system makes it, which may take any time.
@@ -128,9 +131,9 @@ TemporaryPath::TemporaryPath(const fs::path& folder, const fs::path& target, Kin
       all.unfinished.insert(path_);
     }
     if (kind == Kind::File)
-      descriptor_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    else if (::mkdir(path_.c_str(), 0777) == 0)
-      descriptor_ = ::open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+      descriptor_ = ::openat(at, here.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    else if (::mkdirat(at, here.c_str(), 0777) == 0)
+      descriptor_ = ::openat(at, here.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
     if (descriptor_ >= 0 && all.ending) {
       std::error_code ignored;  // the next program removes it
       fs::remove_all(path_, ignored);
@@ -160,7 +163,8 @@ TemporaryPath::TemporaryPath(const fs::path& folder, const fs::path& target, Kin
 }
 
 bool TemporaryPath::moveTo(const fs::path& target) {
-  moved_ = ::rename(path_.c_str(), target.c_str()) == 0;
+  const int at = folder_.descriptor();
+  moved_ = ::renameat(at, folder_.at(name()).c_str(), at, folder_.at(target).c_str()) == 0;
   return moved_;
 }
 

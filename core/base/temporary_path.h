@@ -3,6 +3,8 @@
 
 #include <filesystem>
 
+#include "core/base/output_place.h"
+
 namespace glint {
 
 /// A hidden file or folder for a write that is under way: ".NAME.glint-PROCESS-NUMBER.tmp.EXTENSION". It is locked (flock) while its
@@ -15,17 +17,22 @@ class TemporaryPath {
   /// @param folder  where it lies; on the file system of the target, because a rename works on one only
   /// @param target  gives name and extension (encoders look at the extension), and is named in errors
   /// @throw InputError (file = the target); Stopped while the program ends (`removeUnfinishedWrites`)
-  TemporaryPath(const std::filesystem::path& folder, const std::filesystem::path& target, Kind kind);
+  TemporaryPath(OpenFolder folder, const std::filesystem::path& target, Kind kind);
+  TemporaryPath(const std::filesystem::path& folder, const std::filesystem::path& target, Kind kind)
+      : TemporaryPath(OpenFolder(folder), target, kind) {}
   ~TemporaryPath();
   TemporaryPath(const TemporaryPath&) = delete;
   TemporaryPath& operator=(const TemporaryPath&) = delete;
 
   const std::filesystem::path& path() const { return path_; }
-  int descriptor() const { return descriptor_; }  ///< of a file: open for writing
-  /// One rename, over what is there. False with errno when it is refused.
-  bool moveTo(const std::filesystem::path& target);
+  int descriptor() const { return descriptor_; }        ///< of a file: open for writing
+  const OpenFolder& folder() const { return folder_; }  ///< in which it lies
+  std::filesystem::path name() const { return path_.filename(); }
+  /// One rename in its folder, over what is there; a link is replaced, not followed. False with errno when it is refused.
+  bool moveTo(const std::filesystem::path& name);
 
  private:
+  OpenFolder folder_;
   std::filesystem::path path_;
   int descriptor_ = -1;
   bool moved_ = false;

@@ -310,8 +310,7 @@ class BopReading {
   /// Of the folders `models*` beside the split the one called `models`, else the first in order of name.
   void findMesh() {
     const std::string name = "obj_" + bopNumber(std::size_t(object_)) + ".ply";
-    std::vector<fs::path> folders = foldersOfCapture(capture_.file);
-    std::sort(folders.begin(), folders.end());  // "models" is the shortest, so it comes first
+    const std::vector<fs::path> folders = capture::modelFoldersOfBop(capture_.file);
     std::vector<fs::path> found;
     std::error_code ignored;  // what cannot be asked about is not there
     for (const fs::path& folder : folders)

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/capture/capture.h"
 
+#include <algorithm>
+
 #include "core/capture/added_reader.h"
+#include "core/capture/parts.h"
 
 namespace glint {
 
@@ -58,6 +61,17 @@ const CaptureReader* captureReaderNamed(const std::string& name) {
   return nullptr;
 }
 
+std::vector<std::filesystem::path> capture::modelFoldersOfBop(const std::filesystem::path& file) {
+  namespace fs = std::filesystem;
+  std::vector<fs::path> folders;
+  const fs::path own = fs::absolute(file).lexically_normal().parent_path();
+  std::error_code error;  // what cannot be listed has no models
+  for (fs::directory_iterator it(own.parent_path().parent_path(), error), end; !error && it != end; it.increment(error))
+    if (it->path().filename().string().rfind("models", 0) == 0 && it->is_directory(error)) folders.push_back(it->path());
+  std::sort(folders.begin(), folders.end());  // "models" is the shortest, so it comes first
+  return folders;
+}
+
 std::vector<std::filesystem::path> foldersOfCapture(const std::filesystem::path& file) {
   namespace fs = std::filesystem;
   const fs::path own = fs::absolute(file).lexically_normal().parent_path();
@@ -65,11 +79,9 @@ std::vector<std::filesystem::path> foldersOfCapture(const std::filesystem::path&
   const auto isNumber = [](const std::string& s) { return !s.empty() && s.find_first_not_of("0123456789") == std::string::npos; };
   if (name == "sparse" || name == "bundle") return {own.parent_path()};
   if (name2 == "sparse" && isNumber(name)) return {own.parent_path().parent_path()};
-  std::vector<fs::path> folders;
-  if (file.filename() != "scene_camera.json") return folders;
-  std::error_code error;  // what cannot be listed has no models
-  for (fs::directory_iterator it(own.parent_path().parent_path(), error), end; !error && it != end; it.increment(error))
-    if (it->path().filename().string().rfind("models", 0) == 0 && it->is_directory(error)) folders.push_back(it->path());
+  if (file.filename() != "scene_camera.json") return {};
+  std::vector<fs::path> folders = capture::modelFoldersOfBop(file);
+  std::erase_if(folders, [&](const fs::path& folder) { return !liesIn({own.parent_path().parent_path()}, folder); });
   return folders;
 }
 

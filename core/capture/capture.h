@@ -108,7 +108,7 @@ class CaptureReader {
 /// All of them, in the order in which they are asked.
 const std::vector<std::unique_ptr<const CaptureReader>>& captureReaders();
 /// Folders besides its own in which a capture may name files, by the path of the file that is recognised: the project's root of a
-/// COLMAP model in `sparse/0`, that of `bundle/bundle.out`, the folders of models of a BOP data set.
+/// COLMAP model in `sparse/0`, that of `bundle/bundle.out`, the folders of models of a BOP data set (no link that leaves it).
 std::vector<std::filesystem::path> foldersOfCapture(const std::filesystem::path& file);
 /// Null where there is none of this name.
 const CaptureReader* captureReaderNamed(const std::string& name);

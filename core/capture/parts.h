@@ -34,6 +34,9 @@ Camera cameraOf(int width, int height, double fx, double fy, double cx, double c
 /// say the size need it ("the file does not say the size of its images; name their folder by --photographs").
 std::array<int, 2> sizeOfImage(const std::filesystem::path& image, const std::string& file, const std::string& place);
 
+/// The folders `models*` of the data set whose scene_camera.json this is, in the order of their names. They may be links.
+std::vector<std::filesystem::path> modelFoldersOfBop(const std::filesystem::path& file);
+
 /// Sorts views by name (text order). One that is there twice, with one camera, counts once, with a warning; InputError for two of
 /// one name that differ.
 void orderByName(Capture& capture);

@@ -8,6 +8,7 @@
 #include "core/base/bounded_json.h"
 #include "core/base/found_file.h"
 #include "core/base/number_text.h"
+#include "core/base/permitted.h"
 #include "core/scene/mesh_file.h"
 #include "core/scene/relinked.h"
 #include "core/scene/scene_json.h"
@@ -112,6 +113,58 @@ fs::path meshWhereItIs(const fs::path& place, const std::string& named, const Re
   return found;
 }
 
+/// Every file that was found for the capture lies where a capture may name files: in its project's folder or in one that a person named.
+/// A name that looks harmless may be a link that leads out, as may one of the folders that programs look into (`images`).
+class InsideCapture {
+ public:
+  InsideCapture(const Capture& capture, const ReadOptions& options)
+      : file_(capture.file), anywhere_(options.allowOutsidePaths), photographs_(options.photographs) {
+    allowed_ = foldersOfCapture(capture.file);
+    allowed_.push_back(capture.folder);
+    allowed_.push_back(realPath(capture.file).parent_path());  // the model itself is what was named or recognised
+    allowed_.insert(allowed_.end(), options.folders.begin(), options.folders.end());
+  }
+
+  /// @throw OutsidePath (place) for a file that lies elsewhere; says nothing about what is there
+  void require(const fs::path& file, const std::string& place, const char* option) {
+    if (anywhere_ || file.empty() || file == file_ || isPhotographNamed(file)) return;
+    std::error_code ignored;  // what cannot be asked about is no link
+    // Of thousands of photographs in one folder only the folder is looked at, and those that are links.
+    const bool known = !fs::is_symlink(file, ignored) && !folders_.insert(file.parent_path()).second;
+    if (known || liesIn(allowed_, file)) return;
+    throw OutsidePath(file_.string(), place,
+                      "'" + file.string() + "' is a link that leaves the folder of the capture (" + option +
+                          " names it, --allow-outside accepts it)",
+                      realPath(file).parent_path());
+  }
+
+ private:
+  /// In a folder that a person named for photographs links may lead anywhere: people collect photographs so.
+  bool isPhotographNamed(const fs::path& file) const {
+    return std::any_of(photographs_.begin(), photographs_.end(), [&](const fs::path& folder) {
+      const fs::path below = file.lexically_relative(fs::absolute(folder).lexically_normal());
+      return !below.empty() && *below.begin() != "..";
+    });
+  }
+
+  fs::path file_;
+  bool anywhere_;
+  std::vector<fs::path> photographs_, allowed_;
+  std::set<fs::path> folders_;  // that were looked at
+};
+
+void requireInside(const Capture& capture, const fs::path& mesh, const ReadOptions& options) {
+  InsideCapture inside(capture, options);
+  for (const fs::path& source : capture.sources)
+    if (source != options.choices.poses) inside.require(source, source.filename().string(), "the path of the real capture");
+  for (const CaptureView& view : capture.views) {
+    inside.require(view.image, view.name, "--photographs DIR");
+    inside.require(view.depth, view.name, "--files depth=DIR");
+    inside.require(view.mask, view.name, "--files masks=DIR");
+  }
+  if (options.choices.surface != InputChoices::Surface::File) inside.require(mesh, "surface", "--surface FILE");
+}
+
 /// The surface of the capture's own sparse points (`--surface points`). In units of its poses.
 SurfaceSource sparseSurface(const Capture& capture, const ReadOptions& options, double metresPerUnit) {
   const std::vector<CaptureTrack> tracks = [&]() -> std::vector<CaptureTrack> {
@@ -173,6 +226,7 @@ Scene sceneOfCapture(const Capture& capture, const ReadOptions& options) {
     scene.facts.push_back("the unit of length is not known: it is taken as metres (--units says another)");
 
   const fs::path mesh = meshOf(capture, choices);
+  requireInside(capture, mesh, options);
   const bool onPoints = choices.surface == InputChoices::Surface::Points;
   if (onPoints) {
     scene.surfaces[kSurfaceId] = sparseSurface(capture, options, metres);

@@ -9,6 +9,7 @@
 
 #include "core/base/document_kind.h"
 #include "core/base/number_text.h"
+#include "core/base/output_place.h"
 #include "core/base/safe_text.h"
 #include "core/scene/scene_files.h"
 
@@ -122,21 +123,28 @@ void Outputs::file(const std::string& file, const std::string& flag, const Outpu
   if (!kind.mayBeNamed(path))
     throw InputError(file, flag,
                      "this command writes " + kind.words() + ": the file's name must end in " + kind.endings().front());
+  expectOutput(path, [path, kind] {
+    std::error_code gone;
+    return !fs::exists(path, gone) || (fs::is_regular_file(path, gone) && kind.holds(path));
+  });
 }
 
 void Outputs::inFolder(const std::string& folder, const std::string& flag, const std::vector<std::string>& names,
                        const std::string& marker, const std::string& documentKey) {
   if (folder.empty()) return;
-  const bool ours = documentKind(fs::path(folder) / marker) == documentKey;
-  for (const std::string& name : names) {
-    const fs::path path = fs::path(folder) / name;
-    std::error_code ignored;
-    if (!fs::exists(path, ignored)) continue;
-    requireNoInput(path, flag);
-    if (!ours)
-      throw InputError(path.string(), flag,
-                       "already exists and was not written by this command; nothing is overwritten: choose another folder");
-  }
+  const fs::path place = fs::absolute(folder);
+  const auto isThere = [place](const std::string& name) {
+    std::error_code ignored;  // what cannot be asked about is not there
+    return fs::exists(place / name, ignored);
+  };
+  const auto isOurs = [place, marker, documentKey] { return documentKind(place / marker) == documentKey; };
+  for (const std::string& name : names)
+    if (isThere(name)) requireNoInput(fs::path(folder) / name, flag);
+  const auto first = isOurs() ? names.end() : std::find_if(names.begin(), names.end(), isThere);
+  if (first != names.end())
+    throw InputError((fs::path(folder) / *first).string(), flag,
+                     "already exists and was not written by this command; nothing is overwritten: choose another folder");
+  expectOutput(folder, [names, isThere, isOurs] { return isOurs() || std::none_of(names.begin(), names.end(), isThere); });
 }
 
 std::string pictureName(const Frame& frame, const std::string& part) { return fileNameOf(frame.id) + part + ".png"; }

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/synth/output_folder.h"
 
+#include <algorithm>
+
 #include "core/base/atomic_file.h"
 #include "core/base/json_text.h"
 #include "core/base/outcome.h"
+#include "core/base/output_place.h"
 #include "core/scene/scene_json.h"
 
 namespace glint {
@@ -20,18 +23,23 @@ bool madeBySynth(const fs::path& sceneFile) {
   }
 }
 
+/// The first of these files that is there and not of `synth`; "" = none.
+fs::path takenIn(const fs::path& folder, const std::vector<fs::path>& names) {
+  if (madeBySynth(folder / "scene.json")) return {};
+  std::error_code ignored;  // what cannot be asked about is not there
+  const auto taken =
+      std::find_if(names.begin(), names.end(), [&](const fs::path& name) { return fs::exists(folder / name, ignored); });
+  return taken == names.end() ? fs::path() : *taken;
+}
+
 }  // namespace
 
 void requireSynthFolder(const fs::path& folder, const std::vector<fs::path>& names) {
-  const bool ours = madeBySynth(folder / "scene.json");
-  if (ours) return;
-  for (const fs::path& name : names) {
-    std::error_code ignored;
-    if (fs::exists(folder / name, ignored))
-      throw InputError(
-          (folder / name).string(), "",
-          "already exists, and no scene.json there says that synth wrote it; nothing is overwritten: choose another folder");
-  }
+  if (const fs::path taken = takenIn(folder, names); !taken.empty())
+    throw InputError(
+        (folder / taken).string(), "",
+        "already exists, and no scene.json there says that synth wrote it; nothing is overwritten: choose another folder");
+  expectOutput(folder, [folder = fs::absolute(folder), names] { return takenIn(folder, names).empty(); });
 }
 
 }  // namespace glint

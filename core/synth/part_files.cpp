@@ -7,6 +7,7 @@
 #include "core/base/atomic_folder.h"
 #include "core/base/json_dom.h"
 #include "core/base/outcome.h"
+#include "core/base/output_place.h"
 #include "core/base/part_file.h"
 #include "core/base/permitted.h"
 #include "core/base/sha256.h"
@@ -73,6 +74,7 @@ SynthPartFiles::SynthPartFiles(fs::path folder, const Shard& shard, std::vector<
   std::vector<fs::path> checked = names_;
   checked.push_back(fs::path(kParts) / file_.filename());
   if (!hasPart(folder_)) requireSynthFolder(folder_, checked);
+  expectOutput(folder_, [] { return true; });  // other shards write there too meanwhile; a link is none of theirs
 }
 
 void SynthPartFiles::write(const std::function<std::string(const fs::path&)>& make) const {

@@ -8,13 +8,15 @@ here=$(cd "$(dirname "$0")" && pwd)
 study=$(realpath "$1")
 shift
 left=$(python3 "$here/study.py" "$study" left)
-logs=$(dirname "$study")/logs
-mkdir -p "$logs"
+mkdir -p "$(dirname "$study")/logs"
+logs=$(dirname "${study//%/%%}")/logs  # Slurm takes % in names of files as a pattern
+# The jobs get the names by the environment: in --export a comma would end them, in a command line a quote.
+export STUDY=$study STUDY_PY=$here/study.py
 after=()
 if [ -n "$left" ]; then
-  array=$(sbatch --parsable --array="$left" --output="$logs/%a.txt" --export=ALL,STUDY="$study",STUDY_PY="$here/study.py" "$@" "$here/study.sbatch")
+  array=$(sbatch --parsable --array="$left" --output="$logs/%a.txt" --export=ALL "$@" "$here/study.sbatch")
   echo "array $array: shards $left"
   after=(--dependency="afterok:${array%%;*}")
 fi
-merge=$(sbatch --parsable --kill-on-invalid-dep=yes --job-name=glint-merge --output="$logs/merge.txt" "${after[@]}" --wrap="python3 '$here/study.py' '$study' merge")
+merge=$(sbatch --parsable --export=ALL --kill-on-invalid-dep=yes --job-name=glint-merge --output="$logs/merge.txt" "${after[@]}" --wrap='exec python3 "$STUDY_PY" "$STUDY" merge')
 echo "merge ${merge%%;*}"

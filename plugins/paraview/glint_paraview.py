@@ -728,8 +728,10 @@ _SAID = ('<StringVectorProperty name="Messages" command="GetMessages" informatio
          'in words: an error first, then warnings.</Documentation></StringVectorProperty>')
 _AGAIN = ('<Property name="ReadAgain" command="ReadAgain" panel_widget="command_button"><Documentation>Forget what was '
           'read and computed: photographs or meshes changed on the disk. A changed session or scene file is noticed without it.</Documentation></Property>')
-_OUTSIDE = _switch("AllowFilesOutside", False, "Read files that a scene or session names outside of its own folder. "
-                   "Off: such a path is refused.", advanced=True)
+# A button and no switch: a state file keeps and restores values, and whoever made it must not grant rights on this machine.
+_OUTSIDE = ('<Property name="AllowFilesOutside" command="AllowFilesOutside" panel_widget="command_button" panel_visibility="advanced">'
+            '<Documentation>From now on read files that this scene or session names outside of its own folder, until another file is chosen or '
+            'ParaView ends. Without it such a path is refused. State files do not keep it.</Documentation></Property>')
 _LEVEL = _number("ContourLevel", 0.0, 0, 1, "Fraction of a highlight's peak above the background at which contours lie, more than 0 and "
                  "less than 1. 0: the session's, else 0.5.")
 _DIRECTIONS = _whole("Directions", 0, 0, 3600, "Directions from the brightest point in which a contour is predicted. 0: the session's.")
@@ -749,9 +751,19 @@ class _Algorithm(VTKPythonAlgorithmBase):
         self.given = dict(self.defaults)
         self.messages = []
         self.spoken = set()
+        self.trusted = None  # the input whose files may lie anywhere
 
     def GetMessages(self):
         return ["\n".join(self.messages)]
+
+    def AllowFilesOutside(self):
+        self.trusted = self.input_file()
+        self.spoken.clear()
+        self.Modified()
+
+    def opened(self):
+        path = self.input_file()
+        return _opened(path, bool(path) and path == self.trusted)
 
     def ReadAgain(self):
         _inputs.clear()
@@ -896,8 +908,8 @@ class GlintReader(_Algorithm):
         info.Set(vtkDataObject.DATA_TYPE_NAME(), "vtkTable" if port == 1 else "vtkMultiBlockDataSet")
         return 1
 
-    def opened(self):
-        return _opened(self.given["FileName"], self.given["AllowFilesOutside"])
+    def input_file(self):
+        return self.given["FileName"]
 
     def RequestData(self, request, inInfo, outInfo):
         self.messages = []
@@ -1017,8 +1029,8 @@ class GlintPredictHighlights(_Algorithm):
         info.Set(vtkAlgorithm.INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData")
         return 1
 
-    def opened(self):
-        return _opened(self.given["Session"], self.given["AllowFilesOutside"])
+    def input_file(self):
+        return self.given["Session"]
 
     def RequestData(self, request, inInfo, outInfo):
         self.messages = []

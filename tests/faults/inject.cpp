@@ -280,6 +280,11 @@ int mkdir(const char* path, mode_t mode) {
   REAL(mkdir);
   return next(path, mode);
 }
+int mkdirat(int folder, const char* path, mode_t mode) {
+  if (fails(Call::Folder)) return -1;
+  REAL(mkdirat);
+  return next(folder, path, mode);
+}
 int unlink(const char* path) {
   if (fails(Call::Unlink)) return -1;
   REAL(unlink);

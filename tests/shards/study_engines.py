@@ -3,7 +3,7 @@
 """A small study under each engine of plugins/cluster: one scene, two models, two shards each. One shard fails at its first run and is repeated;
 under Slurm the node's daemon is killed and started again meanwhile. The results are those of runs without shards, to the last bit, times aside.
 
-    tests/shards/study_engines.py GLINT PROJECT loop|snakemake|slurm
+    tests/shards/study_engines.py GLINT PROJECT loop|submit|snakemake|slurm
 
 Skipped (77), by name, where the engine is not installed, and Slurm without root. Slurm's daemons run with a key, sockets and ports of this test and
 without systemd; all are ended by their process ids."""
@@ -20,7 +20,7 @@ import time
 
 import common
 
-NEEDED = {"loop": [], "snakemake": ["snakemake"],
+NEEDED = {"loop": [], "submit": [], "snakemake": ["snakemake"],
           "slurm": ["munged", "slurmctld", "slurmd", "sbatch", "squeue", "sinfo", "scontrol", "scancel"]}
 PATHS = os.environ["PATH"] + ":/usr/sbin:/sbin"
 MODELS = ["limit-angle", "primal"]
@@ -226,6 +226,58 @@ class Cluster:
                 print("---- %s\n%s" % (name, (self.folder / name).read_text(errors="replace")[-3000:]))
 
 
+# Runs what it is given at once, with the environment of its caller, as a cluster of one node would: an array's tasks one after the other.
+SBATCH = r"""#!/usr/bin/env python3
+import os, re, subprocess, sys
+script, wrap, tasks, output, environment = None, None, [None], "", dict(os.environ)
+for word in sys.argv[1:]:
+    name, _, value = word.partition("=")
+    if name == "--wrap":
+        wrap = value
+    elif name == "--array":
+        tasks = [n for part in value.split(",") for a, b in [(part.split("-") * 2)[:2]] for n in range(int(a), int(b) + 1)]
+    elif name == "--output":
+        output = value
+    elif name == "--export":  # Slurm's list: ALL, and NAME=VALUE between commas
+        environment.update(part.split("=", 1) for part in value.split(",") if "=" in part)
+    elif not word.startswith("--"):
+        script = word
+for n in tasks:
+    file = re.sub("%%|%a", lambda m: "%" if m.group() == "%%" else str(n), output)
+    again = os.path.join(os.path.dirname(sys.argv[0]), "again")
+    for repeats in "012":
+        with open(file, "a") as log:
+            given = {**environment, "SLURM_ARRAY_TASK_ID": str(n), "SLURM_JOB_ID": "1", "SLURM_RESTART_COUNT": repeats}
+            subprocess.run(["sh", "-c", wrap] if wrap else ["bash", script], env=given, stdout=log, stderr=log)
+        if not os.path.exists(again):
+            break
+        os.remove(again)
+print("1")
+"""
+SCONTROL = """#!/bin/sh
+touch "$(dirname "$0")/again" && kill "$PPID"
+"""
+
+
+def submit(glint, project, folder):
+    """submit.sh with a stand-in for Slurm: names with the characters that its options and shells take for their own."""
+    binaries = folder / "bin"
+    binaries.mkdir()
+    for name, text in (("sbatch", SBATCH), ("scontrol", SCONTROL)):
+        (binaries / name).write_text(text)
+        (binaries / name).chmod(0o755)
+    odd = folder / "it's 50%a, a study"
+    odd.mkdir()
+    shutil.copytree(project / "plugins" / "cluster", odd / "cluster")
+    study = make_study(glint, project, odd, 2)
+    done = subprocess.run([str(odd / "cluster" / "submit.sh"), str(study)], capture_output=True, text=True, timeout=300,
+                          env={**os.environ, "PATH": "%s:%s" % (binaries, os.environ["PATH"])})
+    common.check(done.returncode == 0, "submit.sh: %s%s" % (done.stdout, done.stderr))
+    logs = {f.name: f.read_text() for f in (odd / "logs").iterdir()} if (odd / "logs").is_dir() else {}
+    common.check("plane, limit-angle: " in logs.get("merge.txt", ""), "the merge says what it merged: %s" % logs)
+    check_results(glint, odd)
+
+
 def slurm(glint, project, folder):
     if os.geteuid() != 0:
         print("skipped: Slurm's daemons need root")
@@ -274,7 +326,7 @@ def main():
     # Short, because a socket's path has at most 107 bytes.
     folder = pathlib.Path(tempfile.mkdtemp(prefix="glint-study-"))
     try:
-        code = {"loop": loop, "snakemake": snakemake, "slurm": slurm}[engine](glint, project, folder)
+        code = {"loop": loop, "submit": submit, "snakemake": snakemake, "slurm": slurm}[engine](glint, project, folder)
         return code if code == 77 else common.finish()
     finally:
         shutil.rmtree(folder, ignore_errors=True)

@@ -14,9 +14,9 @@ bl_info = {
 
 import bpy
 
-from . import export_scene, import_results, import_scene, panel, preferences, properties, run
+from . import export_scene, images, import_results, import_scene, panel, preferences, properties, run
 
-MODULES = (properties, preferences, export_scene, import_scene, import_results, run, panel)
+MODULES = (properties, preferences, images, export_scene, import_scene, import_results, run, panel)
 
 
 def register():

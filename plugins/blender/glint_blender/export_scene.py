@@ -20,11 +20,12 @@ IMAGES = [("NONE", "None", "Cameras, surfaces and lamps alone"),
 
 
 class Request:
-    """What to export. objects: the glossy surface. frames: numbers of Blender's frames. world: a views.World."""
+    """What to export. objects: the glossy surface. frames: numbers of Blender's frames. world: a views.World. named: the user has just said which
+    folder, no .blend file did."""
 
-    def __init__(self, objects, frames, world, pictures="NONE", folder="", lights=True, exact=True):
+    def __init__(self, objects, frames, world, pictures="NONE", folder="", lights=True, exact=True, named=False):
         self.objects, self.frames, self.world = objects, list(frames), world
-        self.pictures, self.folder, self.lights, self.exact = pictures, folder, lights, exact
+        self.pictures, self.folder, self.lights, self.exact, self.named = pictures, folder, lights, exact, named
 
 
 def surface_objects(context, which, collection=None):
@@ -46,9 +47,23 @@ def pictures_of(scene, request):
             raise InputError(request.folder, "", f"holds {len(found)} pictures for {len(request.frames)} frames; there must be one for each")
         return dict(zip(request.frames, found))
     if request.pictures == "RENDER":
-        paths = {f: images.rendered(scene, f) for f in request.frames}
-        return {f: p for f, p in paths.items() if os.path.isfile(p)}
+        return {f: images.rendered(scene, f) for f in request.frames}
     return {}
+
+
+def picture_of(scene, request, pictures, frame):
+    """(path of the picture to copy or None, why there is none). A .blend file may come from others, and the export may be passed on: what it
+    names is copied only where it is a picture and lies in the folder of the .blend file, or where the user says that it may lie anywhere."""
+    path = images.behind(scene.camera, frame) if request.pictures == "BACKGROUND" else pictures.get(frame)
+    if not path:
+        return None, "no picture"
+    if not (request.named and request.pictures == "FOLDER") and not images.may_copy(path):
+        return None, f"{path} lies outside of the folder of the .blend file and is left out; Allow Pictures from Other Folders takes it"
+    if not os.path.isfile(path):
+        return None, f"no picture at {path}"
+    if not images.is_picture(path):
+        return None, f"{path} is no picture and is left out"
+    return path, ""
 
 
 class Collected:
@@ -71,11 +86,11 @@ def collect_frame(scene, request, pictures, folder, found, warnings):
     while frame_id in taken:
         frame_id += "'"
     entry = {"id": frame_id, "camera": view, "camera_from_world": pose}
-    picture = images.behind(scene.camera, frame) if request.pictures == "BACKGROUND" else pictures.get(frame)
-    if picture and os.path.isfile(picture):
+    picture, missing = picture_of(scene, request, pictures, frame)
+    if picture:
         entry[images.key_for(picture)] = images.put_into(folder, picture, f"{folder.stem}_frames/{len(found.frames):04d}")
     elif request.pictures != "NONE":
-        warnings.append(f"frame {frame}: no picture" + (f" at {picture}" if picture else ""))
+        warnings.append(f"frame {frame}: {missing}")
     number, data = found.distinct.number_of(request.objects, depsgraph, request.world)
     name = f"surface_{number:04d}"
     if data is not None:
@@ -155,8 +170,9 @@ def write_scene(context, path, request):
                 collect_frame(scene, request, pictures, folder, found, warnings)
                 manager.progress_update(i + 1)
             if request.pictures == "RENDER":
-                colour = images.colour_warning(scene, list(pictures.values()))
-                if colour and pictures:
+                copied = [row["picture"] for row in found.rows if row["picture"]]
+                colour = images.colour_warning(scene, copied)
+                if colour and copied:
                     warnings.append(colour)
             document = document_of(scene, found, request, warnings)
             folder.finish(document)
@@ -209,7 +225,7 @@ class GLINT_OT_export_scene(bpy.types.Operator, ExportHelper):
         try:
             world = world_from(scene, self.axis_forward, self.axis_up, self.scale)
             request = Request(surface_objects(context, self.surfaces, scene.glint.surface), frames, world, self.pictures, self.folder, self.lights,
-                              self.exact)
+                              self.exact, named=True)
             document, rows, warnings = write_scene(context, self.filepath, request)
         except InputError as e:
             self.report({"ERROR"}, str(e))
@@ -230,6 +246,8 @@ class GLINT_OT_export_scene(bpy.types.Operator, ExportHelper):
         layout.prop(self, "pictures")
         if self.pictures == "FOLDER":
             layout.prop(self, "folder")
+        if self.pictures != "NONE" and images.GLINT_OT_trust_pictures.poll(context):
+            layout.operator(images.GLINT_OT_trust_pictures.bl_idname)
         column = layout.column(align=True)
         column.prop(self, "whole_range")
         if not self.whole_range:

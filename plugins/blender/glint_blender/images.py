@@ -9,6 +9,51 @@ LINEAR = {".exr", ".tif", ".tiff", ".hdr"}  # may be float; .exr and .hdr always
 PICTURES = {".png", ".jpg", ".jpeg", ".tif", ".tiff", ".exr", ".bmp", ".webp", ".hdr"}
 
 
+# How files of these formats begin: a name says nothing about what is copied.
+BEGINNINGS = (b"\x89PNG\r\n\x1a\n", b"\xff\xd8\xff", b"II*\0", b"MM\0*", b"II+\0", b"MM\0+", b"v/1\x01", b"BM", b"#?RADIANCE", b"#?RGBE")
+
+
+def is_picture(path):
+    """Whether the file is a picture by its name and by its first bytes."""
+    if os.path.splitext(path)[1].lower() not in PICTURES:
+        return False
+    try:
+        with open(path, "rb") as file:
+            head = file.read(12)
+    except OSError:
+        return False
+    return head.startswith(BEGINNINGS) or (head[:4] == b"RIFF" and head[8:] == b"WEBP")
+
+
+trusted = set()  # .blend files whose pictures may lie anywhere: the user said so since Blender started; no file can
+
+
+def may_copy(path):
+    """Whether a picture that the scene names may be copied: it lies below the folder of the .blend file, links followed, or the user trusts the
+    file. A scene that was never saved names what its user chose."""
+    if not bpy.data.filepath or bpy.data.filepath in trusted:
+        return True
+    root, place = os.path.realpath(os.path.dirname(bpy.data.filepath)), os.path.realpath(path)
+    return os.path.commonpath([root, place]) == root
+
+
+class GLINT_OT_trust_pictures(bpy.types.Operator):
+    """Copy pictures that this .blend file names outside of its folder, until Blender ends. A .blend file from somebody else may name any picture"""
+    bl_idname = "glint.trust_pictures"
+    bl_label = "Allow Pictures from Other Folders"
+
+    @classmethod
+    def poll(cls, context):
+        return bool(bpy.data.filepath) and bpy.data.filepath not in trusted
+
+    def execute(self, context):
+        trusted.add(bpy.data.filepath)
+        return {"FINISHED"}
+
+
+classes = (GLINT_OT_trust_pictures,)
+
+
 def rendered(scene, frame):
     """Path of the file that a render of this frame writes."""
     return bpy.path.abspath(scene.render.frame_path(frame=frame))

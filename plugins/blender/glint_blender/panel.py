@@ -4,6 +4,8 @@ import bpy
 from bl_operators.presets import AddPresetBase
 from bl_ui.utils import PresetPanel
 
+from . import images
+
 
 class GLINT_UL_frames(bpy.types.UIList):
     """Frames with the error of the model shown: of held-out ones px and percent, of training ones (pinned) what the fit leaves."""
@@ -79,6 +81,8 @@ class GLINT_PT_main(InSidebar, bpy.types.Panel):
             column.prop(settings, "pictures")
             if settings.pictures == "FOLDER":
                 column.prop(settings, "pictures_folder")
+            if images.GLINT_OT_trust_pictures.poll(context):
+                column.operator(images.GLINT_OT_trust_pictures.bl_idname)
         column.prop(settings, "folder")
         column.separator()
         column.label(text="Models")

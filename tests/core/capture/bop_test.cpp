@@ -6,6 +6,7 @@
 
 #include "core/base/permitted.h"
 #include "core/capture/capture.h"
+#include "core/scene/capture_scene.h"
 #include "tests/core/capture/png_fixture.h"
 #include "tests/core/scene/scene_fixture.h"
 #include "tests/tolerances.h"
@@ -267,6 +268,20 @@ TEST(BopCapture, AMeshThatIsALinkOutOfItsFolderIsNotTaken) {
   fs::remove(set / "models/obj_000005.ply");
   fs::create_symlink(elsewhere.write("secret.ply", "ply\n"), set / "models/obj_000005.ply");
   EXPECT_THROW(makeBopReader()->read(set.scene() / "scene_camera.json", forObject("5")), OutsidePath);
+}
+
+TEST(BopCapture, AFolderOfModelsThatIsALinkOutOfTheDataSetCountsAsOutside) {
+  const BopSet set;
+  const TemporaryFolder elsewhere;
+  fs::rename(set / "models", elsewhere / "models");
+  EXPECT_THAT(foldersOfCapture(set.scene() / "scene_camera.json"), IsEmpty());
+  fs::create_directory_symlink(elsewhere / "models", set / "models");
+  EXPECT_THAT(foldersOfCapture(set.scene() / "scene_camera.json"), IsEmpty());
+  const Capture capture = makeBopReader()->read(set.scene() / "scene_camera.json", forObject("5"));
+  ReadOptions options;
+  EXPECT_THROW(sceneOfCapture(capture, options), OutsidePath);
+  options.allowOutsidePaths = true;
+  EXPECT_NO_THROW(sceneOfCapture(capture, options));
 }
 
 TEST(BopCapture, PhotographsMayLieElsewhere) {

@@ -199,6 +199,67 @@ TEST(CaptureScene, MeshThatMovedIsFoundWhereItWasRelinked) {
   EXPECT_EQ(scene.meshes.at("gone.ply"), elsewhere / "found.ply");
 }
 
+/// Reads, and gives the folder that a person would have to allow; "" = nothing is refused.
+std::filesystem::path refusedFolder(const std::filesystem::path& input, const ReadOptions& options = {}) {
+  try {
+    readScene(input, options);
+  } catch (const OutsidePath& e) {
+    return e.folder();
+  }
+  return {};
+}
+
+TEST(CaptureScene, LinksThatLeaveTheCaptureAreRefusedLikeNamesThatDo) {
+  for (const char* link : {"images", "images/a.png", "mesh.ply", "sparse/0/points3D.txt"}) {
+    SCOPED_TRACE(link);
+    TemporaryFolder folder, elsewhere;
+    writeColmap(folder);
+    folder.write("mesh.ply", kTriangle);
+    folder.write("images/a.png", "a");
+    folder.write("images/b.png", "b");
+    EXPECT_EQ(refusedFolder(folder.path()), "");
+    std::filesystem::rename(folder / link, elsewhere / "there");
+    std::filesystem::create_symlink(elsewhere / "there", folder / link);
+    const bool isFolder = std::string(link) == "images";
+    const std::filesystem::path outside = std::filesystem::canonical(elsewhere.path()) / (isFolder ? "there" : "");
+    EXPECT_EQ(refusedFolder(folder.path()) / "", outside / "");
+    EXPECT_THAT(inputErrorOf([&] { readScene(folder.path()); }), HasSubstr("--allow-outside accepts it"));
+    ReadOptions options;
+    options.allowOutsidePaths = true;
+    EXPECT_EQ(refusedFolder(folder.path(), options), "");
+    options = {};
+    options.folders = {elsewhere.path()};  // a person allowed it
+    EXPECT_EQ(refusedFolder(folder.path(), options), "");
+  }
+}
+
+TEST(CaptureScene, WhatAPersonNamesMayBeALink) {
+  TemporaryFolder folder, elsewhere;
+  writeColmap(folder);
+  folder.write("mesh.ply", kTriangle);
+  folder.write("images/a.png", "a");
+  std::filesystem::create_directory_symlink(folder.path(), elsewhere / "capture");
+  EXPECT_EQ(refusedFolder(elsewhere / "capture"), "");
+  EXPECT_EQ(refusedFolder(elsewhere / "capture/sparse/0"), "");
+  std::filesystem::rename(folder / "sparse/0", elsewhere / "model");
+  std::filesystem::create_directory_symlink(elsewhere / "model", folder / "sparse/0");
+  EXPECT_EQ(refusedFolder(folder / "sparse/0"), "") << "the model itself";
+  // Links inside that stay inside.
+  std::filesystem::rename(folder / "images", folder / "photographs");
+  std::filesystem::create_directory_symlink("photographs", folder / "images");
+  EXPECT_EQ(refusedFolder(folder.path()), "");
+  // A mesh that is named, and photographs in a folder that is named, some of them links.
+  std::filesystem::rename(folder / "mesh.ply", elsewhere / "mesh.ply");
+  std::filesystem::create_symlink(elsewhere / "mesh.ply", folder / "mesh.ply");
+  ReadOptions options;
+  options.choices.surface = InputChoices::Surface::File;
+  options.choices.surfaceFile = folder / "mesh.ply";
+  std::filesystem::create_directories(elsewhere / "chosen");
+  std::filesystem::create_symlink(elsewhere.write("all/a.png", "a"), elsewhere / "chosen/a.png");
+  options.photographs = {elsewhere / "chosen"};
+  EXPECT_EQ(refusedFolder(folder.path(), options), "");
+}
+
 TEST(CaptureScene, CameraNumbersAreChecked) {
   EXPECT_THAT(cameraNumbers("525,525,319.5,239.5", "--camera"), ElementsAre(525, 525, 319.5, 239.5));
   EXPECT_EQ(cameraNumbers("525,525,319.5,239.5,0.1,0.2,0.3,0.4", "--camera").size(), 8u);

@@ -13,6 +13,7 @@ from mathutils import Vector
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import host
+from glint_blender import run
 
 CUBE = [(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
 CUBE_FACES = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
@@ -256,6 +257,41 @@ class Frames(unittest.TestCase):
         with self.assertRaisesRegex(RuntimeError, "holds 3 pictures for 4 frames"):
             bpy.ops.glint.export_scene(filepath=os.path.join(out, "other.json"), pictures="FOLDER", folder=folder)
         self.assertFalse(os.path.exists(os.path.join(out, "other.json")))
+
+    def test_a_blend_file_names_pictures_of_its_folder_only(self):
+        home, elsewhere = host.folder("received"), host.folder("private")
+        self.pictures(elsewhere, [f"{n:04d}.png" for n in range(10, 14)])
+        os.makedirs(os.path.join(home, "own"), exist_ok=True)
+        shutil.copy(os.path.join(elsewhere, "0010.png"), os.path.join(home, "own", "0010.png"))
+        with open(os.path.join(home, "own", "0011.png"), "w", encoding="utf-8") as file:
+            file.write("-----BEGIN PRIVATE KEY-----")
+        os.symlink(os.path.join(elsewhere, "0012.png"), os.path.join(home, "own", "0012.png"))
+        bpy.ops.wm.save_as_mainfile(filepath=os.path.join(home, "received.blend"))
+        host.select(bpy.data.objects["Cube"])
+        scene = bpy.context.scene
+
+        def copied(name, **options):
+            document, out = export(name, **options)
+            return [os.path.isfile(os.path.join(out, f["image"])) if "image" in f else None for f in document["frames"]]
+
+        scene.render.filepath = "//own/"
+        self.assertEqual(copied("of_the_folder", pictures="RENDER"), [True, None, None, None])  # a picture, a key, a link that leaves, none
+        scene.render.filepath = elsewhere + "/"
+        self.assertEqual(copied("elsewhere", pictures="RENDER"), [None] * 4)
+        background = scene.camera.data.background_images.new()
+        background.image = bpy.data.images.load(os.path.join(elsewhere, "0010.png"))
+        self.assertEqual(copied("background", pictures="BACKGROUND"), [None] * 4)
+        settings = scene.glint
+        settings.pictures, settings.pictures_folder, settings.surfaces = "FOLDER", elsewhere, "VISIBLE"
+        path, warnings = run.export_for_run(bpy.context, host.folder("by_run"))
+        with open(path, encoding="utf-8") as file:
+            self.assertTrue(all("image" not in f for f in json.load(file)["frames"]))
+        self.assertIn("lies outside of the folder of the .blend file", warnings[0])
+        self.assertEqual(copied("named_now", pictures="FOLDER", folder=elsewhere), [True] * 4)  # in the dialog, by the user
+        self.assertEqual(bpy.ops.glint.trust_pictures(), {"FINISHED"})
+        self.assertEqual(copied("trusted", pictures="RENDER"), [True] * 4)
+        bpy.ops.wm.save_as_mainfile(filepath=os.path.join(home, "other.blend"))
+        self.assertEqual(copied("another_file", pictures="RENDER"), [None] * 4)
 
     def test_nothing_is_half_written_and_nothing_of_others_replaced(self):
         out = host.folder("guarded")

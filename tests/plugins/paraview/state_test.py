@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A state file, saved and loaded again, gives the same numbers. Without a view: a virtual display may start anew when its last window closes."""
+import json
 import os
+import shutil
 import sys
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
@@ -41,5 +43,50 @@ def main():
         check(numbers(source) == wanted, "the numbers of the state")
 
 
+def rights():
+    """A scene that names a mesh outside of its folder: who allows it does so for this run of ParaView alone."""
+    inside, outside = WORK / "inside", WORK / "outside"
+    shutil.copytree(SESSIONS / "vase", inside)
+    shutil.move(inside / "mesh", outside)
+    scene = json.loads((inside / "scene.json").read_text())
+    for surface in scene["surfaces"].values():
+        surface["mesh"] = surface["mesh"].replace("mesh/", "../outside/")
+    (inside / "scene.json").write_text(json.dumps(scene))
+    reader = GlintReader(FileName=str(inside / "scene.json"), Parts=["Surface"])
+    RenameSource("mine", reader)
+
+    def said(source):
+        source.UpdatePipeline(0.0)
+        source.UpdatePropertyInformation()
+        return source.GetPropertyValue("Messages")
+
+    check("leaves the folder" in said(reader), f"a mesh outside is refused: {said(reader)}")
+    reader.SMProxy.InvokeCommand("AllowFilesOutside")
+    check("leaves the folder" not in said(reader) and numbers(reader), f"it is allowed: {said(reader)}")
+    reader.FileName = session("plane")
+    said(reader)
+    reader.SMProxy.InvokeCommand("AllowFilesOutside")
+    reader.FileName = str(inside / "scene.json")
+    check("leaves the folder" in said(reader), "what was allowed of one file is not allowed of another")
+    reader.SMProxy.InvokeCommand("AllowFilesOutside")
+    check("leaves the folder" not in said(reader), "allowed again")
+    state = WORK / "rights.pvsm"
+    SaveState(str(state))
+    # Whoever writes a state file may put any property into it.
+    text = state.read_text()
+    mark = text.index('<Property name="ContourLevel"')
+    head = text[text.rindex("<Proxy ", 0, mark):mark]
+    number = head[head.index('id="') + 4:].split('"')[0]
+    granted = ('<Property name="AllowFilesOutside" id="%s.AllowFilesOutside" number_of_elements="1"><Element index="0" value="1"/></Property>'
+               % number)
+    (WORK / "granted.pvsm").write_text(text[:mark] + granted + text[mark:])
+    for file in "rights.pvsm", "granted.pvsm":
+        ResetSession()
+        LoadState(str(WORK / file))
+        check("leaves the folder" in said(FindSource("mine")), f"{file} grants nothing: {said(FindSource('mine'))}")
+
+
 main()
+ResetSession()
+rights()
 finish()
