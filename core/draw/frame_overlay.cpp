@@ -378,11 +378,6 @@ const std::vector<OverlayLayer>& overlayLayers() {
   return layers;
 }
 
-Colour pale(Colour colour) {
-  for (double& channel : colour) channel = 0.5 * (channel + 0.5);
-  return colour;
-}
-
 std::vector<ContourRun> contourRuns(const PredictedHighlight& highlight) {
   const std::vector<Pixel>& points = highlight.contour.points;
   const int n = static_cast<int>(points.size());

@@ -94,9 +94,6 @@ struct FrameOverlay {
   std::vector<OverlayCaption> captions;
 };
 
-/// Nearer to grey, for what counts less: of a poor model, of an earlier request, taken out by a filter.
-Colour pale(Colour colour);
-
 struct OverlayOptions {
   std::set<std::string> models;                   ///< models to draw; empty = all
   std::set<std::string> hiddenModels;             ///< of these only the caption
