@@ -75,13 +75,14 @@ TEST_F(FrameNames, EvaluationNamesIds) {
 }
 
 TEST_F(FrameNames, FailuresNameIds) {
-  writeRadiance(7, blob());  // beside the surface
-  const ProgramRun run = on("evaluate", "--models dual,canonical,limit-angle --train 6,7 --json -");
+  writeRadiance(7, cv::Mat(kHeight, kWidth, CV_32FC1, cv::Scalar(0.1)));
+  const ProgramRun run = on("evaluate", "--models dual,limit-angle --train 7 --json -");
   EXPECT_EQ(run.code, 3);
   expectIds("error", run.err);
-  const Json models = Json::parse(run.out)["models"];
-  expectIds("reason", models["canonical"]["reason"].get<std::string>());
-  expectIds("reason", models["limit-angle"]["reason"].get<std::string>());
+  EXPECT_THAT(run.err, HasSubstr("frame 0015: no highlight"));
+  const ProgramRun unknown = on("evaluate", "--train 0007,99");
+  EXPECT_EQ(unknown.code, 2);
+  EXPECT_THAT(unknown.err, HasSubstr("frame 99 does not exist"));
 }
 
 TEST_F(FrameNames, SessionsPredictAndDiagnoseByIds) {
