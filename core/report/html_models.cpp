@@ -100,7 +100,7 @@ std::string remarks(const Inspection& inspection, const ModelResult& result) {
   for (const ModelResult::Fit& fit : result.fits) {
     const std::string of = result.fits.size() > 1 ? textOf(fit.key()) + ": " : "";
     if (fit.failure()) html += "<li class=\"refused\">" + escaped(of + "no fit: " + fit.failure()->message()) + "</li>\n";
-    if (fit.fit && !fit.fit->poor.empty())
+    if (fit.fit && !fit.fit->poor.empty() && result.fits.size() > 1)  // of one fit it stands above
       html += "<li class=\"refused\">" + escaped(of + poorWarning(fit.fit->poor)) + "</li>\n";
     if (fit.fit)
       for (const std::string& remark : fit.fit->remarks) html += "<li>" + escaped(of + remark) + "</li>\n";
@@ -121,7 +121,7 @@ std::string overview(const Inspection& inspection, const std::string& best) {
     if (const double mean = summarise(inspection, result).contourErrorPct.mean; std::isfinite(mean))
       largest = std::max(largest, mean);
   std::string html =
-      "<table class=\"overview\"><thead><tr><th>model</th><th class=\"text\">mean error, % of a highlight's "
+      "<table class=\"overview\"><thead><tr><th>model</th><th class=\"text\">mean error of those found, % of a highlight's "
       "diameter</th><th>missed</th>"
       "<th>spurious</th></tr></thead><tbody>\n";
   for (const std::string& name : inspection.request.models) {

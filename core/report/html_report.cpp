@@ -106,8 +106,9 @@ std::string settingsList(const Settings& settings) {
 std::string evaluationHtml(const Inspection& inspection, const ReportContext& context) {
   std::string page = head(inspection) + about(inspection, context) + summary(inspection, evaluationWords(inspection, context));
   page += "<h2>Error over frames</h2>\n" + html::errorFigure(inspection);
-  page += "<h2>Numbers</h2>\n<p>Errors are taken over " + std::string(inspection.train.perSurface ? "all" : "held-out") +
-          " highlights: symmetric mean distance between predicted and observed contour, as a percentage of the equivalent "
+  page += "<h2>Numbers</h2>\n<p>Errors are taken over the " + std::string(inspection.train.perSurface ? "" : "held-out ") +
+          "highlights that a model found; those that it missed are counted beside them: symmetric mean distance between "
+          "predicted and observed contour, as a percentage of the equivalent "
           "diameter of the observed region. Scored against " +
           scoredAgainst(inspection) + ".</p>\n" + html::statisticsTable(inspection);
   if (context.selection) page += candidatesTable(*context.selection);

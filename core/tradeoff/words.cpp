@@ -32,7 +32,7 @@ const char* const kTradeoffErrors =
     "observed region, mean "
     "over held-out highlights, where each one that was missed or is spurious, and each direction left out, counts as 100 %. "
     "Error of those found: "
-    "the mean over the highlights that were found, as `glint evaluate` gives it.";
+    "the mean over the highlights that were found, as glint evaluate gives it.";
 
 std::string trainedOn(const Tradeoff& t) {
   const bool rule = t.trainSpec.find(':') != std::string::npos;

@@ -122,7 +122,7 @@
     const words = [];
     for (const status of [...new Set(wrong.map((r) => r.status))]) {
       const count = wrong.filter((r) => r.status === status).length;
-      words.push(count > 1 ? status + ' ' + count : status);
+      words.push(count > 1 && status !== 'poor' ? status + ' ' + count : status);
     }
     const value = measured.length ? measured.reduce((a, b) => a + b, 0) / measured.length : undefined;
     return { text: (value === undefined ? '' : percent(value)) + (value !== undefined && words.length ? ', ' : '') + words.join(', '),

@@ -40,7 +40,7 @@ TEST_F(Diagnose, NamesTheFaultAndItsRemedyHoldsInEvaluate) {
   }
   ASSERT_FALSE(d["remedies"].empty());
   const Json& best = d["remedies"][0];
-  EXPECT_EQ(best["exclude"], "2");
+  EXPECT_EQ(best["exclude"], "0002");
   EXPECT_TRUE(best["model"].is_null() && best["train"].is_null() && best["set"].is_null());
   EXPECT_LT(best["effect"]["after_pct"].get<double>(), 0.5 * best["effect"]["before_pct"].get<double>());
   double previous = 0;
@@ -61,7 +61,7 @@ TEST_F(Diagnose, TextSaysBecauseAndTry) {
   moveContour(2);
   const ProgramRun run = on("diagnose", "--models limit-angle --train 0-5 --most 3");
   ASSERT_EQ(run.code, 0) << run.err;
-  for (const char* words : {"limit-angle", "because ", "frame 0002", "--exclude 2", " -> ", "as a command: glint evaluate "})
+  for (const char* words : {"limit-angle", "because ", "frame 0002", "--exclude 0002", " -> ", "as a command: glint evaluate "})
     EXPECT_THAT(run.out, HasSubstr(words));
 }
 

@@ -55,8 +55,9 @@ TEST_F(FrameNames, EvaluationNamesIds) {
   overexpose(6);
   writeRadiance(1, cv::Mat(kHeight, kWidth, CV_32FC1, cv::Scalar(0.1)));
   const ProgramRun run =
-      on("evaluate", "--models primal,dual,limit-angle --train 0-3 --exclude 7 --set detect.clip=6000 --json - --csv " +
-                         out("e.csv") + " --html " + out("e.html"));
+      on("evaluate",
+         "--models primal,dual,limit-angle --train 0-3 --exclude 7 --set detect.clip=6000 --all-warnings --json - --csv " +
+             out("e.csv") + " --html " + out("e.html"));
   EXPECT_THAT(run.err, HasSubstr("clipped (saturated) highlights in training frame 0005 and other frame 0013"));
   expectIds("warnings", run.err, 2);
   expectIds("page", contentOf(folder_ / "e.html"), 6);
@@ -74,13 +75,14 @@ TEST_F(FrameNames, EvaluationNamesIds) {
 }
 
 TEST_F(FrameNames, FailuresNameIds) {
-  for (const int frame : {1, 2}) writeRadiance(frame, blob());  // beside the surface
-  const ProgramRun run = on("evaluate", "--models dual,canonical,limit-angle --train 1,2 --json -");
+  writeRadiance(7, cv::Mat(kHeight, kWidth, CV_32FC1, cv::Scalar(0.1)));
+  const ProgramRun run = on("evaluate", "--models dual,limit-angle --train 7 --json -");
   EXPECT_EQ(run.code, 3);
   expectIds("error", run.err);
-  const Json models = Json::parse(run.out)["models"];
-  expectIds("reason", models["canonical"]["reason"].get<std::string>());
-  expectIds("reason", models["limit-angle"]["reason"].get<std::string>());
+  EXPECT_THAT(run.err, HasSubstr("frame 0015: no highlight"));
+  const ProgramRun unknown = on("evaluate", "--train 0007,99");
+  EXPECT_EQ(unknown.code, 2);
+  EXPECT_THAT(unknown.err, HasSubstr("frame 99 does not exist"));
 }
 
 TEST_F(FrameNames, SessionsPredictAndDiagnoseByIds) {
@@ -89,11 +91,11 @@ TEST_F(FrameNames, SessionsPredictAndDiagnoseByIds) {
   EXPECT_EQ(table.code, 0) << table.err;
   EXPECT_THAT(table.out, testing::ContainsRegex("limit-angle +0015 +"));
   EXPECT_THAT(table.out, testing::Not(testing::ContainsRegex("limit-angle +[0-7] "))) << "no column of places";
-  ASSERT_EQ(onSession("predict", "--frames 0003,4 -o " + out("pictures")).code, 0);
+  ASSERT_EQ(onSession("predict", "--frames 0003,4 --out " + out("pictures")).code, 0);
   EXPECT_TRUE(fs::exists(folder_ / "pictures/0003.png"));
   EXPECT_TRUE(fs::exists(folder_ / "pictures/0009.png")) << "of the frame at position 4";
   EXPECT_FALSE(fs::exists(folder_ / "pictures/0004.png"));
-  ASSERT_EQ(on("detect", "-o " + out("detected")).code, 0);
+  ASSERT_EQ(on("detect", "--out " + out("detected")).code, 0);
   EXPECT_TRUE(fs::exists(folder_ / "detected/0015.png"));
   EXPECT_FALSE(fs::exists(folder_ / "detected/0000.png"));
   ASSERT_EQ(onSession("predict", "--masks " + out("masks")).code, 0);

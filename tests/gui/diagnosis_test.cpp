@@ -118,7 +118,7 @@ class DiagnosisTest : public QObject {
     QCOMPARE(document.selection().light, std::string("lamp"));
     QCOMPARE(document.selection().model, std::string("limit-angle"));
 
-    QPushButton* const remedy = tryOf(panel, QStringLiteral("--exclude 2"));
+    QPushButton* const remedy = tryOf(panel, QStringLiteral("--exclude v2"));
     QVERIFY(remedy);
     const InspectionRequest before = document.request();
     const int steps = document.undoStack()->index();
@@ -186,13 +186,13 @@ class DiagnosisTest : public QObject {
     const QFontMetrics metrics(panel.list()->font());
     QVERIFY(metrics.horizontalAdvance(against.at(0)->text(0)) > row.width());  // it does not fit into one line
     QVERIFY2(row.height() >= 2 * metrics.lineSpacing(), qPrintable(QString::number(row.height())));
-    QVERIFY(tryOf(panel, QStringLiteral("--exclude 2")));
+    QVERIFY(tryOf(panel, QStringLiteral("--exclude v2")));
     bool words = false;
     for (const QLabel* label : panel.list()->findChildren<QLabel*>())
       words = words || label->text().startsWith(QStringLiteral("leave out 2: error "));
     QVERIFY(words);
     const QStringList before = lines(panel);
-    tryOf(panel, QStringLiteral("--exclude 2"))->click();
+    tryOf(panel, QStringLiteral("--exclude v2"))->click();
     QCOMPARE(document.undoStack()->undoText(), QStringLiteral("Try: leave out 2"));
     compute(document);
     const auto* state = panel.findChild<QLabel*>(QStringLiteral("diagnoseState"));

@@ -53,9 +53,9 @@ class DocumentTest : public QObject {
     QCOMPARE(document_->request().excluded, std::vector<int>{2});
     QCOMPARE(document_->request().train, std::string("first:6"));  // the words stay
     document_->setRole(9, FrameRole::Training);
-    QCOMPARE(document_->request().train, std::string("0-5,9"));
+    QCOMPARE(document_->request().train, std::string("0000-0005,0009"));
     document_->setRole(0, FrameRole::HeldOut);
-    QCOMPARE(document_->request().train, std::string("1-5,9"));
+    QCOMPARE(document_->request().train, std::string("0001-0005,0009"));
     while (document_->undoStack()->canUndo()) document_->undoStack()->undo();
     QVERIFY(document_->request().excluded.empty());
     QCOMPARE(document_->request().train, std::string("first:6"));

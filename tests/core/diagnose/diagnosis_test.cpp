@@ -72,7 +72,7 @@ TEST(Diagnosis, AMovedContourIsNamedAndItsExclusionIsTheBestRemedy) {
   EXPECT_GE(worst->weight, 1);
   ASSERT_FALSE(d.remedies.empty());
   const Remedy& best = d.remedies.front();
-  EXPECT_EQ(best.change.exclude, "2");
+  EXPECT_EQ(best.change.exclude, "v2");
   EXPECT_LT(best.after.meanPct(), kExactPct) << "what is left is exact";
   EXPECT_GT(best.before.meanPct(), best.after.meanPct());
   for (const LeftOutError::View& v : best.after.views) EXPECT_NE(v.frame, 2) << "a comparison over the views of both";
@@ -113,7 +113,7 @@ TEST(Diagnosis, TheWorldsSizeChangesNothing) {
   };
   const ModelDiagnosis a = scaled(1), b = scaled(1000);
   ASSERT_EQ(a.remedies.size(), b.remedies.size());
-  EXPECT_EQ(b.remedies.front().change.exclude, "2");
+  EXPECT_EQ(b.remedies.front().change.exclude, "v2");
   for (std::size_t i = 0; i < a.remedies.size(); ++i) {
     EXPECT_EQ(a.remedies[i].change, b.remedies[i].change);
     EXPECT_NEAR(a.remedies[i].after.meanPct(), b.remedies[i].after.meanPct(), 1e-3 * a.remedies[i].after.meanPct() + 1e-3);
@@ -174,7 +174,7 @@ TEST(Diagnosis, WhatIsQuickComesFirstThenTheNearestModel) {
 TEST(Diagnosis, LeavingAFrameOutOfTheScoreIsNoMeasuredRemedy) {
   const ModelDiagnosis d = diagnose(inspected(withMovedContour(7))).models.at(0);
   EXPECT_EQ(d.status, ModelDiagnosis::Status::Poor);
-  const auto left = std::find_if(d.remedies.begin(), d.remedies.end(), [](const Remedy& r) { return r.change.exclude == "7"; });
+  const auto left = std::find_if(d.remedies.begin(), d.remedies.end(), [](const Remedy& r) { return r.change.exclude == "v7"; });
   ASSERT_NE(left, d.remedies.end());
   EXPECT_FALSE(left->measured);
   EXPECT_EQ(left + 1, d.remedies.end()) << "the last one";
