@@ -3,6 +3,7 @@
 #include "cli/inspection_arguments.h"
 #include "core/base/number_text.h"
 #include "core/diagnose/diagnosis.h"
+#include "core/diagnostics/camera_check.h"
 #include "core/inspect/summary.h"
 #include "core/report/diagnosis_report.h"
 #include "core/scene/outputs.h"
@@ -48,8 +49,10 @@ Command diagnoseCommand() {
     options.mostTried = a->most;
     options.slowToo = a->thorough;
     const Diagnosis diagnosis = diagnose(inspection, options, context.progress());
-    if (!a->json.empty()) context.write(a->json, diagnosisJson(inspection, diagnosis, a->input));
-    if (a->json != "-") context.print(diagnosisText(inspection, diagnosis));
+    // What the input gets wrong no other model or setting puts right: it stands first.
+    const ConventionReport input = fullReport(*scene, context.progress());
+    if (!a->json.empty()) context.write(a->json, withFindings(diagnosisJson(inspection, diagnosis, a->input), input));
+    if (a->json != "-") context.print(findingsText(input) + diagnosisText(inspection, diagnosis));
     warnOfUnusedTrainingFrames(inspection, context);
     std::string reasons;
     for (const ModelDiagnosis& d : diagnosis.models) {

@@ -345,7 +345,9 @@ class VideoReader : public CaptureReader {
       capture.facts.push_back(std::to_string(content.withoutTime) +
                               " of the video's pictures have no time of their own: each is one period after the one before");
     capture.facts.push_back(
-        formatted("the video's pictures are %d x %d pixels, as a player shows them", content.width, content.height));
+        formatted("the video's pictures are %d x %d pixels, as a player shows them", content.width, content.height) +
+        (content.rotation ? formatted(": the file's rotation tag turns the stored ones by %d degrees clockwise", content.rotation)
+                          : std::string()));
     return PosedPictures(std::move(capture), std::move(pictures), options)
         .read(std::array<int, 2>{content.width, content.height});
   }

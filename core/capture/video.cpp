@@ -200,6 +200,7 @@ VideoContent readVideoContent(const fs::path& file) {
     const std::unique_ptr<VideoDecoder> video = newVideoDecoder();
     if (!video->open(name)) throw InputError(name, "", "is no video that can be decoded: damaged, or of an unknown codec");
     requireVideoSize(video->width(), video->height(), name);
+    content.rotation = video->rotation();
     VideoClock clock(file, video->picturesPerSecond());
     while (video->grab()) {
       const int width = static_cast<int>(video->width());

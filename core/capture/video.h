@@ -22,6 +22,7 @@ struct VideoPicture {
 /// What a video holds, from a pass over all of its pictures: what its header counts is an estimate.
 struct VideoContent {
   int width = 0, height = 0;    ///< px, of all pictures, as shown (a telephone's rotation is applied)
+  int rotation = 0;             ///< degrees clockwise of the file's tag, by which stored pictures are turned; 0 = no tag
   std::vector<double> seconds;  ///< of every picture, on the video's own clock; rising
   int withoutTime = 0;          ///< pictures for which the video has no time: taken one period after the one before
 };

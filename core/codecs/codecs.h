@@ -63,6 +63,7 @@ class VideoDecoder {
   virtual double width() const = 0;              ///< px
   virtual double height() const = 0;             ///< px
   virtual double picturesPerSecond() const = 0;  ///< 0 = unknown
+  virtual int rotation() const = 0;              ///< degrees clockwise by which the file's tag turns its pictures; 0 = no tag
 };
 std::unique_ptr<VideoDecoder> newVideoDecoder();
 

@@ -43,6 +43,7 @@ class OpenCvDecoder : public VideoDecoder {
   double width() const override { return capture_.get(cv::CAP_PROP_FRAME_WIDTH); }
   double height() const override { return capture_.get(cv::CAP_PROP_FRAME_HEIGHT); }
   double picturesPerSecond() const override { return capture_.get(cv::CAP_PROP_FPS); }
+  int rotation() const override { return static_cast<int>(capture_.get(cv::CAP_PROP_ORIENTATION_META)); }
 
  private:
   cv::VideoCapture capture_;

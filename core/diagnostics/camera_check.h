@@ -7,15 +7,14 @@
 
 namespace glint {
 
-/// Fits the light of up to eight frames that show one whole, unclipped highlight on a surface that the scene names, under each
-/// hypothesis, by their contours (`reflectance`), and compares residuals. Says something only where one hypothesis explains the
-/// contours several times better than the scene as given, the two halves of the frames ask for the same change, and that change
-/// is the one of the hypothesis. What the highlights cannot tell (a shift that another place of the light explains as well) stays
-/// unsaid. Takes a second or two. Throws Stopped, and InputError where a surface cannot be read.
+/// Holds up to eight frames with whole, unclipped highlights against the surface that the scene names: whether their mirrored rays share a lamp
+/// (sharedLamp), and whether a light explains the contours (`reflectance`). Where that is not so, likely mistakes are undone one by one; those after
+/// which mirrored rays meet are tried on the contours. A mistake is named where its undoing explains them several times better than the scene as
+/// given; that nothing does is a finding, too. A principal point or focal length is named where the two halves of the frames ask for the same
+/// change. What the highlights cannot tell (a shift that another place of the light explains as well) stays unsaid. Throws Stopped, and InputError where a surface cannot be read.
 CameraCheck checkCameras(const Scene& scene, const ProgressFn& progress = {});
 
-/// The convention report, and this check in it where every camera sees its surface: no other scene has highlights that can be asked
-/// about the cameras.
+/// The convention report, with this check where most cameras see their surface, and the place of a mesh that misses the sparse points.
 ConventionReport fullReport(const Scene& scene, const ProgressFn& progress = {});
 
 }  // namespace glint

@@ -10,12 +10,13 @@
 namespace glint {
 namespace {
 
-LikelyMistake images(const char* is, bool swapXY, bool flipX, bool flipY, const char* mogrify) {
+LikelyMistake images(const char* is, bool swapXY, bool flipX, bool flipY, const char* mogrify, int turned = 0) {
   LikelyMistake m{"the images", true, is, {}, {}, {}};
   m.undoing.swapXY = swapXY;
   m.undoing.flipX = flipX;
   m.undoing.flipY = flipY;
   m.remedy = std::string("Glint does not rewrite photographs: ImageMagick's mogrify ") + mogrify + " does";
+  if (turned) m.correction = turnCamerasCorrection(turned);
   return m;
 }
 
@@ -39,12 +40,21 @@ LikelyMistake scaledMesh(const std::string& is, double factor, const char* fix, 
   return m;
 }
 
+LikelyMistake otherPoses(const GeometryCorrection& c) {
+  LikelyMistake m{"the poses", true, c.inverse ? "camera to world" : "of OpenGL's axes, y up and z backwards", {}, {}, {}};
+  if (c.inverse && c.turned) m.is += " with OpenGL's axes, y up and z backwards";
+  m.undoing.poses = &c;
+  m.correction = Correction{c.fix, c.words};
+  return m;
+}
+
 }  // namespace
 
 Camera CameraChange::of(Camera camera) const {
   camera.pixelFromRay(0, 2) += cx;
   camera.pixelFromRay(1, 2) += cy;
   camera.pixelFromRay.topLeftCorner<2, 2>() *= std::exp(logFocal);
+  if (poses) camera.camFromWorld = poses->camFromWorld(camera.camFromWorld);
   // A point m of the mesh is at R (s Q m + t) + r: the direction of R Q m + (R t + r) / s.
   const Similarity& s = camerasFromMesh;
   const Eigen::Isometry3d pose = camera.camFromWorld;
@@ -66,16 +76,11 @@ void CameraChange::move(Highlight& h, const Camera& camera) const {
   if ((flipX != flipY) != swapXY) std::reverse(h.contour.points.begin(), h.contour.points.end());
 }
 
-const std::vector<LikelyMistake>& mirroredImages() {
-  static const std::vector<LikelyMistake> all{images("mirrored left-right", false, true, false, "-flop"),
-                                              images("mirrored upside down", false, false, true, "-flip"),
-                                              images("turned by 180 degrees", false, true, true, "-rotate 180")};
-  return all;
-}
-
-const std::vector<LikelyMistake>& misplacedMeshes() {
+const std::vector<LikelyMistake>& likelyMistakes() {
   static const std::vector<LikelyMistake> all = [] {
-    std::vector<LikelyMistake> list;
+    std::vector<LikelyMistake> list{images("mirrored left-right", false, true, false, "-flop"),
+                                    images("mirrored upside down", false, false, true, "-flip"),
+                                    images("turned by 180 degrees", false, true, true, "-rotate 180", 180)};
     for (const int axis : {0, 1, 2})
       for (const int degrees : {-90, 90, 180}) list.push_back(turnedMesh(axis, degrees));
     list.push_back(scaledMesh("in millimetres", 0.001, "mesh-mm", "Read the mesh in millimetres"));
@@ -88,12 +93,13 @@ const std::vector<LikelyMistake>& misplacedMeshes() {
     list.push_back(scaledMesh("in metres and the poses are in feet", 1 / 0.3048, nullptr, "Read the poses in feet"));
     list.push_back(scaledMesh("half as large as it should be", 2, nullptr, "Double the mesh"));
     list.push_back(scaledMesh("twice as large as it should be", 0.5, nullptr, "Halve the mesh"));
-    list.push_back(images("turned by 90 degrees clockwise", true, false, true, "-rotate -90"));
-    list.push_back(images("turned by 90 degrees counterclockwise", true, true, false, "-rotate 90"));
+    for (const GeometryCorrection& c : geometryCorrections())
+      if (c.inverse || c.turned) list.push_back(otherPoses(c));
+    list.push_back(images("turned by 90 degrees clockwise", true, false, true, "-rotate -90", 90));
+    list.push_back(images("turned by 90 degrees counterclockwise", true, true, false, "-rotate 90", 270));
     for (LikelyMistake* m : {&list[list.size() - 2], &list[list.size() - 1]})
-      m->remedy +=
-          "; of a video with a rotation tag, poses and --camera are of the stored pictures: remove the tag, by ffmpeg "
-          "-display_rotation 0 -i IN -c copy OUT";
+      m->remedy =
+          "as by the rotation tag of a video or of a photograph, where poses and intrinsics are those of the stored pictures";
     return list;
   }();
   return all;

@@ -18,7 +18,8 @@ struct CameraChange {
   double cx = 0, cy = 0, logFocal = 0;  ///< added to the principal point (px) and to the logarithm of the focal length
   bool swapXY = false;                  ///< of the pixels, before the flips
   bool flipX = false, flipY = false;
-  Similarity camerasFromMesh = {};  ///< where the mesh belongs, from its coordinates as they were read
+  const GeometryCorrection* poses = nullptr;  ///< before the next
+  Similarity camerasFromMesh = {};            ///< where the mesh belongs, from its coordinates as they were read
 
   Camera of(Camera camera) const;
   /// Peak and contour, in pixels of a picture of the camera's size; the contour keeps its sense.
@@ -35,10 +36,8 @@ struct LikelyMistake {
   std::string remedy;  ///< for a person where there is no correction
 };
 
-/// Images that are mirrored or turned by 180 degrees.
-const std::vector<LikelyMistake>& mirroredImages();
-/// Images turned by a quarter, meshes turned by quarters and halves about an axis, meshes of another unit or size. Those that people meet most come
-/// first: of equals the first one is named.
-const std::vector<LikelyMistake>& misplacedMeshes();
+/// Images that are mirrored or turned, meshes turned by quarters and halves about an axis, meshes of another unit or size, poses of another
+/// convention. Those that people meet most come first: of equals the first one is named.
+const std::vector<LikelyMistake>& likelyMistakes();
 
 }  // namespace glint

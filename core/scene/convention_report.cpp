@@ -14,7 +14,6 @@
 #include "core/scene/geometry_check.h"
 #include "core/scene/image_scale.h"
 #include "core/scene/mesh_file.h"
-#include "core/scene/mesh_placement.h"
 #include "core/scene/scene_reader.h"
 #include "core/surface/analytic.h"
 
@@ -298,19 +297,6 @@ class Triangles {
   std::map<std::string, TriangleMesh> read_, made_;
 };
 
-bool startsWith(const ConventionReport::Proposal& p, const char* text) { return p.correction.fix.starts_with(text); }
-
-/// What the sparse points say about a mesh that is not where they are. They project to where they were seen: the poses are right.
-void place(const Scene& scene, const TriangleMesh& mesh, const ProgressFn& progress, ConventionReport& report) {
-  const auto ofUnit = [](const auto& p) { return startsWith(p, "mesh-") || startsWith(p, "poses-"); };
-  if (mesh.triangles.empty() || std::any_of(report.corrections.begin(), report.corrections.end(), ofUnit)) return;
-  MeshPlacement placement = placementOf(scene, mesh, report.tracks->sample, progress);
-  if (!placement.words.empty()) report.tracks->findings.back() += "; " + placement.words;
-  if (!placement.correction) return;
-  report.tracks->correction = std::move(placement.correction);
-  std::erase_if(report.corrections, [](const auto& p) { return startsWith(p, "invert-") || startsWith(p, "turn-"); });
-}
-
 }  // namespace
 
 bool ConventionReport::anyFrameSeesSurface() const {
@@ -402,12 +388,9 @@ ConventionReport conventionReport(const Scene& scene, const ProgressFn& progress
   }
   conclude(scene, checkSight(scene, [&](const std::string& id) -> const TriangleMesh& { return triangles.of(id); }), report);
   report.tracks = checkTracks(scene, progress);
-  if (report.tracks) {
-    if (report.tracks->surfaceElsewhere && scene.surfaces.size() == 1)
-      place(scene, triangles.of(scene.surfaces.begin()->first), progress, report);
+  if (report.tracks)
     for (const std::string& f : report.tracks->findings)
       report.add(f, &f == &report.tracks->findings.back() ? report.tracks->correction : std::nullopt);
-  }
   concludeGrids(scene, report);
   return report;
 }
@@ -433,7 +416,9 @@ std::string lightLines(const ConventionReport& r) {
 /// What the highlights say about the cameras.
 std::string cameraLines(const CameraCheck& check) {
   if (check.hypotheses.empty()) return "\n  cameras   not checked with highlights: " + check.whyNot + "\n";
-  std::string out = formatted("\n  cameras   from the highlights of %d frames: contours fit one light ", check.views);
+  std::string out =
+      formatted("\n  cameras   from the highlights of %d frames: mirrored rays pass one lamp by %s; contours fit one light ",
+                check.views, check.missDeg ? formatted("%.2g degrees", *check.missDeg).c_str() : "more than can be measured");
   std::string separator;
   constexpr std::size_t kAlwaysListed = 4;  // as given, and mirrored images
   std::size_t listed = 0, others = 0;
@@ -489,23 +474,31 @@ std::string toText(const ConventionReport& r) {
   if (r.cameras) out += cameraLines(*r.cameras);
   for (const std::string& f : r.facts) out += "fact: " + f + "\n";
   for (const std::string& w : r.warnings) out += "warning: " + w + "\n";
+  out += r.findings.empty() ? r.cleanBill() + "\n" : findingsText(r);
+  return out;
+}
+
+std::string findingsText(const ConventionReport& r) {
+  std::string out;
   for (std::size_t i = 0; i < r.findings.size(); ++i) {
     out += "finding: " + r.findings[i] + "\n";
     for (const auto& c : r.corrections)
       if (c.finding == i) out += "  fix:   glint convert INPUT --fix " + c.correction.fix + " --out corrected.json\n";
   }
-  if (r.findings.empty()) out += r.cleanBill() + "\n";
   return out;
 }
 
 namespace {
-void addConclusions(const ConventionReport& r, Json& j) {
-  j["facts"] = r.facts;
-  j["warnings"] = r.warnings;
+void addFindings(const ConventionReport& r, Json& j) {
   j["findings"] = r.findings;
   j["fixes"] = Json::array();
   for (const auto& c : r.corrections)
     j["fixes"].push_back({{"finding", c.finding}, {"fix", c.correction.fix}, {"words", c.correction.words}});
+}
+void addConclusions(const ConventionReport& r, Json& j) {
+  j["facts"] = r.facts;
+  j["warnings"] = r.warnings;
+  addFindings(r, j);
 }
 }  // namespace
 
@@ -548,6 +541,7 @@ std::string toJson(const ConventionReport& r) {
     for (const CameraCheck::Hypothesis& h : c.hypotheses)
       hypotheses.push_back({{"change", h.change}, {"rms_px", h.rmsPx ? Json(*h.rmsPx) : Json()}});
     j["cameras"] = {{"views", c.views},
+                    {"miss_deg", c.missDeg ? Json(*c.missDeg) : Json()},
                     {"why_not", c.whyNot.empty() ? Json() : Json(c.whyNot)},
                     {"hypotheses", std::move(hypotheses)},
                     {"focal_pct", c.focalPct ? Json(*c.focalPct) : Json()},
@@ -566,6 +560,12 @@ std::string toJson(const ConventionReport& r) {
                    {"on_surface", r.tracks->onSurface},
                    {"depth_ratio", r.tracks->depthRatio}};
   addConclusions(r, j);
+  return prettyJson(j.dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
+std::string withFindings(const std::string& json, const ConventionReport& report) {
+  Json j = Json::parse(json);
+  addFindings(report, j);
   return prettyJson(j.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 

@@ -22,8 +22,10 @@ struct CameraCheck {
     std::optional<double> rmsPx;  ///< of the contours' residuals; none where no light explains them
   };
   int views = 0;
-  std::vector<Hypothesis> hypotheses;    ///< the first one is "as given"; empty where the check did not run
-  std::string whyNot;                    ///< why it did not
+  std::vector<Hypothesis> hypotheses;  ///< the first one is "as given"; empty where the check did not run
+  std::string whyNot;                  ///< why it did not
+  std::optional<double>
+      missDeg;  ///< by which mirrored rays of the highlights pass the lamp that they share best, in three quarters of the views
   std::optional<double> focalPct;        ///< the change of the focal length that fits best, percent
   std::optional<double> shiftPx;         ///< the shift of the principal point, the same along x and y, that fits best
   std::vector<std::string> findings;     ///< what is clear, one line each; mostly none
@@ -85,6 +87,10 @@ struct ConventionReport {
 ConventionReport conventionReport(const Scene& scene, const ProgressFn& progress = {});
 
 std::string toText(const ConventionReport& report);  ///< for a terminal, ends with a line break
+std::string findingsText(
+    const ConventionReport& report);  ///< a line for each, with the command that corrects it; empty without findings
 std::string toJson(const ConventionReport& report);  ///< {"glint_info": 1, ...}, laid out, no NaN
+/// Another document, an object in JSON, with `findings` and `fixes` of the report as toJson() writes them.
+std::string withFindings(const std::string& json, const ConventionReport& report);
 
 }  // namespace glint

@@ -18,7 +18,7 @@ constexpr const char* kSimilarityForm =
     "in metres)";
 
 constexpr std::string_view kPrincipalPoint = "principal-point", kFocalLength = "focal-length", kDepthScale = "depth-scale",
-                           kImageScale = "image-scale";
+                           kImageScale = "image-scale", kTurnCameras = "turn-cameras";
 
 struct ValuedCorrection {
   std::string_view name;
@@ -31,6 +31,7 @@ constexpr ValuedCorrection kValued[] = {
     {kFocalLength, 0.1, 10, "a factor of fx and fy"},      // beyond that it is another camera
     {kDepthScale, 1e-9, 1e9, "metres per unit of depth"},  // as scene files: more is a typing error
     {kImageScale, 1.0 / 64, 64, "the size of the photographs in sizes of the cameras' images"},
+    {kTurnCameras, 90, 270, "90, 180 or 270 degrees clockwise, as the photographs are turned"},
 };
 
 std::string valued(std::string_view name, double value) { return std::string(name) + "=" + formatted("%.10g", value); }
@@ -60,7 +61,58 @@ void applyGeometry(Scene& scene, const GeometryCorrection& c) {
   if (!any) throw InputError("--fix", c.fix, "the scene has no mesh");
 }
 
+/// The lens seen in turned pictures: radial terms stay, the tangential one is a vector of the image plane and turns.
+Lens turned(const Frame& f, const Eigen::Matrix2d& turn) {
+  Lens lens = f.camera.lens;
+  if (lens.isIdeal()) return lens;
+  const bool brown = lens.model == LensModel::OpenCv || lens.model == LensModel::FullOpenCv;
+  if (!brown && lens.model == LensModel::ThinPrismFisheye)
+    throw InputError("--fix", std::string(kTurnCameras),
+                     "frame " + f.id + " has a lens of the model THIN_PRISM_FISHEYE, which cannot be turned");
+  if (brown) {
+    const Eigen::Vector2d bends = turn * Eigen::Vector2d(lens.parameters[3], lens.parameters[2]);  // p2 along x, p1 along y
+    lens.parameters[3] = bends.x();
+    lens.parameters[2] = bends.y();
+  }
+  return lens;
+}
+
+/// Cameras of the stored pictures become those of the pictures as they are shown, turned clockwise by `degrees`; their size is that of the shown ones.
+void turnCameras(Scene& scene, double degrees) {
+  const auto refuse = [](const std::string& why) { throw InputError("--fix", std::string(kTurnCameras), why); };
+  if (degrees != 90 && degrees != 180 && degrees != 270) refuse("expected 90, 180 or 270 degrees");
+  const int quarters = static_cast<int>(degrees) / 90;
+  Eigen::Matrix2d turn = Eigen::Matrix2d::Identity(), quarter;
+  quarter << 0, -1, 1, 0;
+  for (int i = 0; i < quarters; ++i) turn = quarter * turn;
+  for (Frame& f : scene.frames) {
+    if (!f.normals.empty() || !f.depth.empty())
+      refuse("frame " + f.id + " has a map of depth or normals, which would have to turn, too");
+    if (f.camera.pixelFromRay(0, 1) != 0) refuse("the camera of frame " + f.id + " has a skew");
+    Camera changed = f.camera;
+    changed.lens = turned(f, turn);
+    Eigen::Matrix3d& k = changed.pixelFromRay;
+    if (quarters != 2) std::swap(k(0, 0), k(1, 1));
+    // The middle of the first pixel is 0, that of the last one is width - 1: the turn is about the middle between them.
+    const Eigen::Vector2d shown(f.camera.width - 1, f.camera.height - 1),
+        stored = quarters == 2 ? shown : Eigen::Vector2d(shown.reverse());
+    k.topRightCorner<2, 1>() = shown / 2 + turn * (f.camera.pixelFromRay.topRightCorner<2, 1>() - stored / 2);
+    Eigen::Matrix3d about = Eigen::Matrix3d::Identity();
+    about.topLeftCorner<2, 2>() = turn;
+    changed.camFromWorld.linear() = about * f.camera.camFromWorld.linear();
+    changed.camFromWorld.translation() = about * f.camera.camFromWorld.translation();
+    const auto moved = [&](const Pixel& ideal) { return Pixel(changed.undistorted(f.camera.distorted(ideal))); };
+    if (f.camera.hasDistortion())
+      for (Highlight& h : f.highlights) {
+        h.peak = moved(h.peak);
+        for (Pixel& p : h.contour.points) p = moved(p);
+      }
+    f.camera = changed;
+  }
+}
+
 void applyValue(Scene& scene, std::string_view name, double value) {
+  if (name == kTurnCameras) return turnCameras(scene, value);
   if (name == kImageScale) return applyImageScale(scene, value);
   bool any = false;
   for (Frame& f : scene.frames) {
@@ -160,6 +212,10 @@ Correction focalLengthCorrection(double factor) {
 
 Correction depthScaleCorrection(double metresPerUnit) {
   return {valued(kDepthScale, metresPerUnit), formatted("Set depth_scale to %.4g", metresPerUnit)};
+}
+
+Correction turnCamerasCorrection(int degrees) {
+  return {valued(kTurnCameras, degrees), formatted("Turn the cameras by %d degrees, as the photographs are", degrees)};
 }
 
 Correction meshSimilarityCorrection(const Similarity& s) {

@@ -34,6 +34,9 @@ Correction focalLengthCorrection(double factor);
 /// @param metresPerUnit  > 0, of integer depth maps (scene.json's depth_scale)
 Correction depthScaleCorrection(double metresPerUnit);
 
+/// "Turn the cameras by 90 degrees, as the photographs are": poses and intrinsics are those of pictures that were turned since.
+/// @param degrees  clockwise: 90, 180 or 270
+Correction turnCamerasCorrection(int degrees);
 /// "Move the cameras into the frame of the mesh": the mesh stays as it is, poses take over its frame and its unit.
 /// @param camerasFromMesh  from the mesh to the world of the cameras, both in metres as they were read
 Correction meshSimilarityCorrection(const Similarity& camerasFromMesh);

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/scene/mesh_placement.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 
 #include "core/base/number_text.h"
+#include "core/scene/mesh_file.h"
+#include "core/surface/registration.h"
 
 namespace glint {
 namespace {
@@ -25,31 +28,83 @@ int framesThatSee(const Scene& scene, const TriangleMesh& mesh) {
   return seeing;
 }
 
-}  // namespace
+bool movesBox(const TriangleMesh& mesh, const Similarity& s) {
+  constexpr double kFar = 0.03;  // of its size
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3d& v : mesh.vertices) box.extend(v);
+  double most = 0;
+  for (int k = 0; k < 8; ++k) {
+    const Eigen::Vector3d corner = box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(k));
+    most = std::max(most, (s * corner - corner).norm());
+  }
+  return most > kFar * box.diagonal().norm();
+}
 
+/// Where a mesh that is not in the frame of its cameras belongs, by the sparse points of the capture.
+struct MeshPlacement {
+  std::string words;                     ///< for the finding: what was found, or why nothing was
+  bool moves = false;                    ///< by more than noise of the points would
+  std::optional<Correction> correction;  ///< that moves the cameras to the mesh; none where the points do not determine it
+};
+
+/// @param mesh    the scene's only surface, in metres
+/// @param points  that the cameras saw, in metres
+/// A place from which not every camera that saw points would see the mesh is none. Stopped.
 MeshPlacement placementOf(const Scene& scene, const TriangleMesh& mesh, const std::vector<SeenPoint>& points,
                           const ProgressFn& progress) {
-  if (scene.surfaces.size() != 1 || scene.surfaces.begin()->second.points) return {"", {}};
+  if (scene.surfaces.size() != 1 || scene.surfaces.begin()->second.points) return {};
   const Outcome<Registration> found = registerMesh(mesh, points, progress);
   if (!found)
     return {
         "the place of the mesh among the sparse points was not found: " + found.failure().message() +
             " (a scan of a small part of the object, or a shape that turns onto itself, has to be laid onto the points by hand, "
             "for example in MeshLab or CloudCompare)",
+        false,
         {}};
   const Correction correction = meshSimilarityCorrection(found->pointsFromMesh);
   try {
     const Scene moved = corrected(scene, correction.fix);
     const int seeing = framesThatSee(moved, mesh), all = static_cast<int>(moved.frames.size());
     if (2 * seeing < all)  // cameras that look elsewhere are no harm, but most are there for the object
-      return {formatted("the sparse points put the mesh where %d of %d cameras see it", seeing, all), {}};
+      return {formatted("the sparse points put the mesh where %d of %d cameras see it", seeing, all), false, {}};
     return {formatted("moved to where the sparse points show it, the mesh is %.4g times as large and %d of %d cameras see it: ",
                       found->pointsFromMesh.scale, seeing, all) +
                 found->text(),
-            correction};
+            movesBox(mesh, found->pointsFromMesh), correction};
   } catch (const InputError& e) {  // depth maps or normals that would have to move, too
-    return {std::string("the place of the mesh was found, but the scene cannot be moved to it: ") + e.what(), {}};
+    return {std::string("the place of the mesh was found, but the scene cannot be moved to it: ") + e.what(), false, {}};
   }
+}
+
+bool startsWith(const ConventionReport::Proposal& p, const char* text) { return p.correction.fix.starts_with(text); }
+
+}  // namespace
+
+void placeMesh(const Scene& scene, const ProgressFn& progress, ConventionReport& report) {
+  const auto ofUnit = [](const auto& p) { return startsWith(p, "mesh-") || startsWith(p, "poses-"); };
+  if (!report.tracks || report.tracks->sample.empty() || scene.surfaces.size() != 1) return;
+  if (std::any_of(report.corrections.begin(), report.corrections.end(), ofUnit)) return;  // then it is known what is wrong
+  const auto& [id, source] = *scene.surfaces.begin();
+  const TriangleMesh mesh = source.mesh && !source.isCloud && !source.points ? readMesh(source) : TriangleMesh{};
+  if (mesh.triangles.empty()) return;
+  TrackCheck& tracks = *report.tracks;
+  MeshPlacement placement = placementOf(scene, mesh, tracks.sample, progress);
+  if (tracks.findings.empty()) {  // too many points are on the surface to say that it is elsewhere
+    if (!placement.correction || !placement.moves) return;
+    tracks.findings.push_back(
+        formatted("the surface passes through %d of the %d sparse points that it should", tracks.onSurface, tracks.met));
+    report.add(tracks.findings.back());
+  }
+  const auto said = std::find(report.findings.begin(), report.findings.end(), tracks.findings.back());
+  if (!placement.words.empty()) *said += "; " + placement.words;
+  tracks.findings.back() = *said;
+  if (!placement.correction) return;
+  std::erase_if(report.corrections, [](const auto& p) { return startsWith(p, "invert-") || startsWith(p, "turn-"); });
+  const std::size_t finding = std::size_t(said - report.findings.begin());
+  const auto after =
+      std::find_if(report.corrections.begin(), report.corrections.end(), [&](const auto& p) { return p.finding > finding; });
+  report.corrections.insert(after, {finding, *placement.correction});
+  tracks.correction = std::move(placement.correction);
 }
 
 }  // namespace glint

@@ -157,18 +157,19 @@ void concludeView(TrackCheck& check) {
 
 void concludeSurface(TrackCheck& check) {
   constexpr int kEnough = 20;       // points: fewer may all be of the background
-  constexpr double kFew = 0.05;     // of those that meet the surface
+  constexpr double kFew = 0.2;      // of those that meet the surface: a wrong one passes through a tenth by chance
+  constexpr double kMost = 0.5;     // fewer: another place is sought, and told where it explains them
   constexpr double kWrongUnit = 5;  // a factor that no wrong pose makes
   if (check.points < kEnough) return;
   const bool few = check.met < kEnough;
-  check.surfaceElsewhere = few || check.onSurface < kFew * check.met;
+  check.surfaceElsewhere = few || check.onSurface < kMost * check.met;
   if (few) {
     const std::string number = check.met == 0 ? "none" : formatted("only %d", check.met);
     check.findings.push_back(number +
                              formatted(" of %d sparse points of the capture %s seen before or on the surface (is the mesh in "
                                        "the frame of the cameras?)",
                                        check.inView, check.met <= 1 ? "is" : "are"));
-  } else if (check.surfaceElsewhere) {
+  } else if (check.onSurface < kFew * check.met) {
     const bool unit = check.depthRatio > kWrongUnit || check.depthRatio < 1 / kWrongUnit;
     check.findings.push_back(
         formatted("the surface passes through %d of the %d sparse points that it should: it lies at %.3g times their distance ",

@@ -27,7 +27,7 @@ struct TrackCheck {
   int met = 0;                           ///< points of a sample whose line of sight meets the surface
   int onSurface = 0;                     ///< of them, those that lie on it: depths agree to 1 %
   double depthRatio = 0;                 ///< median of distance to the surface / distance to the point; 0 = none met
-  bool surfaceElsewhere = false;         ///< the last finding says so
+  bool surfaceElsewhere = false;         ///< it misses most of the points; where it misses nearly all, the last finding says so
   std::vector<SeenPoint> sample;         ///< of the points, in metres, with a camera that saw each
   std::vector<std::string> findings;     ///< what looks wrong, one line each, with the likely cause
   std::optional<Correction> correction;  ///< that undoes the last finding

@@ -21,9 +21,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/csv_text.h"
 #include "core/draw/frame_overlay.h"
 #include "core/inspect/summary.h"
-#include "core/report/csv_text.h"
 #include "core/report/warnings.h"
 #include "gui/base/flow_layout.h"
 #include "gui/base/stale_badge.h"

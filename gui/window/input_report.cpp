@@ -54,6 +54,7 @@ void InputReport::take(const ReportPtr& report) {
   // What can be corrected at once stands first.
   const std::size_t first = report->corrections.empty() ? 0 : report->corrections.front().finding;
   offered_ = toQString(report->findings[first]);
+  if (report->findings.size() > 1) offered_ += tr(" (1 of %1 findings)").arg(report->findings.size());
   bar_.queueOffer(offered_, answers);
 }
 

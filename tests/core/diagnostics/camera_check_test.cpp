@@ -5,6 +5,7 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <functional>
 #include <random>
 #include <vector>
@@ -15,6 +16,7 @@
 namespace glint {
 namespace {
 using namespace testing_support;
+using testing::ContainsRegex;
 using testing::Each;
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -169,12 +171,51 @@ TEST(CameraCheck, MirroredImages) {
   }
 }
 
+Highlight disc(const Pixel& middle, double radius) {
+  Highlight h;
+  h.light = "lamp";
+  h.level = 0.5;
+  h.fromScene = true;
+  h.peak = middle;
+  for (int i = 0; i < 40; ++i)
+    h.contour.points.push_back(middle + radius * Pixel(std::cos(EIGEN_PI * i / 20), std::sin(EIGEN_PI * i / 20)));
+  return h;
+}
+
+/// A lamp on a wall beside the body, and a window that it mirrors elsewhere: the lamp that all frames share counts, its cameras are checked.
+TEST(CameraCheck, OtherHighlightsInTheFrames) {
+  Scene scene = orbit(ellipsoid());
+  for (std::size_t i = 0; i < scene.frames.size(); ++i) {
+    Frame& f = scene.frames[i];
+    const Pixel middle(f.camera.width / 2.0, f.camera.height / 2.0);
+    f.highlights.insert(f.highlights.begin(), disc({20, 20}, 15));
+    f.highlights.push_back(disc(middle + Pixel(9.0 * double(i % 3) - 9, 7.0 * double(i % 4) - 9), 12));
+  }
+  const CameraCheck right = checkCameras(scene);
+  EXPECT_EQ(right.views, 8) << right.whyNot;
+  EXPECT_THAT(right.findings, IsEmpty());
+  EXPECT_LT(right.missDeg.value_or(90), 2);
+  const CameraCheck longer = checkCameras(withCameras(scene, [](Camera& c) { c.pixelFromRay.topLeftCorner<2, 2>() *= 1.01; }));
+  EXPECT_THAT(longer.findings, ElementsAre(HasSubstr("% shorter")));
+}
+
+/// The mesh beside its place: the cameras are moved in place of it. The highlights tell by how much.
+TEST(CameraCheck, ShiftedSurface) {
+  const Eigen::Vector3d shift(0.1, -0.05, 0.08);
+  const CameraCheck check = checkCameras(withCameras(orbit(ellipsoid()), [&](Camera& c) {
+    c.camFromWorld = c.camFromWorld * Eigen::Translation3d(-shift);  // its centre moves by the shift
+  }));
+  EXPECT_THAT(
+      check.findings,
+      ElementsAre(ContainsRegex("the mesh seems to be shifted by \\(-0\\.(09|1)[0-9]*, 0\\.0[45][0-9]*, -0\\.0[78][0-9]*\\) m")));
+}
+
 TEST(CameraCheck, SaysWhyItCannotTell) {
-  EXPECT_THAT(checkCameras(orbit(ellipsoid(), 3)).whyNot, HasSubstr("3 frames show one whole highlight"));
+  EXPECT_THAT(checkCameras(orbit(ellipsoid(), 3)).whyNot, HasSubstr("3 frames show a whole highlight"));
   Scene depth = orbit(ellipsoid());
   for (Frame& f : depth.frames) f.surface.clear();
   EXPECT_THAT(checkCameras(depth).whyNot, HasSubstr("0 frames"));
-  Scene two = orbit(ellipsoid());
+  Scene two = orbit(ellipsoid(), 6);
   for (std::size_t i = 0; i < two.frames.size(); i += 2) two.frames[i].highlights.front().light = "other";
   EXPECT_THAT(checkCameras(two).whyNot, HasSubstr("different lights"));
   EXPECT_THROW(checkCameras(orbit(ellipsoid()), [](const StageEvent&) { return false; }), Stopped);

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/base/number_text.h"
 #include "tests/core/scene/scene_fixture.h"
 
 namespace glint::correction_tests {
@@ -128,14 +129,53 @@ TEST(Corrections, TheFrameOfTheMeshIsRefusedWhereFilesWouldHaveToChange) {
   EXPECT_NE(refusal(scene).find("2 surfaces"), std::string::npos);
 }
 
+/// Stored pictures of 64 x 48 were turned: a point that was at (x, y) is seen at (47 - y, x), (63 - x, 47 - y) or (y, 63 - x).
+TEST(Corrections, CamerasTurnWithThePictures) {
+  const TemporaryFolder folder;
+  const auto scene = [&](int width, int height) {
+    return readScene(folder.write("scene.json", formatted(R"({"glint_scene": 1,
+  "camera": {"width": %d, "height": %d, "fx": 80, "fy": 90, "cx": 30, "cy": 25, "distortion": [0.1, 0.02, 0.01, -0.02, 0]},
+  "frames": [{"id": "a", "camera_from_world": [[0,-1,0,1],[1,0,0,2],[0,0,1,8],[0,0,0,1]]}],
+  "surfaces": {"ball": {"analytic": {"type": "sphere", "radius": 0.4}}}})",
+                                                          width, height)));
+  };
+  const auto pixelOf = [](const Scene& s, const Eigen::Vector3d& p) {
+    const Camera& camera = s.frames[0].camera;
+    return Pixel(camera.distorted(*camera.project(p)));
+  };
+  const Scene stored = scene(64, 48);
+  for (const Eigen::Vector3d& p : {Eigen::Vector3d(0.3, -0.2, 0.1), Eigen::Vector3d(-1.5, 0.4, 0.9)}) {
+    const Pixel was = pixelOf(stored, p);
+    EXPECT_LT((pixelOf(corrected(scene(48, 64), "turn-cameras=90"), p) - Pixel(47 - was.y(), was.x())).norm(), 1e-9);
+    EXPECT_LT((pixelOf(corrected(stored, "turn-cameras=180"), p) - Pixel(63 - was.x(), 47 - was.y())).norm(), 1e-9);
+    EXPECT_LT((pixelOf(corrected(scene(48, 64), "turn-cameras=270"), p) - Pixel(was.y(), 63 - was.x())).norm(), 1e-9);
+  }
+}
+
 TEST(Corrections, RefusesWhatItDoesNotKnow) {
   const TemporaryFolder folder;
   const Scene scene = sceneWithPose(folder);
-  for (const char* fix :
-       {"", "invert", "invert-poses=1", "principal-point", "principal-point=", "principal-point=nan", "focal-length=0",
-        "focal-length=-1", "depth-scale=1e300", "mesh-mm", "mesh-similarity", "mesh-similarity=", "mesh-similarity=1,0,0,0,0,0",
-        "mesh-similarity=1,0,0,0,0,0,0,0", "mesh-similarity=0,0,0,0,0,0,0", "mesh-similarity=-1,0,0,0,0,0,0",
-        "mesh-similarity=1,9,0,0,0,0,0", "mesh-similarity=1,0,0,0,nan,0,0", "mesh-similarity=1,0,0,0,0,0,1e300"})
+  for (const char* fix : {"",
+                          "invert",
+                          "invert-poses=1",
+                          "principal-point",
+                          "principal-point=",
+                          "principal-point=nan",
+                          "focal-length=0",
+                          "focal-length=-1",
+                          "turn-cameras=45",
+                          "turn-cameras=100",
+                          "depth-scale=1e300",
+                          "mesh-mm",
+                          "mesh-similarity",
+                          "mesh-similarity=",
+                          "mesh-similarity=1,0,0,0,0,0",
+                          "mesh-similarity=1,0,0,0,0,0,0,0",
+                          "mesh-similarity=0,0,0,0,0,0,0",
+                          "mesh-similarity=-1,0,0,0,0,0,0",
+                          "mesh-similarity=1,9,0,0,0,0,0",
+                          "mesh-similarity=1,0,0,0,nan,0,0",
+                          "mesh-similarity=1,0,0,0,0,0,1e300"})
     EXPECT_NE(inputErrorOf([&] { corrected(scene, fix); }).find("--fix"), std::string::npos) << fix;
 }
 
