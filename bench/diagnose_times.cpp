@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Seconds of a diagnosis, as "Find out why" runs it on results that are there: docs/make_debugging.py runs this program.
-#include <chrono>
+// Processor time of a diagnosis, as "Find out why" runs it on results that are there, until its first word, its first remedy (-1 = none) and its end;
+// the model on screen, the verdict and the flags of the first remedy. docs/make_debugging.py runs this program.
 #include <cstdio>
+#include <ctime>
 #include <memory>
 #include <string>
 
@@ -11,30 +12,29 @@
 #include "core/scene/scene.h"
 
 namespace {
-using Clock = std::chrono::steady_clock;
-double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+double processorSeconds() { return double(std::clock()) / CLOCKS_PER_SEC; }
 }  // namespace
 
 int main(int argc, char** argv) try {
-  if (argc != 2) {
-    std::fputs("usage: diagnose_times SCENE\n", stderr);
+  if (argc < 2 || argc > 3) {
+    std::fputs("usage: diagnose_times SCENE [MODEL ON SCREEN]\n", stderr);
     return 2;
   }
   glint::InspectionRequest request;
   request.models = glint::modelIds();
   const auto scene = std::make_shared<const glint::Scene>(glint::readScene(argv[1]));
   const glint::Inspection inspection = glint::inspect(scene, request);
-  const Clock::time_point start = Clock::now();
-  double first = -1;
-  std::string what = "none";
+  const double start = processorSeconds();
+  double word = -1, first = -1;
   glint::DiagnoseOptions options;
-  options.found = [&](const std::string& model, const glint::Remedy& remedy) {
-    if (first >= 0 || !remedy.measured) return;
-    first = secondsSince(start);
-    what = model + ": " + glint::flagsOf(remedy.change);
+  if (argc == 3) options.present = argv[2];
+  options.soFar = [&](const glint::Diagnosis& d) {
+    if (word < 0) word = processorSeconds() - start;
+    if (first < 0 && !d.remedies.empty()) first = processorSeconds() - start;
   };
-  glint::diagnose(inspection, options);
-  std::printf("first %.2f all %.1f %s\n", first, secondsSince(start), what.c_str());
+  const glint::Diagnosis d = glint::diagnose(inspection, options);
+  std::printf("%.2f %.2f %.1f\n%s\n%s\n%s\n", word, first, processorSeconds() - start, d.present.c_str(), d.verdict.c_str(),
+              d.remedies.empty() ? "" : glint::flagsOf(d.remedies.front().change).c_str());
   return 0;
 } catch (const std::exception& e) {
   std::fprintf(stderr, "diagnose_times: %s\n", e.what());

@@ -1,17 +1,16 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Makes two sequences that are hard to fit, lets `glint diagnose` lead out of them, and writes the tables of docs/debugging.md.
+"""Asks `glint diagnose` about sequences that are hard to fit, and writes the table of docs/debugging.md.
 
 Usage: docs/make_debugging.py --glint PROGRAM --times PROGRAM [--keep DIR] [--write]
        docs/make_debugging.py --glint PROGRAM --pictures INSPECTOR [--keep DIR]
 
-Every command of the page is run; every figure is what one printed. The two sequences:
-  unequal   an ellipsoid under a small and a wide lamp; no frame says which lamps are on
-  ears      a body with two thin ears and a thin fin, as a mesh; two of 16 frames are hard to tell by eye
---times PROGRAM  diagnose_times of the same build (bench/): seconds until the first remedy
---keep DIR       leave the sequences there
---pictures FILE  draw the pictures of each step with this glint-inspector instead of the tables (needs xvfb-run and mogrify)
---write          put the tables into docs/debugging.md; else print them"""
+Every figure of the table is what a program printed: the held-out errors and those after the first remedy by `glint evaluate`, the verdict and the
+processor time by diagnose_times (bench/), which runs what *Find out why* runs. The sequences: a body with two thin ears and a fin, which is made
+here; sessions/vase; and, where they are there, ../shared/data/cycles/torus and two of ../shared/data/ladder.
+--keep DIR       leave the sequence that is made there, or take it from there
+--pictures FILE  draw the pictures of each step with this glint-inspector instead of the table (needs xvfb-run and mogrify)
+--write          put the table into docs/debugging.md; else print it"""
 import argparse
 import json
 import math
@@ -21,13 +20,12 @@ import re
 import subprocess
 import sys
 import tempfile
-import time
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs/debugging.md"
 CAMERA = {"width": 480, "height": 360, "fx": 600, "fy": 600, "cx": 239.5, "cy": 179.5}
-ASK, TRY = "plots.diagnose", "plots.try-remedy"
-STEPS = {"unequal": [ASK, TRY], "ears": [ASK, TRY, ASK, TRY]}
+STEPS = ("plots.diagnose", "plots.try-remedy")
+SHARED = ROOT.parent / "shared/data"
 MODELS = ("primal", "dual", "canonical", "limit-angle", "reflectance")
 
 
@@ -62,20 +60,14 @@ def write_mesh(file, parts):
     file.write_text("\n".join(lines) + "\n")
 
 
-def specifications(folder):
-    render = {"reflectance": "torrance-sparrow", "roughness": 0.08, "diffuse": [0.6, 0.8, 1.2], "bits": 8, "samples": 2, "seed": 1}
-    unequal = {"glint_scene": 1, "name": "unequal", "units": "m", "camera": CAMERA,
-               "surfaces": {"body": {"analytic": {"type": "ellipsoid", "semi_axes": [0.6, 0.45, 0.3]}}},
-               "lights": [{"id": "small", "position": [-1.0, -1.0, 2.0], "radius": 0.02}, {"id": "wide", "position": [1.3, -0.8, 1.8], "radius": 0.35}],
-               "path": {"orbit": {"centre": [0, 0, 0], "radius": 1.7, "from": -2.4, "to": -0.8, "height": 1.1, "count": 12}}, "render": render}
-    turned = [ellipsoid((0.5, 0.42, 0.4), (0, 0, 0), ("x", 0)), ellipsoid((0.05, 0.03, 0.35), (0.2, 0, 0.55), ("y", 20)),
-              ellipsoid((0.05, 0.03, 0.35), (-0.2, 0, 0.55), ("y", -20)), ellipsoid((0.25, 0.02, 0.12), (0, -0.45, 0), ("x", 15))]
-    write_mesh(folder / "ears.ply", turned)
-    ears = {"glint_scene": 1, "name": "ears", "units": "m", "camera": CAMERA, "surfaces": {"body": {"mesh": "ears.ply"}},
+def specification(folder):
+    parts = [ellipsoid((0.5, 0.42, 0.4), (0, 0, 0), ("x", 0)), ellipsoid((0.05, 0.03, 0.35), (0.2, 0, 0.55), ("y", 20)),
+             ellipsoid((0.05, 0.03, 0.35), (-0.2, 0, 0.55), ("y", -20)), ellipsoid((0.25, 0.02, 0.12), (0, -0.45, 0), ("x", 15))]
+    write_mesh(folder / "ears.ply", parts)
+    return {"glint_scene": 1, "name": "ears", "units": "m", "camera": CAMERA, "surfaces": {"body": {"mesh": "ears.ply"}},
             "lights": [{"id": "lamp", "position": [1.2, -1.4, 2.2], "radius": 0.05}],
             "path": {"orbit": {"centre": [0, 0, 0.1], "radius": 3, "from": -110, "to": -30, "height": 0.9, "count": 16}},
-            "render": {**render, "roughness": 0.12}}
-    return {"unequal": unequal, "ears": ears}
+            "render": {"reflectance": "torrance-sparrow", "roughness": 0.12, "diffuse": [0.6, 0.8, 1.2], "bits": 8, "samples": 2, "seed": 1}}
 
 
 class Failed(Exception):
@@ -83,89 +75,61 @@ class Failed(Exception):
 
 
 def run(arguments, codes=(0,)):
-    start = time.perf_counter()
     done = subprocess.run([str(a) for a in arguments], capture_output=True, text=True, check=False)
     if done.returncode not in codes:
         raise Failed(f"{' '.join(map(str, arguments))}: exit code {done.returncode}: {done.stderr.strip()}")
-    return done.stdout, time.perf_counter() - start
+    return done.stdout
 
 
 def make(glint, folder):
-    """The sequences as a camera would leave them: photographs, poses, surface; nothing that only a synthesis knows."""
-    scenes = {}
-    for name, spec in specifications(folder).items():
-        (folder / f"{name}.json").write_text(json.dumps(spec))
-        run([glint, "synth", folder / f"{name}.json", "-o", folder / name])
-        file = folder / name / "scene.json"
-        scene = json.loads(file.read_text())
-        for frame in scene["frames"]:
-            for key in ("lights_on", "radiance", "mask", "highlights", "depth", "normals"):
-                frame.pop(key, None)
-        file.write_text(json.dumps(scene))
-        scenes[name] = file
-    return scenes
+    """The sequence as a camera would leave it: photographs, poses, surface; nothing that only a synthesis knows."""
+    file = folder / "ears/scene.json"
+    if file.exists():
+        return file
+    (folder / "ears.json").write_text(json.dumps(specification(folder)))
+    run([glint, "synth", folder / "ears.json", "-o", folder / "ears"])
+    scene = json.loads(file.read_text())
+    for frame in scene["frames"]:
+        for key in ("lights_on", "radiance", "mask", "highlights", "depth", "normals"):
+            frame.pop(key, None)
+    file.write_text(json.dumps(scene))
+    return file
 
 
 def held_out(glint, scene, flags):
-    """Mean held-out error of the models, % of the diameter, and how many frames were predicted."""
-    out, _ = run([glint, "evaluate", scene, *flags, "--json", "-"], codes=(0, 3))
-    result = {}
-    for name, model in json.loads(out)["models"].items():
+    """Mean held-out contour errors of the models, % of the diameter, with what is missed and spurious."""
+    models = json.loads(run([glint, "evaluate", scene, *flags, "--json", "-"], codes=(0, 3)))["models"]
+    cells = {}
+    for name, model in models.items():
         s = model["summary"]
-        result[name] = (s["contour_error_pct"]["mean"], s["predicted"], s["frames"])
-    return result
+        pct = s["contour_error_pct"]["mean"]
+        cells[name] = "-" if not s["matched"] else f"{pct:.3g}" + "".join(f", {s[k]} {k}" for k in ("missed", "spurious") if s[k])
+    return cells
 
 
-def shown(entry):
-    pct, predicted, frames = entry
-    return f"{pct:.3g} % ({predicted} of {frames})" if predicted and pct is not None else f"no answer (0 of {frames})"
+def row(glint, times, name, scene):
+    before = held_out(glint, scene, [])
+    seconds, model, verdict, flags = run([times, scene]).splitlines()[:4]
+    word, first, end = (float(v) for v in seconds.split())
+    words = flags.split()
+    best = words[words.index("--model") + 1] if "--model" in words else model
+    after = held_out(glint, scene, words if "--model" in words else [*words, "--model", model])[best] if words else ""
+    return "| " + " | ".join([name, *(before[m] for m in MODELS), verdict, f"`{flags}`: {after}" if words else "",
+                              f"{word:.1f} s", f"{first:.1f} s" if words else "", f"{end:.0f} s"]) + " |"
 
 
-def first_remedy(times, scene):
-    """One sentence: how long a user of the inspector waits."""
-    words = run([times, scene])[0].split(maxsplit=4)
-    if words[4].strip() == "none":
-        return f"*Find out why* finds no remedy; it ends after {words[3]} s."
-    model, change = words[4].strip().split(": ", 1)
-    return f"*Find out why* shows its first remedy after {words[1]} s (`{change}` for {model}) and ends after {words[3]} s."
+def table(glint, times, sequences):
+    lines = ["| sequence | " + " | ".join(MODELS) + " | verdict | after the first remedy | first word | first remedy | all |",
+             "|---|" + "---|" * (len(MODELS) + 5)]
+    return "\n".join(lines + [row(glint, times, name, scene) for name, scene in sequences.items()])
 
 
-def table(glint, times, name, scene):
-    before = held_out(glint, scene, ["--models", ",".join(MODELS)])
-    out, seconds = run([glint, "diagnose", scene, "--json", "-"], codes=(0, 3))
-    diagnosis = json.loads(out)["models"]
-    lines = [f"`glint diagnose {name}/scene.json` (all models): {seconds:.0f} s. On results that are there, {first_remedy(times, scene)}", "",
-             "| model | status | held-out frames, before | first cause | best remedy | views that the fit did not see | held-out frames, after |",
-             "|---|---|---|---|---|---|---|"]
-    for model in MODELS:
-        d = diagnosis[model]
-        row = [model, d["status"], shown(before[model])]
-        if d["status"] == "ok":
-            lines.append("| " + " | ".join([*row, "", "", "", ""]) + " |")
-            continue
-        if not d["remedies"]:
-            lines.append("| " + " | ".join([*row, d["cause"], "nothing helps", "", ""]) + " |")
-            continue
-        best = d["remedies"][0]
-        flags = best["flags"].split()
-        if "--model" not in flags:
-            flags += ["--model", model]
-        effect = best["effect"]
-        after = held_out(glint, scene, flags)
-        gain = f"{effect['after_pct']:.3g} %"
-        gain = f"{effect['before_pct']:.3g} % to {gain}" if effect["answered_before"] else f"no prediction before, {gain} after"
-        row += [d["cause"].replace("|", "/"), f"`{best['flags']}`", gain,
-                shown(next(iter(after.values())))]
-        lines.append("| " + " | ".join(row) + " |")
-    return "\n".join(lines)
-
-
-def pictures(inspector, name, scene):
+def pictures(inspector, scene):
     """The window after each step that the page tells: what its buttons do, the menu's actions do, too."""
-    for step in range(1, len(STEPS[name]) + 1):
-        target = ROOT / "docs/pictures" / f"debugging-{name}-{step}.png"
+    for step in range(1, len(STEPS) + 1):
+        target = ROOT / "docs/pictures" / f"debugging-ears-{step}.png"
         run(["xvfb-run", "-a", "-s", "-screen 0 1600x1000x24 -noreset", "env", "QT_QPA_PLATFORM=xcb", "LIBGL_ALWAYS_SOFTWARE=1", inspector, scene,
-             "--theme", "dark", "--size", "1500x940", "--run", ",".join(STEPS[name][:step]), "--screenshot", target, "--wait-idle"])
+             "--theme", "dark", "--size", "1500x940", "--run", ",".join(STEPS[:step]), "--screenshot", target, "--wait-idle"])
         run(["mogrify", "-strip", "-colors", "128", "-define", "png:compression-level=9", target])
 
 
@@ -182,22 +146,23 @@ def main():
     with tempfile.TemporaryDirectory() as temporary:
         folder = options.keep or pathlib.Path(temporary)
         os.makedirs(folder, exist_ok=True)
-        scenes = make(options.glint.resolve(), folder)
+        glint = options.glint.resolve()
+        sequences = {"ears": make(glint, folder)}
         if options.pictures:
-            for name, scene in scenes.items():
-                pictures(options.pictures.resolve(), name, scene)
+            pictures(options.pictures.resolve(), sequences["ears"])
             return
-        tables = {name: table(options.glint.resolve(), options.times.resolve(), name, scene) for name, scene in scenes.items()}
+        for name, scene in {"vase": ROOT / "sessions/vase", "torus": SHARED / "cycles/torus", "panel": SHARED / "ladder/panel", "plastic": SHARED / "ladder/plastic"}.items():
+            if (scene / "scene.json").exists():
+                sequences[name] = scene / "scene.json"
+        text = table(glint, options.times.resolve(), sequences)
     if not options.write:
-        print("\n\n".join(f"{name}\n\n{text}" for name, text in tables.items()))
+        print(text)
         return
     page = PAGE.read_text()
-    for name, text in tables.items():
-        mark = re.compile(f"(<!-- {name} -->\n).*?(\n<!-- end -->)", re.S)
-        if not mark.search(page):
-            raise Failed(f"docs/debugging.md has no place for {name}")
-        page = mark.sub(lambda m, text=text: m[1] + text + m[2], page)
-    PAGE.write_text(page)
+    mark = re.compile(r"(<!-- table -->\n).*?(\n<!-- end -->)", re.S)
+    if not mark.search(page):
+        raise Failed("docs/debugging.md has no place for the table")
+    PAGE.write_text(mark.sub(lambda m: m[1] + text + m[2], page))
 
 
 try:

@@ -5,7 +5,7 @@
 #include <map>
 #include <set>
 
-#include "core/base/number_text.h"
+#include "core/inspect/summary.h"
 #include "core/scene/frame_spec.h"
 
 namespace glint {
@@ -14,24 +14,21 @@ namespace {
 constexpr std::size_t kMostExcluded = 2;  // frames tried one by one
 constexpr std::size_t kFewestViews = 4;   // an exclusion must leave one more than a fit with a free centre needs
 constexpr std::size_t kMoreFrames = 12;   // twice the default: enough to tell whether more help
-constexpr double kSmallRadiusPx = 6;      // a contour is known to about 0.1 px, 2 % of this
-constexpr double kLargerArea = 60;        // px^2: a radius of 4.4 px
 
 class Candidates {
  public:
-  Candidates(const Inspection& inspection, const HighlightModel& model, const std::vector<HighlightEvidence>& evidence)
-      : r_(inspection), model_(model), evidence_(evidence) {}
+  Candidates(const Inspection& inspection, const std::string& model)
+      : r_(inspection), model_(modelByName(model)), evidence_(highlightEvidence(inspection, model_)) {}
 
   std::vector<CandidateChange> run() {
+    filters();
     lobes();
+    otherFrames();
     lightSolver();
     exclusions();
     ellipsoidSolvers();
     surface();
     cameras();
-    slow_ = true;
-    otherFrames();
-    detection();
     return std::move(all_);
   }
 
@@ -39,12 +36,18 @@ class Candidates {
   void set(const std::string& key, const std::string& value, const std::string& why) {
     Settings other = r_.request.settings;
     other.setFromText(key, value);
-    if (!(valueOf(other, key) == valueOf(r_.request.settings, key)))
-      all_.push_back({{.set = key + "=" + value}, why, slow_, key.rfind("detect.", 0) == 0});
+    if (!(valueOf(other, key) == valueOf(r_.request.settings, key))) all_.push_back({{.set = key + "=" + value}, why});
   }
   static SettingValue valueOf(const Settings& settings, const std::string& key) {
     const auto it = settings.values().find(key);
     return it == settings.values().end() ? paramSpec(key).defaultValue : it->second;
+  }
+
+  void filters() {
+    const ModelSummary summary = summarise(r_, r_.models.at(model_.id()));
+    if (summary.spurious == 0) return;
+    set("predict.filter_area", "true", "predictions that are smaller than what detection takes");
+    set("predict.filter_shadow", "true", "predictions in the shadow of the object itself");
   }
 
   void lightSolver() {
@@ -88,7 +91,7 @@ class Candidates {
   }
   void train(const std::string& spec, const std::string& why) {
     if (spec != r_.request.train && parseTrainSpec(spec, *r_.scene).frames != r_.train.frames)
-      all_.push_back({{.train = spec}, why, slow_});
+      all_.push_back({{.train = spec}, why});
   }
 
   void ellipsoidSolvers() {
@@ -98,9 +101,9 @@ class Candidates {
 
   void lobes() {
     if (!mayHaveLobe()) return;
-    set("fit.evidence", "contours", "a lobe that the pixels do not follow");
     set("fit.light_size", "sphere", "a lamp with a size");
     set("fit.light_size", "point", "a lamp without a size");
+    set("fit.evidence", "contours", "a lobe that the pixels do not follow");
     for (const char* lobe : {"ggx", "torrance-sparrow"}) set("fit.lobe", lobe, "another lobe");
   }
 
@@ -123,32 +126,20 @@ class Candidates {
     if (model_.needsLight()) set("light.refine_normals", "true", "a mesh whose normals are off");
   }
 
-  void detection() {
-    const bool small =
-        std::any_of(evidence_.begin(), evidence_.end(), [](const HighlightEvidence& e) { return e.radiusPx < kSmallRadiusPx; });
-    if (small && r_.request.settings.number("detect.min_area") < kLargerArea)
-      set("detect.min_area", formatted("%g", kLargerArea), "small highlights, whose contours say little");
-    if (r_.request.settings.number("detect.level") < 0.7) set("detect.level", "0.7", "contours nearer to the peak");
-    if (r_.request.settings.number("detect.level") > 0.3) set("detect.level", "0.3", "larger contours");
-    set("detect.background", "smooth", "a background that the lobe's fit gets wrong");
-  }
-
   void cameras() {
     if (model_.needsLight()) set("light.refine_poses", "true", "poses that are off by a little");
   }
 
   const Inspection& r_;
   const HighlightModel& model_;
-  const std::vector<HighlightEvidence>& evidence_;
+  const std::vector<HighlightEvidence> evidence_;
   std::vector<CandidateChange> all_;
-  bool slow_ = false;
 };
 
 }  // namespace
 
-std::vector<CandidateChange> candidateChanges(const Inspection& inspection, const HighlightModel& model,
-                                              const std::vector<HighlightEvidence>& evidence) {
-  return Candidates(inspection, model, evidence).run();
+std::vector<CandidateChange> candidateChanges(const Inspection& inspection, const std::string& model) {
+  return Candidates(inspection, model).run();
 }
 
 }  // namespace glint

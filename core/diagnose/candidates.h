@@ -11,13 +11,12 @@ namespace glint {
 struct CandidateChange {
   Change change;
   std::string why;
-  bool slow = false;         ///< needs highlights or views found anew: seconds, where others need a tenth of one
-  bool newContours = false;  ///< the highlights are found anew: contours of other frames are not comparable
 };
 
-/// Changes worth a trial for this model, most promising first, slow ones last: other solvers, the highlights that stand against it left out, other
-/// readings of the surface, other training frames, other contours. Never one that only hides a failure (fit.most_residual). Other models are not among them.
-std::vector<CandidateChange> candidateChanges(const Inspection& inspection, const HighlightModel& model,
-                                              const std::vector<HighlightEvidence>& evidence);
+/// Changes worth a trial for this model, quick and promising ones first: filters of its spurious predictions, solvers, the highlights that stand
+/// against it left out, readings of the surface, lobes, training frames. Other models are not among them; nor is what finds other highlights
+/// (detect.*), which would change what is measured; nor what only hides a failure (fit.most_residual).
+/// @param inspection  complete, with this model
+std::vector<CandidateChange> candidateChanges(const Inspection& inspection, const std::string& model);
 
 }  // namespace glint

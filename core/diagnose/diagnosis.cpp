@@ -2,264 +2,218 @@
 #include "core/diagnose/diagnosis.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <memory>
 #include <utility>
 
-#include "core/base/angle.h"
-#include "core/base/light_name.h"
 #include "core/base/number_text.h"
 #include "core/diagnose/candidates.h"
-#include "core/diagnose/spurious_note.h"
-#include "core/diagnostics/conditioning.h"
+#include "core/diagnose/model_causes.h"
 #include "core/scene/frame_spec.h"
 #include "core/selection/selection.h"
 
 namespace glint {
 namespace {
 
-constexpr std::size_t kMostNamed = 4;           // views in one sentence; --json has all that are measured
-constexpr std::size_t kMostLeftOutOfScore = 2;  // more frames are no exceptions
-constexpr double kSolved = 0.25;                // of the error before: a smaller gain leaves the search worth its time
-constexpr int kMostFrames = 10;  // of the sequence, predicted each time: a mean of so many is known to a third of their spread
+constexpr double kNotFar = 5;  // times the least error: a change may make a model with more the best one
 
-std::string placeOf(const Inspection& r, const HighlightEvidence& e) {
-  return "frame " + r.scene->frames[std::size_t(e.frame)].id + ", " + lightName(e.light);
+bool isAsItIs(const Change& change) { return !change.train && !change.set && !change.exclude; }
+
+/// Null where the model was not computed as it is.
+const UnseenError* errorOf(const Diagnosis& d, const std::string& model) {
+  const auto it = std::find_if(d.measured.begin(), d.measured.end(),
+                               [&](const Measured& m) { return isAsItIs(m.change) && m.change.model == model; });
+  return it == d.measured.end() ? nullptr : &it->error;
 }
 
-/// Errors of every model by its name, each measured once.
-class ErrorsOfModels {
- public:
-  ErrorsOfModels(const Inspection& inspection, const ProgressFn& progress)
-      : r_(inspection), progress_(progress), frames_(spreadFrames(inspection, kMostFrames)) {}
-  const std::vector<int>& frames() const { return frames_; }
-  bool has(const std::string& model) const { return known_.count(model) > 0; }
-  const LeftOutError& of(const std::string& model) {
-    const auto it = known_.find(model);
-    if (it != known_.end()) return it->second;
-    return known_.emplace(model, unseenError(r_, r_, frames_, modelByName(model), progress_)).first->second;
+/// One of each kind is enough.
+std::string kindOf(const Change& change) {
+  return change.set       ? change.set->substr(0, change.set->find('='))
+         : change.train   ? "train"
+         : change.exclude ? "exclude"
+                          : "model";
+}
+
+std::vector<Remedy> remediesFor(const Diagnosis& d) {
+  std::vector<Remedy> all, kept;
+  const UnseenError* const best = errorOf(d, d.best);
+  for (const Measured& m : d.measured) {
+    const bool here = m.change.model == d.present;
+    if ((here && isAsItIs(m.change)) || !isBetter(m.error, d.now)) continue;
+    // Where a model as it is does as well, the change is not what helps.
+    if (!isAsItIs(m.change) && best && !isBetter(m.error, *best)) continue;
+    all.push_back({m.change, m.why, commonViews(d.now, m.error), commonViews(m.error, d.now)});
+    if (here) all.back().change.model.reset();
   }
+  std::stable_sort(all.begin(), all.end(), [](const Remedy& a, const Remedy& b) { return a.after.pct() < b.after.pct(); });
+  for (Remedy& r : all)
+    if (kept.size() < kMostRemedies &&
+        std::none_of(kept.begin(), kept.end(), [&](const Remedy& k) { return kindOf(k.change) == kindOf(r.change); }))
+      kept.push_back(std::move(r));
+  return kept;
+}
 
- private:
-  const Inspection& r_;
-  const ProgressFn& progress_;
-  std::vector<int> frames_;
-  std::map<std::string, LeftOutError> known_;
-};
-
-class ModelCase {
- public:
-  ModelCase(const Inspection& inspection, const std::string& name, ErrorsOfModels& errors, const DiagnoseOptions& options,
-            const ProgressFn& progress)
-      : r_(inspection), model_(modelByName(name)), errors_(errors), options_(options), progress_(progress) {
-    d_.model = name;
+std::string verdictOf(const Diagnosis& d) {
+  if (d.now.observed() == 0) return "Nothing can be measured: no frame shows a highlight that a model could be compared with.";
+  if (!d.remedies.empty()) {
+    const Remedy& r = d.remedies.front();
+    std::string words = wordsOf(r.change);
+    words[0] = char(std::toupper(words[0]));
+    return words + ": the error is " + textOf(r.after) + ", where " + d.present +
+           (r.before.matched() > 0 ? " as it is has " + textOf(r.before) : " predicts no observed highlight") + ".";
   }
+  const std::string helps = d.complete ? "Nothing that was tried helps: " : "So far: ";
+  if (d.best.empty()) return helps + "no model predicts an observed highlight.";
+  const UnseenError& best = *errorOf(d, d.best);
+  if (d.best != d.present)
+    return helps + "the error of " + d.present + " is " + textOf(d.now) + ", and the smallest, " + textOf(best) + " of " +
+           d.best + ", is not smaller beyond chance.";
+  const std::string error = d.best + " is best, with an error of " + textOf(best);
+  return best.pct() <= kNegligiblePct ? "Nothing is left to improve: " + error + "." : helps + error + ".";
+}
 
-  /// Causes, and remedies that cost next to nothing once the other models' errors are known.
-  void start() {
-    d_.unseen = errors_.of(d_.model);
-    d_.evidence = highlightEvidence(r_, model_);
-    judge();
-    if (const auto result = r_.models.find(d_.model); result != r_.models.end())
-      if (std::string note = spuriousNote(r_, result->second); !note.empty()) d_.notes.push_back(std::move(note));
-    if (d_.status == ModelDiagnosis::Status::Ok) return;
+class Adviser {
+ public:
+  Adviser(const Inspection& inspection, const DiagnoseOptions& options, const ProgressFn& progress)
+      : r_(inspection), options_(options), progress_(progress) {}
+
+  Diagnosis run() {
+    compareComputed();
+    tryModels();
+    tryChanges();
+    d_.complete = true;
     explain();
-    otherModels(false);
-    leaveOutOfScore();
-  }
-
-  /// The rest, each of which is a fit of its own.
-  ModelDiagnosis finish() {
-    if (d_.status == ModelDiagnosis::Status::Ok) return std::move(d_);
-    const std::vector<CandidateChange> candidates = candidateChanges(r_, model_, d_.evidence);
-    d_.known += static_cast<int>(candidates.size());
-    otherModels(true);
-    changes(candidates, false);
-    changes(candidates, true);
-    d_.fits = traceFits(r_, model_);  // after the remedies: it fits once more, and the first remedy must not wait for that
-    std::stable_sort(d_.remedies.begin(), d_.remedies.end(), [](const Remedy& a, const Remedy& b) {
-      return std::pair(!a.measured, a.after.meanPct()) < std::pair(!b.measured, b.after.meanPct());
-    });
+    askAuto();
     return std::move(d_);
   }
 
-  const ModelDiagnosis& soFar() const { return d_; }
-
  private:
-  void judge() {
-    const auto result = r_.models.find(d_.model);
-    if (result == r_.models.end()) return;
-    const std::vector<ModelResult::Fit>& fits = result->second.fits;
-    const auto failed = std::count_if(fits.begin(), fits.end(), [](const auto& f) { return !f.fit; });
-    if (fits.empty() || failed == static_cast<long>(fits.size())) {
-      d_.status = ModelDiagnosis::Status::Failed;
-    } else if (failed > 0 || isPoor(ofTraining(d_.unseen, true)) || isPoor(ofTraining(d_.unseen, false))) {
-      d_.status = ModelDiagnosis::Status::Poor;
+  using Results = std::shared_ptr<const Inspection>;
+
+  /// The next step of the work, which the user sees counted; what runs in it can be stopped whenever it reports.
+  ProgressFn step(const std::string& what) {
+    const StageEvent now{what, done_++, std::max(total_, done_)};
+    if (!report(progress_, now)) throw Stopped{};
+    return [this, now](const StageEvent&) { return report(progress_, now); };
+  }
+
+  void tell() {
+    adviseFor(d_, d_.present);
+    if (options_.soFar) options_.soFar(d_);
+  }
+
+  void compareComputed() {
+    const std::size_t asked = r_.request.models.size(), others = modelIds().size() - std::min(asked, modelIds().size());
+    total_ = int(others + asked) + options_.mostTried + 2;
+    const ProgressFn progress = step("compare the models");
+    for (const std::string& model : r_.request.models)
+      if (r_.models.count(model)) add(model, Results(Results(), &r_), unseenError(r_, model, progress));  // not owned
+    adviseFor(d_, options_.present);
+    tell();
+  }
+
+  void add(const std::string& model, Results of, UnseenError error) {
+    results_[model] = std::move(of);
+    d_.measured.push_back({{.model = model}, modelByName(model).assumption(), std::move(error)});
+  }
+
+  /// Runs the request with a change, for one model alone. Nothing where the program refuses that combination.
+  Results measured(const Inspection& from, const Change& change, const std::string& model, UnseenError& error) {
+    const ProgressFn progress = step("try " + flagsOf(change));
+    InspectionRequest request = with(from.request, change, *r_.scene);
+    request.models = {model};
+    try {
+      const auto of = std::make_shared<const Inspection>(inspect(r_.given, request, progress, &from));
+      error = unseenError(*of, model, progress);
+      ++d_.tried;
+      return of;
+    } catch (const InputError&) {
+      return nullptr;
     }
   }
 
-  static bool isPoor(const LeftOutError& error) {
-    return error.answered() < static_cast<int>(error.views.size()) || error.meanPct() > kLargestExpectedPct;
+  /// To improve, by what contours resolve.
+  bool nothingIsLeft() const { return !d_.best.empty() && errorOf(d_, d_.best)->pct() <= kNegligiblePct; }
+
+  void tryModels() {
+    for (const std::string& model : modelIds()) {
+      if (results_.count(model) || nothingIsLeft()) continue;
+      ++d_.known;
+      UnseenError error;
+      if (Results of = measured(r_, {.model = model}, model, error)) add(model, std::move(of), std::move(error));
+      tell();
+    }
+  }
+
+  /// What may help the best model, and others that are not far from it: their first changes first. Where none answers, that of the present one.
+  std::vector<CandidateChange> changesWorthATrial() {
+    std::vector<std::pair<double, std::string>> bases;
+    for (const auto& [model, of] : results_) {
+      const double pct = errorOf(d_, model)->pct();
+      if (d_.best.empty() ? model == d_.present : pct <= kNotFar * errorOf(d_, d_.best)->pct()) bases.emplace_back(pct, model);
+    }
+    std::sort(bases.begin(), bases.end());
+    std::vector<std::pair<std::size_t, CandidateChange>> ranked;
+    for (const auto& [pct, model] : bases) {
+      std::vector<CandidateChange> candidates = candidateChanges(*results_.at(model), model);
+      d_.known += int(candidates.size());
+      const int most = model == bases.front().second ? options_.mostTried : (options_.mostTried + 2) / 3;
+      candidates.resize(std::min(candidates.size(), std::size_t(most)));
+      for (std::size_t i = 0; i < candidates.size(); ++i) {
+        candidates[i].change.model = model;
+        ranked.emplace_back(i, std::move(candidates[i]));
+      }
+    }
+    std::stable_sort(ranked.begin(), ranked.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::vector<CandidateChange> all;
+    for (auto& [rank, candidate] : ranked) all.push_back(std::move(candidate));
+    return all;
+  }
+
+  void tryChanges() {
+    if (d_.now.observed() == 0 || nothingIsLeft()) return;
+    const std::vector<CandidateChange> all = changesWorthATrial();
+    total_ = done_ + int(all.size() + r_.request.models.size()) + 1;
+    for (const CandidateChange& c : all) {
+      UnseenError error;
+      if (!measured(*results_.at(*c.change.model), c.change, *c.change.model, error)) continue;
+      d_.measured.push_back({c.change, c.why, std::move(error)});
+      tell();
+    }
   }
 
   void explain() {
-    std::vector<std::string>& causes = d_.causes;
-    for (const ModelResult::Fit& fit : r_.models.at(d_.model).fits)
-      if (fit.failure()) causes.push_back(lightName(textOf(fit.key())) + ": " + fit.failure()->message());
-    if (ofTraining(d_.unseen, true).views.empty()) causes.push_back("no training view can be used");
-    if (!d_.unseen.firstFailure.empty()) causes.push_back(d_.unseen.firstFailure);
-    oneLimitAngle();
-    for (const Conditioning& c : conditioningOf(r_)) {
-      if (c.model != d_.model) continue;
-      for (const Finding& f : c.findings)
-        if (f.verdict == Verdict::Red && f.id != "fit") causes.push_back(lightName(c.light) + ", " + f.title + ": " + f.reason);
+    for (const std::string& model : r_.request.models) {
+      if (!r_.models.count(model)) continue;
+      step("say why " + model + " is as it is");
+      d_.models.push_back(diagnosisOf(r_, model, *errorOf(d_, model)));
     }
-    goneAstray();
-    std::vector<std::string> once;
-    for (std::string& c : causes)
-      if (std::find(once.begin(), once.end(), c) == once.end()) once.push_back(std::move(c));
-    causes = std::move(once);
+    tell();
   }
 
-  /// Views that the fit did not see and gets wrong, where the fit itself is there: what they have in common shows what the model misses.
-  void goneAstray() {
-    std::vector<const LeftOutError::View*> astray;
-    for (const LeftOutError::View& v : d_.unseen.views)
-      if (isAstray(v)) astray.push_back(&v);
-    if (d_.status == ModelDiagnosis::Status::Failed || astray.empty()) return;
-    std::stable_sort(astray.begin(), astray.end(), [](auto* a, auto* b) { return a->pct > b->pct; });
-    std::string text = formatted("%zu of %zu views that the fit did not see are wrong: ", astray.size(), d_.unseen.views.size());
-    for (std::size_t i = 0; i < astray.size() && i < kMostNamed; ++i) {
-      const LeftOutError::View& v = *astray[i];
-      text += (i ? ", " : "") + std::string(v.training ? "left-out" : "held-out") + " frame " +
-              r_.scene->frames[std::size_t(v.frame)].id;
-      text += v.answered ? formatted(" off by %.3g %%", v.pct) : " not predicted";
-      text += formatted(" (a highlight of %.2g px radius)", v.radiusPx);
-    }
-    if (astray.size() > kMostNamed) text += formatted(" and %zu more", astray.size() - kMostNamed);
-    d_.causes.push_back(std::move(text));
-  }
-
-  bool hasLobe() const {
-    const std::vector<ModelResult::Fit>& fits = r_.models.at(d_.model).fits;
-    return std::any_of(fits.begin(), fits.end(), [](const auto& f) { return f.fit && f.fit->template as<ReflectanceFit>(); });
-  }
-
-  void oneLimitAngle() {
-    const LimitConflict c = limitConflict(d_.evidence);
-    if (!c.wide || !model_.needsLight() || hasLobe()) return;
-    d_.causes.push_back(formatted("two highlights have limit angles %.3g\u00b0 (", degrees(*c.wide->limitAngle)) +
-                        placeOf(r_, *c.wide) + formatted(") and %.3g\u00b0 (", degrees(*c.narrow->limitAngle)) +
-                        placeOf(r_, *c.narrow) + "): one limit angle cannot fit both");
-  }
-
-  void keep(const CandidateChange& candidate, const LeftOutError& after) {
-    ++d_.tried;
-    if (!isBetter(after, d_.unseen)) return;
-    Remedy remedy{candidate.change, candidate.why, commonViews(d_.unseen, after), commonViews(after, d_.unseen)};
-    if (options_.found) options_.found(d_.model, remedy);
-    d_.remedies.push_back(std::move(remedy));
-  }
-
-  /// @param richest  that one alone, which takes seconds, or all but that
-  void otherModels(bool richest) {
-    for (const std::string& other : modelIds()) {
-      if (other == d_.model || richest != (other == modelIds().back())) continue;
-      ++d_.known;
-      if (richest && solved() && !options_.slowToo && !errors_.has(other)) continue;
-      keep({{.model = other}, modelByName(other).assumption()}, errors_.of(other));
-    }
-  }
-
-  /// Few frames that go astray may show another part or another lamp. Their exclusion cannot be measured: it is offered with its price.
-  void leaveOutOfScore() {
-    std::vector<int> frames = r_.request.excluded;
-    Remedy remedy;
-    for (const LeftOutError::View& v : d_.unseen.views) {
-      if (isAstray(v) && !v.training) frames.push_back(v.frame);
-      if (!isAstray(v) || v.training) remedy.after.views.push_back(v);
-    }
-    std::sort(frames.begin(), frames.end());
-    frames.erase(std::unique(frames.begin(), frames.end()), frames.end());
-    const std::size_t more = frames.size() - r_.request.excluded.size();
-    if (d_.status == ModelDiagnosis::Status::Failed || more == 0 || more > kMostLeftOutOfScore) return;
-    ++d_.known;
-    ++d_.tried;
-    remedy.change.exclude = frameSpec(frames, *r_.scene);
-    remedy.why =
-        "leaves frames out of the score that the model gets wrong; right only if their highlight is not of the part that matters";
-    remedy.before = d_.unseen;
-    remedy.measured = false;
-    if (options_.found) options_.found(d_.model, remedy);
-    d_.remedies.push_back(std::move(remedy));
-  }
-
-  /// Some remedy has brought nearly every view under the bound, and the error to a fraction of what it was.
-  bool solved() const {
-    return std::any_of(d_.remedies.begin(), d_.remedies.end(), [this](const Remedy& r) {
-      return r.measured && 4 * r.after.views.size() >= 3 * d_.unseen.views.size() &&
-             r.after.answered() == static_cast<int>(r.after.views.size()) &&
-             r.after.meanPct() <= std::min(kLargestExpectedPct, kSolved * r.before.meanPct());
-    });
-  }
-
-  /// Evidence and views under the change.
-  Inspection changed(const Change& change) const {
-    InspectionRequest request = with(r_.request, change, *r_.scene);
-    request.models.clear();
-    if (!change.exclude) {
-      const TrainSpec train = parseTrainSpec(request.train, *r_.scene);
-      return inspectOneFrame(r_.given, request, train.frames.at(0), progress_, &r_);
-    }
-    Inspection fewer = r_;
-    fewer.request = request;
-    std::erase_if(fewer.train.frames, [&](int f) { return isExcluded(request, f); });
-    fewer.views.clear();
-    fewer.viewsAsGiven.clear();
-    for (std::size_t i = 0; i < r_.views.size(); ++i) {
-      if (isExcluded(request, r_.views[i].frame)) continue;
-      if (const auto given = r_.viewsAsGiven.find(int(i)); given != r_.viewsAsGiven.end())
-        fewer.viewsAsGiven.emplace(int(fewer.views.size()), given->second);
-      fewer.views.push_back(r_.views[i]);
-    }
-    return fewer;
-  }
-  static bool isExcluded(const InspectionRequest& request, int frame) {
-    return std::binary_search(request.excluded.begin(), request.excluded.end(), frame);
-  }
-
-  void changes(const std::vector<CandidateChange>& candidates, bool slow) {
-    const int most = hasLobe() && !options_.slowToo ? (options_.mostTried + 1) / 2 : options_.mostTried;  // seconds for each
-    for (const CandidateChange& candidate : candidates) {
-      if (candidate.slow != slow) continue;
-      if (measured_ >= most || (!options_.slowToo && solved())) break;
-      if (!report(progress_, {d_.model + ": try " + flagsOf(candidate.change), measured_, static_cast<int>(candidates.size())}))
-        throw Stopped{};
-      const Inspection inspection = changed(candidate.change);
-      keep(candidate, candidate.newContours ? leftOutError(inspection, model_, progress_)
-                                            : unseenError(inspection, r_, errors_.frames(), model_, progress_));
-      ++measured_;
-    }
+  /// It has seen the training frames alone, so that it may choose another model than held-out frames do. No question where one model answers.
+  void askAuto() {
+    const auto answers = std::count_if(results_.begin(), results_.end(),
+                                       [&](const auto& entry) { return errorOf(d_, entry.first)->matched() > 0; });
+    if (!options_.askAuto || answers < 2 || d_.now.leftOut) return;
+    const Selection choice = selectModel(r_, std::nullopt, step("compare with --models auto"));
+    if (choice.model == d_.best) return;
+    const UnseenError* const error = errorOf(d_, choice.model);
+    d_.notes.push_back("--models auto, which sees the training frames alone, chooses " +
+                       (error ? choice.model + "; in the held-out frames its error is " + textOf(*error) + "." : "no model."));
+    tell();
   }
 
   const Inspection& r_;
-  const HighlightModel& model_;
-  ErrorsOfModels& errors_;
   const DiagnoseOptions& options_;
   const ProgressFn& progress_;
-  ModelDiagnosis d_;
-  int measured_ = 0;  ///< changes, other models aside
+  Diagnosis d_;
+  std::map<std::string, Results> results_;  ///< of the models as they are
+  int done_ = 0, total_ = 0;                ///< steps
 };
 
 }  // namespace
-
-const char* nameOf(ModelDiagnosis::Status status) {
-  switch (status) {
-    case ModelDiagnosis::Status::Ok: return "ok";
-    case ModelDiagnosis::Status::Poor: return "poor";
-    case ModelDiagnosis::Status::Failed: break;
-  }
-  return "failed";
-}
 
 std::string flagsOf(const Change& change) {
   std::string text;
@@ -289,30 +243,43 @@ InspectionRequest with(InspectionRequest request, const Change& change, const Sc
   return request;
 }
 
+std::string wordsOf(const Change& change) {
+  std::string text;
+  const auto add = [&](const char* verb, const std::optional<std::string>& value) {
+    if (value) text += (text.empty() ? "" : " and ") + (verb + *value);
+  };
+  add("use ", change.model);
+  add("train on ", change.train);
+  if (change.set) {
+    const std::size_t equals = change.set->find('=');
+    add("set ", change.set->substr(0, equals) + " = " + (equals == std::string::npos ? "" : change.set->substr(equals + 1)));
+  }
+  add("leave out ", change.exclude);
+  return text;
+}
+
+void adviseFor(Diagnosis& d, const std::string& present) {
+  d.best.clear();
+  for (const std::string& model : modelIds()) {  // of equals the simplest
+    const UnseenError* const error = errorOf(d, model);
+    if (error && error->matched() > 0 && (d.best.empty() || error->pct() < errorOf(d, d.best)->pct())) d.best = model;
+  }
+  if (errorOf(d, present)) d.present = present;
+  if (!errorOf(d, d.present)) d.present = d.best.empty() && !d.measured.empty() ? *d.measured.back().change.model : d.best;
+  const UnseenError* const now = errorOf(d, d.present);
+  d.now = now ? *now : UnseenError{};
+  d.remedies = remediesFor(d);
+  d.verdict = verdictOf(d);
+}
+
+std::string effectText(const Remedy& remedy) {
+  // Between words and a number an arrow would not be read as "before and after".
+  if (remedy.before.matched() == 0) return "no prediction before, " + textOf(remedy.after) + " after";
+  return textOf(remedy.before) + " -> " + textOf(remedy.after);
+}
+
 Diagnosis diagnose(const Inspection& inspection, const DiagnoseOptions& options, const ProgressFn& progress) {
-  ErrorsOfModels errors(inspection, progress);
-  std::vector<ModelCase> cases;
-  cases.reserve(inspection.request.models.size());
-  std::vector<std::size_t> quick, slow;
-  for (const std::string& model : inspection.request.models) {
-    (model == modelIds().back() ? slow : quick).push_back(cases.size());
-    cases.emplace_back(inspection, model, errors, options, progress);
-  }
-  // Somebody may wait: first what every model answers at once, then the rest, beginning with the model that is nearest to being good.
-  for (const std::size_t i : quick) cases[i].start();
-  std::stable_sort(quick.begin(), quick.end(), [&](std::size_t a, std::size_t b) {
-    const LeftOutError &x = cases[a].soFar().unseen, &y = cases[b].soFar().unseen;
-    if (x.views.empty() || y.views.empty()) return x.views.size() > y.views.size();
-    return std::pair(-x.answered(), x.meanPct()) < std::pair(-y.answered(), y.meanPct());
-  });
-  Diagnosis all;
-  all.models.resize(cases.size());
-  for (const std::size_t i : quick) all.models[i] = cases[i].finish();
-  for (const std::size_t i : slow) {
-    cases[i].start();
-    all.models[i] = cases[i].finish();
-  }
-  return all;
+  return Adviser(inspection, options, progress).run();
 }
 
 }  // namespace glint

@@ -2,19 +2,18 @@
 #pragma once
 
 #include <functional>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "core/diagnose/fit_trace.h"
 #include "core/diagnose/highlight_evidence.h"
-#include "core/diagnose/left_out_error.h"
+#include "core/diagnose/unseen_error.h"
 #include "core/inspect/inspection.h"
 
 namespace glint {
 
-/// What a user could change, as the flags of `glint evaluate` take it. Exactly one is set, or one together with `exclude`.
+/// What a user could change, as the flags of `glint evaluate` take it: another model, another value, or both.
 struct Change {
   std::optional<std::string> model = {};    ///< use this one instead
   std::optional<std::string> train = {};    ///< SPEC
@@ -24,53 +23,70 @@ struct Change {
 };
 /// "--model limit-angle", "--set light.solver=triangulated".
 std::string flagsOf(const Change& change);
+/// "use limit-angle", "set light.solver = triangulated".
+std::string wordsOf(const Change& change);
 /// The request with the change. InputError where the scene does not know a frame.
 InspectionRequest with(InspectionRequest request, const Change& change, const Scene& scene);
 
-/// A change that helps, and how much: measured, not guessed.
-struct Remedy {
-  Change change;
+/// One state that was computed: a model as it is (the model alone is set), or with one change.
+struct Measured {
+  Change change;    ///< with its model
   std::string why;  ///< why it was tried, one clause
-  /// Over the views that both have, none of them seen by the fit that predicts it: left-out training views, and some held-out frames. A change
-  /// that makes other contours is measured by the left-out training views alone.
-  LeftOutError before, after;
-  /// False where frames that the model gets wrong are only left out of the score: `after` is smaller by definition, and the remedy stands last.
-  bool measured = true;
+  UnseenError error;
 };
 
+/// A change that beats the present state, and by how much: measured, not guessed.
+struct Remedy {
+  Change change;  ///< of the present state: the model only where it is another one
+  std::string why;
+  UnseenError before, after;  ///< over the views that both have
+};
+/// "2.3 %, 147 spurious -> 0.74 %, 24 spurious"
+std::string effectText(const Remedy& remedy);
+
+/// Why one model of the inspection is as it is.
 struct ModelDiagnosis {
-  enum class Status { Ok, Poor, Failed };
   std::string model;
-  Status status = Status::Ok;
-  std::vector<std::string> causes;  ///< in words, weightiest first; none where the status is Ok
-  std::vector<std::string> notes;   ///< whatever the status: what errors of contours do not show, see spuriousNote()
-  LeftOutError unseen;              ///< as it is now: left-out training views and some held-out frames
+  std::string status;  ///< of its fits, as every table says it: "ok", "poor", "failed"
+  UnseenError error;   ///< as it is now
+  std::vector<std::string>
+      causes;  ///< in words, weightiest first; none where it is ok, misses nothing and is off by at most kLargestExpectedPct
   std::vector<HighlightEvidence> evidence;
-  std::vector<FitTrace> fits;    ///< how they went; none where the status is Ok
-  std::vector<Remedy> remedies;  ///< best first
-  int tried = 0;                 ///< changes that were measured
-  int known = 0;                 ///< changes that could have been
+  std::vector<FitTrace> fits;  ///< how they went; none where the status is ok
 };
-const char* nameOf(ModelDiagnosis::Status status);  ///< "ok", "poor", "failed"
 
+/// What to do about a sequence: one verdict, at most three remedies, and what both stand on.
 struct Diagnosis {
-  std::vector<ModelDiagnosis> models;  ///< in the order of the request
+  std::string present;                 ///< the model whose state is to be beaten
+  UnseenError now;                     ///< of that state
+  std::string best;                    ///< the model with the smallest error, settings as they are; "" = none answers
+  std::string verdict;                 ///< one sentence
+  std::vector<Remedy> remedies;        ///< best first, of different kinds
+  std::vector<std::string> notes;      ///< what the verdict stands on, one sentence each
+  std::vector<ModelDiagnosis> models;  ///< those of the request, in its order; filled last
+  std::vector<Measured> measured;      ///< models as they are first
+  bool complete = false;               ///< everything was tried that was to be
+  int tried = 0, known = 0;            ///< changes that were run for this, and that could have been
 };
+/// Makes the advice for another present model from what was measured: at once. A remedy beats the present state, and with more than another model
+/// also every model as it is, beyond chance (isBetter).
+/// @param present  "" or one that was not measured = as before, at first the best one
+void adviseFor(Diagnosis& diagnosis, const std::string& present);
+inline constexpr std::size_t kMostRemedies = 3;
 
 struct DiagnoseOptions {
-  int mostTried = 8;  ///< changes measured for each model that is not Ok, other models aside: the bound of the work
-  /// Also the richest model where it was not asked for, and changes where another model has brought the error under kLargestExpectedPct with every
-  /// view answered, at most a quarter of them left out. Without it, a model with a lobe gets half as many changes.
-  bool slowToo = false;
-  /// Called with each remedy as soon as it is measured, before they are sorted; another thread's caller may show it.
-  std::function<void(const std::string& model, const Remedy&)> found;
+  std::string present;  ///< the model on screen; "" or one that was not computed = the best of those that were
+  /// Settings, training frames and exclusions that are measured on the best model, and a third of that on each other one whose error is at most five
+  /// times as large: the bound of the work.
+  int mostTried = 6;
+  bool askAuto = true;  ///< whether the automatic choice is made, too, and compared: a note; takes longest
+  /// Called with the diagnosis as far as it is: at once with what the computed models tell, then whenever something was measured.
+  std::function<void(const Diagnosis&)> soFar;
 };
 
-/// Why each model of the inspection's request fails or is poor, and what helps. Poor: the mean error of the views that its fit did not see is over
-/// kLargestExpectedPct, among the left-out training views or among the held-out frames, or one of them is not predicted. A remedy that was chosen
-/// by what held-out frames show makes them less independent: `evaluate` on other frames judges it.
-/// An exclusion is measured with the contours as they are: where a lobe is taken off the background (detect.background = lobe), it stays that of all
-/// training frames. Stopped.
+/// Compares the computed models, then measures others and what helps the best of them, each by a run of its own with everything that the user
+/// would see (inspect()). A remedy that was chosen by what held-out frames show makes them less independent: `evaluate` on other frames judges it.
+/// Progress counts the trials. Stopped.
 /// @param inspection  complete
 Diagnosis diagnose(const Inspection& inspection, const DiagnoseOptions& options = {}, const ProgressFn& progress = {});
 

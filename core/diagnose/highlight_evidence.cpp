@@ -38,8 +38,11 @@ Outcome<LightEstimate> lightAnyway(const Inspection& inspection, const FitKey& k
   return estimateLight(viewsOf(inspection, key), settings);
 }
 
-/// The model fitted to the views of one key, refused by nothing.
+/// The model's fit to the views of one key; where that failed, one that is refused by nothing.
 Outcome<ModelFit> fitAnyway(const Inspection& inspection, const HighlightModel& model, const FitKey& key) {
+  if (const auto result = inspection.models.find(model.id()); result != inspection.models.end())
+    for (const ModelResult::Fit& known : result->second.fits)
+      if (known.key() == key && known.fit) return known.fit;
   Settings settings = inspection.request.settings;
   settings.set("fit.most_residual", 10.0);
   std::optional<Outcome<LightEstimate>> light;

@@ -22,11 +22,11 @@ struct HighlightEvidence {
   /// bundle failed. None where there is no light, or the view is not usable.
   std::optional<double> limitAngle;
   std::vector<std::string> against;  ///< what makes it stand against the model, in words, weightiest first
-  double weight = 0;                 ///< how much it stands against it: 0 = not at all
+  double weight = 0;                 ///< how much it stands against it: 0 = not at all, 1 = clearly
 };
 
-/// Highlights of the training frames, in the order of Inspection::views. Fits again with fit.most_residual at its largest, so that a refused fit
-/// shows what it leaves.
+/// Highlights of the training frames, in the order of Inspection::views. A fit that failed is made again with fit.most_residual at its largest, so
+/// that it shows what it leaves.
 /// @param inspection  with evidence, views, and the lights if the model needs one
 std::vector<HighlightEvidence> highlightEvidence(const Inspection& inspection, const HighlightModel& model);
 

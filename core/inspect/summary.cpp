@@ -2,6 +2,7 @@
 #include "core/inspect/summary.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace glint {
 namespace {
@@ -44,6 +45,12 @@ ComparisonTally tallyOf(const FrameComparison& c) {
                           c.prediction.highlights()[row.predicted].coverage});
   }
   return t;
+}
+
+double ComparisonTally::wrongPct() const {
+  double sum = kMissedPct * double(matched + missed) + kSpuriousPct * double(spurious);
+  for (const Measured& m : measured) sum -= std::max(0.0, kMissedPct - m.contourErrorPct);
+  return sum;
 }
 
 std::vector<ComparisonTally> talliesOf(const Inspection& inspection, const ModelResult& result) {
@@ -105,6 +112,7 @@ ModelSummary summaryOf(const std::vector<ComparisonTally>& tallies, const FitRea
     s.missed += t.missed;
     s.spurious += t.spurious;
     s.filtered += t.filtered;
+    s.wrongPct += t.wrongPct();
     for (const ComparisonTally::Measured& m : t.measured) {
       pct.push_back(m.contourErrorPct);
       px.push_back(m.contourErrorPx);
@@ -120,6 +128,7 @@ ModelSummary summaryOf(const std::vector<ComparisonTally>& tallies, const FitRea
     time.push_back(t.timeUs);
   }
   s.answered = s.predicted > 0;
+  s.wrongPct = s.matched + s.missed > 0 ? s.wrongPct / double(s.matched + s.missed) : std::nan("");
   s.contourErrorPct = statisticOf(pct);
   s.contourErrorPx = statisticOf(px);
   s.ellipseErrorPct = statisticOf(ellipse);

@@ -9,6 +9,11 @@
 
 namespace glint {
 
+/// What counts, in % of a highlight's diameter, where a contour error cannot: for an observed highlight that is not predicted, and at most for one
+/// that is; for one that is predicted where none is observed. That is little, because a filter may take it out, while nothing mends a contour: it
+/// decides between equal contours.
+inline constexpr double kMissedPct = 100, kSpuriousPct = 0.1;
+
 /// What `evaluate` prints of one model (docs/formats.md, "evaluate --json"): held-out frames only, except per surface.
 struct ModelSummary {
   bool answered = false;                      ///< some frame was predicted
@@ -22,6 +27,9 @@ struct ModelSummary {
   Statistic iou;  ///< per (frame, light), over the union of all regions
   Statistic timeUs;
   double timeP99Us = 0;
+  /// The one number by which models and settings are compared: ComparisonTally::wrongPct() over all comparisons, per observed highlight. The
+  /// mean contour error where nothing is missed or spurious. NaN where nothing was observed.
+  double wrongPct = 0;
 
   const char* status() const { return !answered ? "failed" : poor ? "poor" : "ok"; }
 };
@@ -39,7 +47,9 @@ struct ComparisonTally {
     double contourErrorPct = 0, contourErrorPx = 0, ellipseErrorPct = 0, hausdorffPx = 0, peakOffsetPx = 0, coverage = 0;
   };
   std::vector<Measured> measured;  ///< of each highlight with metrics
-  std::vector<BandScore> bands;    ///< of each matched highlight with a band
+  /// Sum over its highlights: contour errors, each at most kMissedPct, kMissedPct for each other observed one, kSpuriousPct for each spurious one.
+  double wrongPct() const;
+  std::vector<BandScore> bands;  ///< of each matched highlight with a band
 };
 ComparisonTally tallyOf(const FrameComparison& comparison);
 

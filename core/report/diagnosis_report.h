@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "core/diagnose/diagnosis.h"
 
@@ -10,9 +11,9 @@ namespace glint {
 /// docs/formats.md, "diagnose --json".
 /// @param input  as given
 std::string diagnosisJson(const Inspection& inspection, const Diagnosis& diagnosis, const std::string& input);
-/// For a person: per model its state, the causes, the highlights that stand against it, and what helps, as flags.
+/// For a person: the verdict, the remedies as flags, and below what they stand on: for each model that is not good one cause; --json has all.
 std::string diagnosisText(const Inspection& inspection, const Diagnosis& diagnosis);
-/// "36 % -> 15 %" or "no prediction before, 15 % after", with the views that were answered where that is not all of them.
-std::string effectText(const Remedy& remedy);
+/// ReportContext::advice.
+std::vector<std::string> adviceOf(const Diagnosis& diagnosis);
 
 }  // namespace glint

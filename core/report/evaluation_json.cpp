@@ -298,24 +298,18 @@ Json trainingJson(const Inspection& inspection) {
 
 BestModel bestOf(const std::vector<std::pair<std::string, ModelSummary>>& models) {
   BestModel best;
-  int mostPredicted = 0;
   double smallest = 0;
   const bool anyOk = std::any_of(models.begin(), models.end(), [](const auto& m) {
     return m.second.answered && !m.second.poor && m.second.contourErrorPct.count > 0;
   });
   for (const auto& [name, s] : models) {
     if (!s.answered || s.contourErrorPct.count == 0 || (anyOk && s.poor)) continue;
-    if (best.model.empty() || s.predicted > mostPredicted ||
-        (s.predicted == mostPredicted && s.contourErrorPct.mean < smallest)) {
-      best.model = name;
-      mostPredicted = s.predicted;
-      smallest = s.contourErrorPct.mean;
-    }
+    if (best.model.empty() || s.wrongPct < smallest) best.model = name, smallest = s.wrongPct;
   }
   if (!best.model.empty())
     best.why = std::string(anyOk ? "" : "Every model that answers is poor: it explains its training views badly. ") +
-               "Smallest mean held-out contour error among the models that predicted the most frames; --models auto chooses from "
-               "the training frames alone.";
+               "Smallest mean held-out contour error, where a missed highlight counts as 100 %; --models auto chooses from the "
+               "training frames alone.";
   return best;
 }
 

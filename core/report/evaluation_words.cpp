@@ -189,7 +189,8 @@ EvaluationWords evaluationWords(const Inspection& inspection, const ReportContex
     if (!s.answered) words.inShort.push_back(name + " gives no answer: " + sentence(s.reason));
     if (s.poor) words.inShort.push_back(name + " answers poorly: " + sentence(s.reason));
   }
-  if (helpWanted && !models.empty())
+  words.inShort.insert(words.inShort.begin(), context.advice.begin(), context.advice.end());
+  if (helpWanted && !models.empty() && context.advice.empty())
     words.inShort.push_back("glint diagnose " + (context.input.empty() ? "INPUT" : context.input) +
                             " says why a model fails or is poor, and what helps.");
   addDoubtsOfTheRun(inspection, words.doubts);

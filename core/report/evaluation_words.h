@@ -11,8 +11,9 @@ namespace glint {
 
 /// What an evaluation says, in sentences for a person who does not read its tables.
 struct EvaluationWords {
-  std::string best;                  ///< the model that they are about: the chosen one, else bestModel(); "" = none answered
-  std::vector<std::string> inShort;  ///< how good it is, what it misses and invents, the next best, who gives no answer and why
+  std::string best;  ///< the model that they are about: the chosen one, else bestModel(); "" = none answered
+  std::vector<std::string>
+      inShort;  ///< the advice of a diagnosis, how good it is, what it misses and invents, the next best, who gives no answer and why
   std::vector<std::string>
       doubts;  ///< why all that may be wrong: what it is scored against, how few frames, remarks of the best model's fits
 };

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/inspect/inspection.h"
 #include "core/selection/selection.h"
@@ -17,9 +18,10 @@ struct ReportContext {
   std::optional<Selection> selection;  ///< what the automatic choice tried
   std::string levelReason;             ///< why this contour level, where the program chose it; "" = it was given
   std::string program;                 ///< "glint 0.4.0"; "" = not said
+  std::vector<std::string> advice;     ///< of a diagnosis: its verdict, then its remedies, in words; empty = nobody asked
 };
 
-/// The answered model with the smallest mean held-out contour error among those that predicted most frames.
+/// The answered model with the smallest held-out error (ModelSummary::wrongPct), among those whose fit is not poor where one is not.
 struct BestModel {
   std::string model;  ///< "" = none answered
   std::string why;    ///< one sentence; "" = none answered

@@ -4,6 +4,7 @@
 #include <QHBoxLayout>
 #include <QHeaderView>
 #include <QLabel>
+#include <QProgressBar>
 #include <QPushButton>
 #include <QTimer>
 #include <QTreeWidget>
@@ -15,7 +16,6 @@
 #include "core/diagnose/mismatch.h"
 #include "core/diagnose/shared_causes.h"
 #include "core/inspect/summary.h"
-#include "core/report/diagnosis_report.h"
 #include "core/selection/selection.h"
 #include "gui/base/eliding_delegate.h"
 #include "gui/base/text.h"
@@ -71,8 +71,8 @@ std::vector<WrongFrame> wrongFrames(const Inspection& inspection, const ModelRes
   return wrong;
 }
 
-/// Places of lines below their model, top to bottom: why it is so, what helps, what goes together, and the evidence one by one.
-enum class ProblemLine { Cause, Help, Shared, Against, Course, Wrong };
+/// Places of lines below their model, top to bottom: why it is so, what goes together, and the evidence one by one.
+enum class ProblemLine { Cause, Shared, Against, Course, Wrong };
 
 /// Adds an item below those of its own place and of earlier ones, whenever it is found.
 void append(QTreeWidgetItem* parent, QTreeWidgetItem* item, ProblemLine place) {
@@ -86,16 +86,6 @@ bool hasLine(const QTreeWidgetItem* parent, const QString& text) {
   for (int i = 0; i < parent->childCount(); ++i)
     if (parent->child(i)->text(0) == text) return true;
   return false;
-}
-
-/// What a button does, in the words of the window instead of the flags of the command line.
-QString wordsOf(const Change& change) {
-  QStringList words;
-  if (change.model) words << QObject::tr("use %1").arg(toQString(*change.model));
-  if (change.train) words << QObject::tr("train on %1").arg(toQString(*change.train));
-  if (change.set) words << QObject::tr("set %1").arg(toQString(*change.set).replace(QLatin1String("="), QLatin1String(" = ")));
-  if (change.exclude) words << QObject::tr("leave out %1").arg(toQString(*change.exclude));
-  return words.join(QObject::tr(" and "));
 }
 
 QTreeWidgetItem* addLine(QTreeWidgetItem* parent, const QString& text, ProblemLine place) {
@@ -170,13 +160,18 @@ DiagnosisPanel::DiagnosisPanel(Document& document, QWidget* parent) : QWidget(pa
   ask_ = new QPushButton(tr("Find out why"));
   ask_->setObjectName(QStringLiteral("diagnose"));
   ask_->setToolTip(
-      tr("Says why each model fails or is poor, and measures what helps: other models, solvers, training frames, exclusions.\n"
-         "Takes seconds; remedies appear as they are found. A second click stops"));
+      tr("Says which model and which settings predict best, and why the others fail. Compares the models first, then measures\n"
+         "settings, training frames, exclusions and filters; what is found appears at once. A second click stops"));
   state_ = new QLabel;
   state_->setObjectName(QStringLiteral("diagnoseState"));
   state_->setProperty("role", "faded");
   state_->setWordWrap(true);
+  bar_ = new QProgressBar;
+  bar_->setObjectName(QStringLiteral("diagnoseProgress"));
+  bar_->setMaximumWidth(120);
+  bar_->setFormat(QStringLiteral("%v / %m"));
   row->addWidget(ask_);
+  row->addWidget(bar_);
   row->addWidget(state_, 1);
   column->addLayout(row);
   list_ = new QTreeWidget;
@@ -195,13 +190,22 @@ DiagnosisPanel::DiagnosisPanel(Document& document, QWidget* parent) : QWidget(pa
   connect(ask_, &QPushButton::clicked, this, [this] { queue_.busy() ? stop() : diagnose(); });
   connect(list_, &QTreeWidget::itemClicked, this, [this](QTreeWidgetItem* item) { choose(item); });
   connect(list_, &QTreeWidget::itemActivated, this, [this](QTreeWidgetItem* item) { choose(item); });
+  follow();
+  refresh();
+}
+
+/// The document, and the work that was asked for.
+void DiagnosisPanel::follow() {
   connect(&document_, &Document::inspectionChanged, this, &DiagnosisPanel::refresh);
   connect(&document_, &Document::selectionChanged, this, [this] {
     // A click on a line of the list does not move the lines under the mouse.
-    if (!choosing_ && !document_.stale() && goodModel() != good_) refresh();
+    const bool another = advised() && document_.selection().model != advisedFor_;
+    if (!choosing_ && !document_.stale() && (another || goodModel() != good_)) return refresh();
+    if (another) delete list_->takeTopLevelItem(0), fillAdvice();
   });
   connect(&document_, &Document::staleChanged, this, [this](bool stale) {
     if (stale) queue_.stop();  // of a state that is no more; the new one's results wait for the processor
+    enableTries();
     showState();
   });
   connect(&document_, &Document::requestChanged, this,
@@ -210,12 +214,13 @@ DiagnosisPanel::DiagnosisPanel(Document& document, QWidget* parent) : QWidget(pa
     queue_.drop();
     queue_.stop();
     of_ = nullptr;
-    diagnosis_ = nullptr;
-    found_.clear();
+    diagnosis_.reset();
     refresh();
   });
-  connect(&queue_, &JobQueue::busyChanged, this, [this] { showState(); });
-  refresh();
+  connect(&queue_, &JobQueue::busyChanged, this, [this](bool busy) {
+    if (busy) stopping_ = false, bar_->setRange(0, 0);
+    showState();
+  });
 }
 
 void DiagnosisPanel::addActions(Actions& actions, QMenu* menu, std::function<void()> show) {
@@ -232,70 +237,66 @@ void DiagnosisPanel::addActions(Actions& actions, QMenu* menu, std::function<voi
 }
 
 void DiagnosisPanel::tryFirst() {
-  std::vector<std::pair<std::string, Remedy>> known = found_;
-  if (diagnosis_) {
-    known.clear();
-    for (const ModelDiagnosis& d : diagnosis_->models)
-      for (const Remedy& remedy : d.remedies) known.emplace_back(d.model, remedy);
-  }
-  if (known.empty()) return void(emit problem(tr("There is no remedy to try; \"Find out why models fail\" looks for them")));
-  const auto ofSelected =
-      std::find_if(known.begin(), known.end(), [&](const auto& r) { return r.first == document_.selection().model; });
-  const auto& [model, remedy] = ofSelected != known.end() ? *ofSelected : known.front();
-  tryRemedy(model, remedy.change);
+  if (!advised() || diagnosis_->remedies.empty())
+    return void(emit problem(tr("There is no remedy to try; \"Find out why models fail\" looks for them")));
+  tryRemedy(diagnosis_->remedies.front().change);
 }
 
-void DiagnosisPanel::bringFirstRemedyIntoSight() {
-  list_->doItemsLayout();
-  for (int i = 0; i < list_->topLevelItemCount(); ++i) {
-    const QTreeWidgetItem* const top = list_->topLevelItem(i);
-    for (int j = 0; j < top->childCount(); ++j)
-      if (QTreeWidgetItem* const line = top->child(j); list_->itemWidget(line, 0))
-        return list_->scrollToItem(line, QAbstractItemView::EnsureVisible);
-  }
+void DiagnosisPanel::stop() {
+  if (!queue_.busy()) return;
+  stopping_ = true;  // a fit may take a moment to end
+  queue_.stop();
+  showState();
 }
-
-void DiagnosisPanel::stop() { queue_.stop(); }
 
 void DiagnosisPanel::diagnose() {
   const std::shared_ptr<const Inspection> inspection = document_.inspection();
   if (!inspection || document_.stale()) return;
   of_ = inspection;
-  diagnosis_ = nullptr;
-  found_.clear();
+  diagnosis_.reset();
+  steps_.clear();
   refresh();
   queue_.start(
-      [this, inspection](const JobToken& token) {
+      [this, inspection, present = document_.selection().model](const JobToken& token) {
         DiagnoseOptions options;
-        options.found = [this, &token](const std::string& model, const Remedy& remedy) {
-          token.deliver([this, model, remedy] {
-            found_.emplace_back(model, remedy);
-            addRemedy(model, remedy);
-          });
-        };
-        const ProgressFn progress = token.progress([this](const StageEvent& e) { showState(toQString(e.stage)); });
-        return std::make_shared<const Diagnosis>(glint::diagnose(*inspection, options, progress));
+        options.present = present;
+        options.soFar = [this, &token](const Diagnosis& diagnosis) { token.deliver([this, diagnosis] { take(diagnosis); }); };
+        const ProgressFn progress = token.progress([this](const StageEvent& e) {
+          steps_ = tr("%1 of %2").arg(std::min(e.done + 1, e.total)).arg(e.total);
+          bar_->setRange(0, e.total);
+          bar_->setValue(e.done);
+          showState(toQString(e.stage));
+        });
+        return glint::diagnose(*inspection, options, progress);
       },
-      [this](const JobResult<DiagnosisPtr>& result) {
+      [this](const JobResult<Diagnosis>& result) {
         if (result.overtaken) return;
         if (!result.failure().isEmpty()) emit problem(result.failure());
-        if (result.value) diagnosis_ = *result.value;
-        refresh();
-        // Once lines have wrapped to their final width: that of a panel with a scroll bar.
-        QTimer::singleShot(0, this, &DiagnosisPanel::bringFirstRemedyIntoSight);
-        if (result.stopped) state_->setText(tr("Stopped: what was found so far is listed"));
+        if (result.value) take(*result.value);
       },
       Asks::Instead);
 }
 
+void DiagnosisPanel::take(Diagnosis diagnosis) {
+  adviseFor(diagnosis, document_.selection().model);  // another one may have been selected since
+  // Lines do not move under the mouse where nothing new is said.
+  const bool news = !diagnosis_ || diagnosis_->verdict != diagnosis.verdict ||
+                    diagnosis_->remedies.size() != diagnosis.remedies.size() ||
+                    !std::equal(diagnosis.remedies.begin(), diagnosis.remedies.end(), diagnosis_->remedies.begin(),
+                                [](const Remedy& a, const Remedy& b) { return a.change == b.change; }) ||
+                    diagnosis_->models.size() != diagnosis.models.size() || diagnosis_->notes != diagnosis.notes;
+  diagnosis_ = std::move(diagnosis);
+  if (news) refresh();
+}
+
+bool DiagnosisPanel::advised() const { return diagnosis_ && document_.inspection() && isOf(*document_.inspection()); }
+
 void DiagnosisPanel::refresh() {
   list_->clear();
+  if (advised()) fillAdvice();
   fillProblems();
-  const bool current = diagnosis_ && of_;
-  if (current)
+  if (advised())
     for (const ModelDiagnosis& d : diagnosis_->models) fillDiagnosis(d);
-  else
-    for (const auto& [model, remedy] : found_) addRemedy(model, remedy);
   emit problemsChanged(problems_);
   tellRuns();
   showState();
@@ -308,7 +309,7 @@ bool DiagnosisPanel::isOf(const Inspection& inspection) const {
 
 void DiagnosisPanel::tellRuns() {
   std::shared_ptr<std::vector<viz::DrawnRuns>> runs;
-  if (diagnosis_ && document_.inspection() && isOf(*document_.inspection())) {
+  if (advised()) {
     runs = std::make_shared<std::vector<viz::DrawnRuns>>();
     for (const ModelDiagnosis& d : diagnosis_->models)
       for (const FitTrace& fit : d.fits) runs->push_back({d.model, fit.key.light, fit.runs});
@@ -329,7 +330,7 @@ void DiagnosisPanel::fillGood() {
   good_ = goodModel();
   if (good_.empty()) return;
   const std::shared_ptr<const Inspection> inspection = document_.inspection();
-  bool others = diagnosis_ || !found_.empty();
+  bool others = advised();
   for (const std::string& name : inspection->request.models)
     if (const auto it = inspection->models.find(name); it != inspection->models.end())
       others = others || hasProblem(*inspection, it->second);
@@ -348,7 +349,8 @@ void DiagnosisPanel::fillProblems() {
   const std::shared_ptr<const Inspection> inspection = document_.inspection();
   if (!inspection) return;
   fillGood();
-  const bool folded = !good_.empty() && !(of_ && isOf(*inspection));  // who asks why wants to read it
+  const bool explained = advised();  // the verdict stands above, and causes say why
+  const bool folded = explained || !good_.empty();
   for (const std::string& name : inspection->request.models) {
     const auto result = inspection->models.find(name);
     if (result == inspection->models.end()) continue;
@@ -365,7 +367,6 @@ void DiagnosisPanel::fillProblems() {
              : tr("%1: no answer").arg(toQString(name))});
     top->setData(0, kModel, toQString(name));
     top->setExpanded(!folded);
-    const bool explained = diagnosis_ && isOf(*inspection);  // its causes say it
     for (const ModelResult::Fit& fit : result->second.fits)
       if (fit.failure() && !explained)
         addLine(top, tr("because %1: %2").arg(lightText(textOf(fit.key())), toQString(fit.failure()->message())),
@@ -387,19 +388,35 @@ void DiagnosisPanel::addShared(QTreeWidgetItem* top, const Inspection& inspectio
   }
 }
 
+void DiagnosisPanel::fillAdvice() {
+  advisedFor_ = document_.selection().model;
+  adviseFor(*diagnosis_, advisedFor_);
+  auto* const top = new QTreeWidgetItem({toQString(diagnosis_->verdict)});
+  list_->insertTopLevelItem(0, top);
+  QFont bold = list_->font();
+  bold.setBold(true);
+  top->setFont(0, bold);
+  top->setData(0, kModel, toQString(advisedFor_));
+  for (const Remedy& remedy : diagnosis_->remedies) addRemedy(top, remedy);
+  auto* const stands = new QTreeWidgetItem(
+      top, {tr("%1 of %2 known changes were tried").arg(diagnosis_->tried).arg(std::max(diagnosis_->known, diagnosis_->tried))});
+  const auto line = [&](const QString& text) { new QTreeWidgetItem(stands, {text}); };
+  for (const std::string& note : diagnosis_->notes) line(toQString(note));
+  for (const Measured& m : diagnosis_->measured)
+    line(tr("%1: error %2").arg(toQString(wordsOf(m.change)), toQString(textOf(m.error))));
+  top->setExpanded(true);
+  enableTries();
+}
+
 void DiagnosisPanel::fillDiagnosis(const ModelDiagnosis& d) {
-  if (d.status == ModelDiagnosis::Status::Ok && d.notes.empty()) return;
-  QTreeWidgetItem* const top = itemOf(d.model, tr("%1: %2").arg(toQString(d.model), QLatin1String(nameOf(d.status))));
-  for (const std::string& note : d.notes) addLine(top, toQString(note), ProblemLine::Shared);
-  if (d.status == ModelDiagnosis::Status::Ok) return;
-  for (const std::string& cause : d.causes)
-    if (const QString line = tr("because %1").arg(toQString(cause)); !hasLine(top, line)) addLine(top, line, ProblemLine::Cause);
-  for (const Remedy& remedy : d.remedies) addRemedy(d.model, remedy);
-  if (d.remedies.empty()) addLine(top, tr("nothing helps: %1 changes were tried").arg(d.tried), ProblemLine::Help);
   std::vector<const HighlightEvidence*> against;
   for (const HighlightEvidence& e : d.evidence)
     if (!e.against.empty()) against.push_back(&e);
   std::stable_sort(against.begin(), against.end(), [](auto* a, auto* b) { return a->weight > b->weight; });
+  if (d.causes.empty() && (against.empty() || against.front()->weight < 1)) return;
+  QTreeWidgetItem* const top = itemOf(d.model, tr("%1: %2").arg(toQString(d.model), toQString(d.status)));
+  for (const std::string& cause : d.causes)
+    if (const QString line = tr("because %1").arg(toQString(cause)); !hasLine(top, line)) addLine(top, line, ProblemLine::Cause);
   for (std::size_t i = 0; i < against.size() && i < kMostHighlights; ++i) {
     const HighlightEvidence& e = *against[i];
     QStringList words;
@@ -420,21 +437,15 @@ void DiagnosisPanel::fillDiagnosis(const ModelDiagnosis& d) {
 }
 
 QTreeWidgetItem* DiagnosisPanel::itemOf(const std::string& model, const QString& otherwise) {
-  const bool earlier = !document_.inspection() || !isOf(*document_.inspection());
-  for (int i = 0; i < list_->topLevelItemCount(); ++i) {
-    QTreeWidgetItem* const top = list_->topLevelItem(i);
-    const bool of = top->data(0, kModel).toString() == toQString(model);
-    if (of && !(earlier && top->data(0, kGood).toBool())) return top;  // what was wrong does not stand under "no problem"
-  }
-  auto* top = new QTreeWidgetItem(list_, {earlier && !good_.empty() ? tr("%1 (earlier state)").arg(otherwise) : otherwise});
+  for (int i = 1; i < list_->topLevelItemCount(); ++i)  // below the verdict
+    if (list_->topLevelItem(i)->data(0, kModel).toString() == toQString(model)) return list_->topLevelItem(i);
+  auto* top = new QTreeWidgetItem(list_, {otherwise});
   top->setData(0, kModel, toQString(model));
-  top->setExpanded(!earlier || good_.empty());
   return top;
 }
 
-void DiagnosisPanel::addRemedy(const std::string& model, const Remedy& remedy) {
-  auto* line = new QTreeWidgetItem;
-  append(itemOf(model, toQString(model)), line, ProblemLine::Help);
+void DiagnosisPanel::addRemedy(QTreeWidgetItem* top, const Remedy& remedy) {
+  auto* line = new QTreeWidgetItem(top);
   auto* holder = new QWidget;
   auto* row = new QHBoxLayout(holder);
   row->setContentsMargins(0, 1, 4, 1);
@@ -445,21 +456,24 @@ void DiagnosisPanel::addRemedy(const std::string& model, const Remedy& remedy) {
   button->setToolTip(tr("Makes this change; undo takes it back"));
   row->addWidget(button);
   const QString effect = toQString(effectText(remedy)).replace(QStringLiteral("->"), QStringLiteral("\u2192"));
-  auto* label =
-      new QLabel((remedy.before.answered() == 0 ? tr("%1: %2") : tr("%1: error %2")).arg(wordsOf(remedy.change), effect));
+  auto* label = new QLabel(tr("%1: error %2").arg(toQString(wordsOf(remedy.change)), effect));
   label->setTextFormat(Qt::PlainText);
-  label->setToolTip(tr("%1\n%2\nThe error is the mean over views that the fit did not see; "
-                       "\"6 of 22 views\": the others were not predicted, and count as 100 %.")
-                        .arg(flags, toQString(remedy.why)));
+  label->setToolTip(tr("%1\n%2\nThe error is the mean over views that the fit did not see.").arg(flags, toQString(remedy.why)));
   row->addWidget(label, 1);
   list_->setItemWidget(line, 0, holder);
-  connect(button, &QPushButton::clicked, this, [this, model, change = remedy.change] { tryRemedy(model, change); });
+  connect(button, &QPushButton::clicked, this, [this, change = remedy.change] { tryRemedy(change); });
 }
 
-void DiagnosisPanel::tryRemedy(const std::string& model, const Change& change) {
+/// While a change is computed, the remedies are of the state before.
+void DiagnosisPanel::enableTries() {
+  for (QPushButton* const button : list_->findChildren<QPushButton*>(QStringLiteral("try")))
+    button->setEnabled(!document_.stale() && advised());
+}
+
+void DiagnosisPanel::tryRemedy(const Change& change) {
   if (!document_.scene()) return;
   InspectionRequest request = document_.request();
-  const std::string use = change.model.value_or(model);
+  const std::string use = change.model.value_or(diagnosis_->present);
   Change other = change;
   other.model = std::nullopt;
   try {
@@ -469,7 +483,7 @@ void DiagnosisPanel::tryRemedy(const std::string& model, const Change& change) {
     return;
   }
   if (!std::count(request.models.begin(), request.models.end(), use)) request.models.push_back(use);
-  const QString text = tr("Try: %1").arg(wordsOf(change));
+  const QString text = tr("Try: %1").arg(toQString(wordsOf(change)));
   draw::Selection selection = document_.selection();
   if (request == document_.request() && selection.model == use) return;
   selection.model = use;
@@ -494,23 +508,26 @@ void DiagnosisPanel::choose(QTreeWidgetItem* item) {
     selection.predicted = predicted.isValid() ? predicted.toInt() : -1;
     selection.direction = std::nullopt;
   }
+  const QVariant shared = item->data(0, kShared);
   choosing_ = true;
   document_.selectExactly(selection);
   choosing_ = false;
-  if (const QVariant shared = item->data(0, kShared); shared.isValid()) document_.brush(shared_[std::size_t(shared.toInt())]);
+  if (shared.isValid()) document_.brush(shared_[std::size_t(shared.toInt())]);
 }
 
 void DiagnosisPanel::showState(const QString& stage) {
-  const bool ready = document_.inspection() && !document_.stale();
-  ask_->setText(queue_.busy() ? tr("Stop") : tr("Find out why"));
-  ask_->setEnabled(queue_.busy() || ready);
-  if (queue_.busy())
-    return state_->setText(stage.isEmpty() ? tr("Measuring what helps…") : tr("Measuring what helps: %1…").arg(stage));
-  if (!document_.inspection()) return state_->setText(document_.scene() ? tr("Computing…") : tr("No scene"));
-  if (diagnosis_ && !isOf(*document_.inspection()))
-    return state_->setText(tr("These remedies are of an earlier state; ask again for those of the new one"));
+  const bool ready = document_.inspection() && !document_.stale(), busy = queue_.busy();
+  ask_->setText(busy ? tr("Stop") : tr("Find out why"));
+  ask_->setEnabled(busy ? !stopping_ : ready);
+  bar_->setVisible(busy);
+  if (busy && stopping_) return state_->setText(tr("Stopping\u2026"));
+  if (busy) return state_->setText(stage.isEmpty() ? tr("Comparing the models\u2026") : tr("%1: %2\u2026").arg(steps_, stage));
+  if (!document_.inspection()) return state_->setText(document_.scene() ? tr("Computing\u2026") : tr("No scene"));
+  if (diagnosis_ && !advised()) return state_->setText(tr("Something has changed since the last answer; ask again"));
+  if (advised())
+    return state_->setText(stopping_ ? tr("Stopped after %1: what was found so far is listed").arg(steps_)
+                                     : tr("Measured in views that the fit did not see"));
   if (problems_ == 0) return state_->setText(tr("Every model answers, and no frame is wrong"));
-  if (diagnosis_) return state_->setText(tr("Best first. Remedies are measured in views that the fit did not see"));
   if (!good_.empty())
     return state_->setText(tr(problems_ == 1 ? "%1 other model with problems" : "%1 other models with problems").arg(problems_));
   state_->setText(tr(problems_ == 1 ? "%1 model with problems" : "%1 models with problems").arg(problems_));

@@ -4,6 +4,7 @@
 #include <QWidget>
 #include <functional>
 #include <memory>
+#include <optional>
 
 #include "core/diagnose/diagnosis.h"
 #include "gui/base/actions.h"
@@ -15,16 +16,16 @@ struct DrawnRuns;
 }
 
 class QLabel;
+class QProgressBar;
 class QPushButton;
 class QTreeWidget;
 class QTreeWidgetItem;
 
 namespace glint::gui {
 
-using DiagnosisPtr = std::shared_ptr<const Diagnosis>;
-
-/// What is wrong: models without an answer with their reasons, frames whose highlights are missed or far off, and, when asked, why and what
-/// helps, as `glint diagnose` says it. A click on a frame or highlight selects it; "Try" makes the change as one step of undo.
+/// What is wrong: models without an answer with their reasons, frames whose highlights are missed or far off; and, when asked, what to do about
+/// it, as `glint diagnose` says it: one verdict for the model on screen, at most three remedies, and folded below what they stand on. A click on a
+/// frame or highlight selects it; "Try" makes the change as one step of undo.
 class DiagnosisPanel : public QWidget {
   Q_OBJECT
  public:
@@ -36,10 +37,9 @@ class DiagnosisPanel : public QWidget {
   void addActions(Actions& actions, QMenu* menu, std::function<void()> show);
 
  public slots:
-  /// Measures what helps, off the interface thread; remedies appear as they are found. Asked again while it runs: stops.
+  /// Compares the models and measures what helps, off the interface thread; the verdict appears at once and improves. Asked again: stops.
   void diagnose();
-  /// The first remedy of the selected model, else the first one of all.
-  void tryFirst();
+  void tryFirst();  ///< the first remedy
   void stop();
 
  signals:
@@ -50,6 +50,7 @@ class DiagnosisPanel : public QWidget {
   void runsChanged(const std::shared_ptr<const std::vector<glint::viz::DrawnRuns>>& runs);
 
  private:
+  void follow();
   void refresh();
   void fillProblems();
   /// The model that is selected, if nothing is wrong with it; else "".
@@ -59,24 +60,30 @@ class DiagnosisPanel : public QWidget {
   /// What the highlights that this model gets wrong have in common.
   void addShared(QTreeWidgetItem* top, const Inspection& inspection, const std::string& model);
   bool isOf(const Inspection& inspection) const;
+  /// What is known by now.
+  void take(Diagnosis diagnosis);
+  bool advised() const;  ///< there is an answer, and nothing has changed since
+  void fillAdvice();
   void fillDiagnosis(const ModelDiagnosis& model);
   void tellRuns();
-  /// The line of a model, made with this text where there is none.
+  /// The line of a model below the verdict, made with this text where there is none.
   QTreeWidgetItem* itemOf(const std::string& model, const QString& otherwise);
-  void addRemedy(const std::string& model, const Remedy& remedy);
-  /// The causes of a model may fill the panel: what to do about them must not be looked for.
-  void bringFirstRemedyIntoSight();
-  void tryRemedy(const std::string& model, const Change& change);
+  void addRemedy(QTreeWidgetItem* top, const Remedy& remedy);
+  void enableTries();
+  void tryRemedy(const Change& change);
   void showState(const QString& stage = {});
   void choose(QTreeWidgetItem* item);
 
   Document& document_;
   QPushButton* ask_;
+  QProgressBar* bar_;
   QLabel* state_;
   QTreeWidget* list_;
   std::shared_ptr<const Inspection> of_;  ///< what the diagnosis is of
-  DiagnosisPtr diagnosis_;
-  std::vector<std::pair<std::string, Remedy>> found_;  ///< so far, by the model's name
+  std::optional<Diagnosis> diagnosis_;    ///< as far as it is
+  std::string advisedFor_;                ///< the model that was selected when the verdict was listed
+  QString steps_;                         ///< "3 of 24"
+  bool stopping_ = false;
   int problems_ = 0;
   std::string good_;                      ///< goodModel() when the list was filled
   bool choosing_ = false;                 ///< a line of the list is selecting

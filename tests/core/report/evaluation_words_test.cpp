@@ -83,7 +83,7 @@ TEST(EvaluationWords, DoNotPraiseADifferenceThatTheNumbersDoNotShow) {
 }
 
 TEST(EvaluationWords, NameWhatTheBestMissedAndInvented) {
-  Inspection run = runWith({{"primal", {2, 3, 4, 3, 3}}, {"dual", {1, 1, 1, 1, 1}}});
+  Inspection run = runWith({{"primal", {22, 23, 24, 23, 23}}, {"dual", {1, 1, 1, 1, 1}}});
   FrameComparison::Row& missed = heldOut(run, "dual", 6).rows.at(0);
   missed.metrics.reset();
   missed.predicted = -1;
@@ -147,24 +147,20 @@ TEST(EvaluationWords, RemarksOfTheBestAreDoubts) {
   EXPECT_THAT(doubts, Not(HasSubstr("remark of primal")));
 }
 
-LeftOutError errorOf(const std::vector<LeftOutError::View>& views) {
-  LeftOutError e;
+UnseenError errorOf(const std::vector<UnseenError::View>& views) {
+  UnseenError e;
   e.views = views;
   return e;
 }
 
-LeftOutError::View viewOff(double pct) { return {0, "light", true, pct, 10, pct < 100}; }
-
 /// Numbers have an arrow between them; words read as a sentence.
 TEST(DiagnosisWords, EffectOfARemedy) {
   Remedy remedy;
-  remedy.before = errorOf({viewOff(20), viewOff(10)});
-  remedy.after = errorOf({viewOff(2), viewOff(1)});
-  EXPECT_EQ(effectText(remedy), "15 % -> 1.5 %");
-  remedy.before = errorOf({viewOff(100), viewOff(100)});
+  remedy.before = errorOf({{0, "light", 1, 0, 0, 20, 20}, {1, "light", 1, 1, 3, 10, 140}});
+  remedy.after = errorOf({{0, "light", 1, 0, 0, 2, 2}, {1, "light", 2, 0, 0, 2.5, 2.5}});
+  EXPECT_EQ(effectText(remedy), "15 %, 1 of 3 highlights missed, 3 spurious -> 1.5 %");
+  remedy.before = errorOf({{0, "light", 0, 1, 0, 0, 100}});
   EXPECT_EQ(effectText(remedy), "no prediction before, 1.5 % after");
-  remedy.before = errorOf({});
-  EXPECT_EQ(effectText(remedy), "no view before, 1.5 % after");
 }
 
 }  // namespace glint::evaluation_words_tests

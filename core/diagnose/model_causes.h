@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "core/diagnose/diagnosis.h"
+
+namespace glint {
+
+/// Why a model is as it is: its fits, the highlights that stand against it, the views that it gets wrong.
+/// @param inspection  complete, with this model
+/// @param error       of it, in views that its fit did not see
+ModelDiagnosis diagnosisOf(const Inspection& inspection, const std::string& model, const UnseenError& error);
+
+}  // namespace glint
