@@ -39,6 +39,12 @@ LikelyMistake scaledMesh(const std::string& is, double factor, const char* fix, 
   return m;
 }
 
+LikelyMistake resizedImages(const char* is, double factor) {
+  LikelyMistake m{"the images", true, is, {}, focalLengthCorrection(factor), {}};
+  m.undoing.logFocal = std::log(factor);
+  return m;
+}
+
 }  // namespace
 
 Camera CameraChange::of(Camera camera) const {
@@ -88,6 +94,9 @@ const std::vector<LikelyMistake>& misplacedMeshes() {
     list.push_back(scaledMesh("in metres and the poses are in feet", 1 / 0.3048, nullptr, "Read the poses in feet"));
     list.push_back(scaledMesh("half as large as it should be", 2, nullptr, "Double the mesh"));
     list.push_back(scaledMesh("twice as large as it should be", 0.5, nullptr, "Halve the mesh"));
+    list.push_back(resizedImages("of half the size that the focal length is of", 1.0 / 2));
+    list.push_back(resizedImages("of a quarter of the size that the focal length is of", 1.0 / 4));
+    list.push_back(resizedImages("of an eighth of the size that the focal length is of", 1.0 / 8));
     list.push_back(images("turned by 90 degrees clockwise", true, false, true, "-rotate -90"));
     list.push_back(images("turned by 90 degrees counterclockwise", true, true, false, "-rotate 90"));
     for (LikelyMistake* m : {&list[list.size() - 2], &list[list.size() - 1]})

@@ -37,7 +37,8 @@ struct LikelyMistake {
 
 /// Images that are mirrored or turned by 180 degrees.
 const std::vector<LikelyMistake>& mirroredImages();
-/// Images turned by a quarter, meshes turned by quarters and halves about an axis, meshes of another unit or size. Those that people meet most come
+/// Images turned by a quarter, meshes turned by quarters and halves about an axis, meshes of another unit or size, images that were resized
+/// where the principal point is their middle. Those that people meet most come
 /// first: of equals the first one is named.
 const std::vector<LikelyMistake>& misplacedMeshes();
 
