@@ -8,7 +8,10 @@
 namespace glint {
 namespace {
 
-bool isPly(std::string_view bytes) { return bytes.starts_with("ply\n") || bytes.starts_with("ply\r"); }
+bool isPly(std::string_view bytes) {
+  bytes = io::withoutMark(bytes);
+  return bytes.starts_with("ply\n") || bytes.starts_with("ply\r");
+}
 
 /// The first line that is no comment is VERSION or FIELDS (the version may be missing in old files).
 bool isPcd(std::string_view bytes) {
@@ -25,7 +28,8 @@ bool isPcd(std::string_view bytes) {
 bool looksLikeCloud(std::string_view start) {
   if (!isPly(start)) return isPcd(start.substr(0, kCloudHeader));
   const std::size_t end = start.substr(0, kCloudHeader).find("end_header");
-  return end != std::string_view::npos && start.substr(0, end).find("element face") == std::string_view::npos;
+  return end != std::string_view::npos && start.substr(0, end).find("element face") == std::string_view::npos &&
+         start.substr(0, end).find("element tristrips") == std::string_view::npos;
 }
 
 CloudContent readCloudContent(const std::filesystem::path& file) {
@@ -34,7 +38,7 @@ CloudContent readCloudContent(const std::filesystem::path& file) {
 
 CloudContent parseCloud(std::string_view bytes, const std::filesystem::path& file) {
   if (bytes.empty()) io::fail(file.string(), "", "the file is empty (0 bytes)");
-  if (isPly(bytes)) return parsePlyCloud(bytes, file.string());
+  if (isPly(bytes)) return parsePlyCloud(io::withoutMark(bytes), file.string());
   if (isPcd(bytes)) return parsePcd(bytes, file.string());
   io::fail(file.string(), "", "is no cloud of points; supported: PLY without faces, PCD");
 }

@@ -245,6 +245,9 @@ class GltfReader {
     for (const GltfInstance& instance : instances_) readParts(instance.mesh);
     reserve();
     for (const GltfInstance& instance : instances_) add(instance);
+    bad_.remove(mesh_, file_, [this](std::size_t vertex, std::size_t array) {
+      return arrays_[array].first + ", element " + std::to_string(vertex - arrays_[array].second);
+    });
     return io::finished(std::move(mesh_), file_);
   }
 
@@ -306,14 +309,17 @@ class GltfReader {
 
   void addPositions(const GltfAccessor& positions, const GltfInstance& instance) {
     const std::size_t first = mesh_.vertices.size();
+    arrays_.emplace_back(positions.place, first);
     data_.append(positions, mesh_.vertices);
     for (std::size_t i = first; i < mesh_.vertices.size(); ++i) {
       Vector3d& v = mesh_.vertices[i];
-      const auto place = [&] { return elementOf(positions, i - first); };
-      if (const char* reason = io::badCoordinate(v)) io::fail(file_, place(), reason);
+      if (io::badCoordinate(v)) {
+        bad_.note(i, arrays_.size() - 1);
+        continue;
+      }
       v = instance.worldFromMesh.topLeftCorner<3, 3>() * v + instance.worldFromMesh.topRightCorner<3, 1>();
       if (const char* reason = io::badCoordinate(v))
-        io::fail(file_, instance.place + ", " + place(), std::string("in the world, it ") + reason);
+        io::fail(file_, instance.place + ", " + elementOf(positions, i - first), std::string("in the world, it ") + reason);
     }
   }
 
@@ -354,6 +360,8 @@ class GltfReader {
   std::vector<GltfInstance> instances_;
   std::map<std::size_t, std::vector<GltfPart>> parts_;  ///< by the number of the mesh
   bool normals_ = false;                                ///< a part has them
+  io::BadVertices bad_;
+  std::vector<std::pair<std::string, std::size_t>> arrays_;  ///< of positions: their place, and the number of their first vertex
   MeshContent mesh_;
 };
 

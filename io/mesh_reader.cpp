@@ -7,6 +7,7 @@
 #include "core/base/atomic_file.h"
 #include "io/mesh_builder.h"
 #include "io/stl_layout.h"
+#include "io/text_scan.h"
 
 namespace glint {
 namespace {
@@ -33,12 +34,14 @@ MeshContent parseMesh(std::string_view bytes, const std::filesystem::path& file)
   // A binary STL may start with "solid" too; its size follows from its facet count.
   const bool solid = io::beginsAsStlText(bytes);
   const std::size_t promised = io::stlBytesPromised(bytes);
-  if (bytes.starts_with("ply\n") || bytes.starts_with("ply\r")) return parsePly(bytes, name);
+  if (const std::string_view ply = io::withoutMark(bytes); ply.starts_with("ply\n") || ply.starts_with("ply\r"))
+    return parsePly(ply, name);
   if (promised == bytes.size() && bytes.find('\0') != std::string_view::npos) return parseStlBinary(bytes, name);
   if (bytes.starts_with("glTF") || isGltfText(bytes)) return parseGltf(bytes, file);
   if (solid) return parseStlText(bytes, name);
   if (namedStl) return parseStlBinary(bytes, name);
-  if (bytes.find('\0') != std::string_view::npos || bytes.find("v ") == std::string_view::npos)
+  if (bytes.find('\0') != std::string_view::npos ||
+      (bytes.find("v ") == std::string_view::npos && bytes.find("v\t") == std::string_view::npos))
     io::fail(name, "", "is not a mesh; supported: PLY, OBJ, STL, glTF");
   return parseObj(bytes, name);
 }

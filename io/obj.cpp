@@ -54,7 +54,8 @@ class ObjReader {
   void statement(std::string_view line) {
     const std::string_view word = io::takeWord(line);
     if (word != "v" && word != "vn" && word != "vt" && word != "f") return;
-    if (const std::size_t comment = line.find('#'); comment != std::string_view::npos) line = line.substr(0, comment);
+    for (std::size_t at = line.find('#'); at != std::string_view::npos; at = line.find('#', at + 1))
+      if (at == 0 || line[at - 1] != '.') line = line.substr(0, at);  // "1.#QNAN" is a number
     if (word == "f") return face(line);
     constexpr std::int64_t kMost = std::numeric_limits<int>::max();
     if (word == "v") {

@@ -116,7 +116,7 @@ MeshContent parseStlBinary(std::string_view bytes, const std::string& file) {
 MeshContent parseStlText(std::string_view bytes, const std::string& file) {
   MeshContent mesh;
   Welder welder(mesh.vertices);
-  io::Lines lines(io::withoutMark(bytes));
+  io::Lines lines(bytes);
   // Statements as they may follow each other; each begins a line.
   enum class Inside { Nothing, Solid, Facet, Loop, LoopDone } inside = Inside::Nothing;
   Vector3d corners[3];

@@ -18,6 +18,21 @@ std::optional<std::string_view> Lines::next() {
   return line;
 }
 
+namespace {
+/// What runtimes of Microsoft wrote before 2015: 1.#QNAN, -1.#IND00, 1.#INF.
+std::optional<double> microsoftNumber(std::string_view word) {
+  const bool negative = word.starts_with("-");
+  if (negative) word.remove_prefix(1);
+  if (!word.starts_with("1.#")) return std::nullopt;
+  word.remove_prefix(3);
+  while (word.ends_with("0")) word.remove_suffix(1);
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  if (word == "INF") return negative ? -kInfinity : kInfinity;
+  if (word == "QNAN" || word == "SNAN" || word == "IND") return std::numeric_limits<double>::quiet_NaN();
+  return std::nullopt;
+}
+}  // namespace
+
 std::optional<double> numberOf(std::string_view word) {
   if (!word.empty() && word.front() == '+') {
     word.remove_prefix(1);
@@ -26,7 +41,7 @@ std::optional<double> numberOf(std::string_view word) {
   double value = 0;
   const char* const end = word.data() + word.size();
   const auto [stop, error] = std::from_chars(word.data(), end, value);
-  if (stop != end || error == std::errc::invalid_argument) return std::nullopt;
+  if (stop != end || error == std::errc::invalid_argument) return microsoftNumber(word);
   if (error == std::errc::result_out_of_range) {
     // Too small or too large: the exponent tells, and without one the digits before the point.
     const bool negative = word.front() == '-';

@@ -29,12 +29,12 @@ inline std::string_view withoutMark(std::string_view text) {
   return text.starts_with(kMark) ? text.substr(kMark.size()) : text;
 }
 
-/// Lines of a text that end with "\n", "\r\n", or with "\r" alone.
+/// Lines of a text, behind the mark of UTF-8, that end with "\n", "\r\n", or with "\r" alone.
 class Lines {
  public:
   /// Lines end with "\r" alone where the text has no "\n".
   explicit Lines(std::string_view text) : Lines(text, text.find('\n') == std::string_view::npos ? '\r' : '\n') {}
-  Lines(std::string_view text, char end) : text_(text), end_(end) {}
+  Lines(std::string_view text, char end) : text_(text), at_(text.size() - withoutMark(text).size()), end_(end) {}
   /// Nothing at the end of the text.
   std::optional<std::string_view> next();
   std::size_t number() const { return number_; }  ///< of the line that `next` gave last, from 1

@@ -94,6 +94,7 @@ ImageHeader jpegHeader(std::string_view bytes, ImageHeader h) {
 struct ExrFacts {
   std::uint64_t end = 0;  ///< the byte behind the empty name that ends them
   std::optional<std::int64_t> width, height, tileWidth, tileHeight;
+  bool severalChannels = false;
 };
 
 std::int64_t signed32(std::uint64_t v) { return static_cast<std::int32_t>(static_cast<std::uint32_t>(v)); }
@@ -117,6 +118,10 @@ std::optional<ExrFacts> exrFacts(std::string_view bytes) {
     } else if (named == "tiles" && *size >= 8) {
       facts.tileWidth = static_cast<std::int64_t>(*in.number(value, 4));
       facts.tileHeight = static_cast<std::int64_t>(*in.number(value + 4, 4));
+    } else if (named == "channels") {
+      constexpr std::uint64_t kBehindName = 18;  // bytes: its 0, type and sampling, and the 0 that ends a list of one
+      const std::size_t first = bytes.find('\0', static_cast<std::size_t>(value));
+      facts.severalChannels = first != std::string_view::npos && first - value + kBehindName < *size;
     }
     at = static_cast<std::size_t>(value + *size);
   }
@@ -156,6 +161,7 @@ ImageHeader exrHeader(std::string_view bytes, ImageHeader h) {
   if (!facts->width || !facts->height || *facts->width < 1 || *facts->height < 1) return damaged(h, "it has no data window");
   h.width = static_cast<std::uint64_t>(*facts->width);
   h.height = static_cast<std::uint64_t>(*facts->height);
+  h.severalChannels = facts->severalChannels;
   if (facts->tileWidth &&
       (*facts->tileWidth < 1 || *facts->tileHeight < 1 ||
        !fitsImage(static_cast<std::uint64_t>(*facts->tileWidth), static_cast<std::uint64_t>(*facts->tileHeight), h)))
@@ -233,6 +239,26 @@ ImageHeader tiffHeader(std::string_view bytes, ImageHeader h) {
   if (tags.tileWidth && tags.tileHeight && !fitsImage(*tags.tileWidth, *tags.tileHeight, h))
     return damaged(h, "its tiles are larger than the image");
   return h;
+}
+
+/// What telephones, cameras and programs write besides: "a HEIC picture"; "" = none of them.
+std::string_view unsupportedKind(std::string_view bytes) {
+  constexpr std::size_t kBrandsEnd = 64;  // bytes: the file's own brand, and those that it is compatible with
+  const std::string_view head = bytes.substr(0, kBrandsEnd);
+  if (head.substr(std::min<std::size_t>(4, head.size()), 4) == "ftyp") {
+    if (head.find("avif") != std::string_view::npos || head.find("avis") != std::string_view::npos) return "an AVIF picture";
+    for (const std::string_view brand : {"heic", "heix", "heim", "heis", "hevc", "hevx", "mif1", "msf1"})
+      if (head.find(brand) != std::string_view::npos) return "a HEIC picture";
+    return "a video";
+  }
+  struct Kind {
+    std::string_view start, words;
+  };
+  for (const Kind& kind : {Kind{"GIF8", "a GIF picture"}, Kind{"8BPS", "a Photoshop picture"},
+                           Kind{"\xff\x0a", "a JPEG XL picture"}, Kind{{"\0\0\0\x0cJXL ", 8}, "a JPEG XL picture"},
+                           Kind{{"\0\0\0\x0cjP  ", 8}, "a JPEG 2000 picture"}, Kind{"\xff\x4f\xff\x51", "a JPEG 2000 picture"}})
+    if (startsWith(bytes, kind.start)) return kind.words;
+  return "";
 }
 
 /// The first bytes of raw files that are no TIFF: Fujifilm, Olympus, Panasonic, Canon (CRW, CR3), Minolta, Sigma.
@@ -393,6 +419,8 @@ ImageHeader readImageHeader(std::string_view bytes) {
     header.format = ImageFormat::Pnm;
     return pnmHeader(bytes, header);
   }
+  if (const std::string_view kind = unsupportedKind(bytes); !kind.empty())
+    return failed(header, "the file is " + std::string(kind) + ", which is not supported: convert it to PNG, JPEG or TIFF first");
   return failed(header, "the file is not a supported image (PNG, JPEG, EXR, TIFF, BMP, PNM, HDR, WebP)");
 }
 

@@ -20,6 +20,7 @@ struct ImageHeader {
   ImageFormat format = ImageFormat::Png;
   std::uint64_t width = 0, height = 0;  ///< px; 0 with a problem
   int channels = 0;                     ///< as stored (a palette counts as 3); 0 = the header does not say
+  bool severalChannels = false;         ///< an EXR with more than one, of which a reader takes some
   bool saysLinear = false;              ///< a PNG's gAMA chunk declares an exponent of 1
   std::string problem;                  ///< "" = whole, as far as the container tells without decoding
 };

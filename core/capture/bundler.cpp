@@ -157,7 +157,7 @@ BundlerPoint bundlerPoint(BundlerWords& words, const std::string& what, std::siz
 
 BundlerModel readBundler(const fs::path& path) {
   const std::string file = path.string(), text = readFile(path, Limit::MeshMegabytes);
-  const std::string_view line = std::string_view(text).substr(0, text.find_first_of("\r\n"));
+  const std::string_view whole = io::withoutMark(text), line = whole.substr(0, whole.find_first_of("\r\n"));
   const bool known = line.rfind(kBundlerMagic, 0) == 0;
   // Versions before 0.3 have no measurements and look along +z, later ones have more words per camera.
   if (!known) throw InputError(file, "line 1", "expected '# Bundle file v0.3', not " + io::quoted(line));

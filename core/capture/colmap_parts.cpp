@@ -124,13 +124,26 @@ std::optional<std::uint32_t> number32(std::string_view word) {
   return static_cast<std::uint32_t>(*value);
 }
 
+namespace {
+bool isSameCamera(const ModelCamera& a, const ModelCamera& b) {
+  return a.model == b.model && a.camera.width == b.camera.width && a.camera.height == b.camera.height &&
+         a.camera.pixelFromRay == b.camera.pixelFromRay && a.camera.lens.model == b.camera.lens.model &&
+         a.camera.lens.parameters == b.camera.lens.parameters;
+}
+}  // namespace
+
 std::vector<ModelCamera> readCameras(const Files& files) {
   const fs::path file = files("cameras");
   const std::string bytes = readFile(file, Limit::MeshMegabytes);
   std::vector<ModelCamera> cameras =
       files.binary ? readCamerasBinary(bytes, file.string()) : readCamerasText(bytes, file.string());
   if (cameras.empty()) throw InputError(file.string(), "", "contains no camera");
-  return cameras;
+  std::unordered_map<std::uint32_t, const ModelCamera*> first;
+  std::vector<ModelCamera> once;
+  once.reserve(cameras.size());
+  for (const ModelCamera& c : cameras)
+    if (const auto [before, isNew] = first.emplace(c.id, &c); isNew || !isSameCamera(*before->second, c)) once.push_back(c);
+  return once;
 }
 
 namespace {

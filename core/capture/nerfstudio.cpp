@@ -24,7 +24,6 @@
 
 namespace glint {
 namespace fs = std::filesystem;
-
 namespace {
 
 // ---- Keys -------------------------------------------------------------------------------------------------------------------
@@ -79,7 +78,7 @@ struct NerfCount {
 /// What the frames had, for the report.
 struct NerfTally {
   NerfCount rounded, otherAngle, arrays, ownKeys;
-  capture::PassedOver lost;
+  capture::PassedOver lost, cut;
   std::map<std::string, NerfCount> unknown;
   std::set<std::string> models;
   int middles = 0, angles = 0, ownSizes = 0, depths = 0, floatDepths = 0, masks = 0;
@@ -456,6 +455,7 @@ void tellNerfWarnings(const NerfContext& context, Capture& capture) {
   if (tally.ownKeys.number > 0)
     warnings.push_back(tally.ownKeys.text() + ": differs from the value at the top of the file; the frame's own one counts");
   tally.lost.tell(capture.file.filename().string(), capture::kNoFinitePose, warnings);
+  tally.cut.tell(capture.file.filename().string(), capture::kCutPose, warnings);
   context.names.tell(warnings);
   if (tally.arrays.number > 0) warnings.push_back(tally.arrays.text() + ": depth as a NumPy array is not read, left out");
   std::string placed;
@@ -555,6 +555,8 @@ class NerfstudioReader final : public CaptureReader {
       const JsonNode frame = frames.at(i);
       if (const auto pose = frame.find("transform_matrix"); pose && capture::isLostPose(*pose))
         context.tally.lost.add(frame.place());
+      else if (pose && capture::isCutPose(*pose))
+        context.tally.cut.add(frame.place());
       else
         capture.views.push_back(readNerfFrame(frame, context));
     }

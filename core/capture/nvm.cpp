@@ -25,7 +25,7 @@ struct NvmCamera {
   Eigen::Quaterniond camFromWorld = Eigen::Quaterniond::Identity();
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
   double radial = 0;
-  bool lost = false;  ///< its numbers are not finite
+  bool lost = false, cut = false;  ///< its numbers are not finite; are too few
 };
 
 struct NvmMeasurement {
@@ -71,9 +71,15 @@ std::string nvmName(const Row& row, std::size_t numbers) {
 /// `name f qw qx qy qz cx cy cz r 0`
 NvmCamera nvmCamera(const Row& row, const std::string& file, std::vector<std::string>& warnings) {
   constexpr std::size_t kNumbers = 10;
-  if (row.words.size() < kNumbers + 1)
-    throw InputError(file, row.place(),
-                     "a camera needs a name and 10 numbers, has " + std::to_string(row.words.size()) + " entries");
+  if (row.words.size() < 2)  // a row of one word is a count: there are fewer cameras than the file states
+    throw InputError(file, row.place(), "a camera needs a name and 10 numbers, has 1 entry");
+  if (row.words.size() < kNumbers + 1) {
+    NvmCamera cut;
+    cut.name = std::string(row.words.front());
+    cut.place = row.place();
+    cut.cut = true;
+    return cut;
+  }
   const std::size_t first = row.words.size() - kNumbers;
   const auto number = [&](std::size_t i) { return capture::numberAt(row, first + i, file); };
   NvmCamera camera;
@@ -285,12 +291,12 @@ class NvmReader : public CaptureReader {
     capture.sources = {capture.file};
     const NvmModel model = readNvm(file);
     capture::FileNames names(options.rights, options.photographs);
-    capture::PassedOver lost;
+    capture::PassedOver lost, cut;
     std::vector<std::optional<std::size_t>> viewOf;  // of the cameras, in the model's own order
     for (const NvmCamera& from : model.cameras) {
-      viewOf.push_back(from.lost ? std::nullopt : std::optional(capture.views.size()));
-      if (from.lost) {
-        lost.add(from.place);
+      viewOf.push_back(from.lost || from.cut ? std::nullopt : std::optional(capture.views.size()));
+      if (from.lost || from.cut) {
+        (from.cut ? cut : lost).add(from.place);
         continue;
       }
       CaptureView view;
@@ -305,6 +311,7 @@ class NvmReader : public CaptureReader {
     capture::orderByName(capture);
     describeNvm(model, fromCorner, capture);
     lost.tell(capture.file.filename().string(), capture::kNoFinitePose, capture.warnings);
+    cut.tell(capture.file.filename().string(), capture::kCutPose, capture.warnings);
     names.tell(capture.warnings);
     return capture;
   }

@@ -101,6 +101,18 @@ bool isLostPose(const JsonNode& pose) {
   return false;
 }
 
+bool isCutPose(const JsonNode& pose) {
+  constexpr std::size_t kRows = 3, kColumns = 4;
+  if (!pose.isArray()) return false;
+  bool cut = pose.size() < kRows;
+  for (std::size_t i = 0; i < pose.size(); ++i) {
+    const JsonNode row = pose.at(i);
+    if (!row.isArray()) return false;  // not a matrix by rows: its reader says so
+    cut = cut || row.size() < kColumns;
+  }
+  return cut;
+}
+
 bool anyNotFinite(const Row& row, std::size_t word, std::size_t words) {
   const std::size_t end = std::min(row.words.size(), word + words);
   for (std::size_t i = word; i < end; ++i)

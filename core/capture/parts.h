@@ -57,11 +57,14 @@ class PassedOver {
 };
 /// Why a frame or a line is passed over, for PassedOver::tell().
 inline constexpr const char* kNoFinitePose = "no finite pose (tracking was lost)";
+inline constexpr const char* kCutPose = "has fewer numbers than a pose (a cut line?)";
 inline constexpr const char* kSaidBefore = "says the same as a line before";
 
 /// Whether a pose, or a part of it, is null, NaN or infinite (JsonNode reads all of them as null): programs write it where they have lost
 /// the camera.
 bool isLostPose(const JsonNode& pose);
+/// Whether a matrix has fewer than three rows, or one of them fewer than four numbers.
+bool isCutPose(const JsonNode& pose);
 
 /// The words of one line of a text.
 struct Row {

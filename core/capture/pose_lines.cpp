@@ -69,8 +69,18 @@ bool PoseLineReader::takeLine(std::string& line) {
 }
 
 PoseLine PoseLineReader::fromJson(const std::string& line) {
+  const auto parsed = [&] {
+    try {
+      return JsonNode::parse(line, name_);
+    } catch (const InputError&) {
+      const std::size_t last = line.find_last_not_of(" \t\r");
+      if (ended_ && last != std::string::npos && line[last] != '}')
+        throw CutPose(name_, place(), "the file ends within its JSON");
+      throw;
+    }
+  };
   try {
-    const JsonNode root = JsonNode::parse(line, name_);
+    const JsonNode root = parsed();
     PoseLine pose;
     const auto id = root.find("id");
     const auto time = root.find("time");
@@ -84,6 +94,7 @@ PoseLine PoseLineReader::fromJson(const std::string& line) {
     const JsonNode matrix = root.at("camera_from_world");
     if (capture::isLostPose(matrix))
       throw LostPose(name_, place() + ": camera_from_world", "there is no finite pose (null): tracking was lost");
+    if (capture::isCutPose(matrix)) throw CutPose(name_, place() + ": camera_from_world", "has fewer numbers than a pose");
     pose.cameraFromWorld = readPoseJson(matrix, &warning_);
     if (!warning_.empty()) warning_ = place() + ": " + warning_;
     if (const auto camera = root.find("camera"); camera && !camera->isNull()) {
@@ -93,6 +104,8 @@ PoseLine PoseLineReader::fromJson(const std::string& line) {
     }
     return pose;
   } catch (const LostPose&) {
+    throw;
+  } catch (const CutPose&) {
     throw;
   } catch (const InputError& e) {
     throwFrom(e, name_, place());
@@ -106,10 +119,10 @@ PoseLine PoseLineReader::fromTum(const std::string& line) {
   // One word more than there may be tells that the line is wrong; thousands need no memory.
   for (std::string_view word = io::takeWord(rest); !word.empty() && row.words.size() <= kNumbers; word = io::takeWord(rest))
     row.words.push_back(word);
-  if (row.words.size() != kNumbers)
-    throw InputError(name_, place(),
-                     "must be JSON {\"id\", \"camera_from_world\"} or the 8 numbers of TUM (time tx ty tz qx qy qz qw), has " +
-                         (row.words.size() > kNumbers ? "more than 8" : std::to_string(row.words.size())) + " words");
+  const std::string expected =
+      "must be JSON {\"id\", \"camera_from_world\"} or the 8 numbers of TUM (time tx ty tz qx qy qz qw), has ";
+  if (row.words.size() > kNumbers) throw InputError(name_, place(), expected + "more than 8 words");
+  if (row.words.size() < kNumbers) throw CutPose(name_, place(), expected + std::to_string(row.words.size()) + " words");
   PoseLine pose;
   pose.time = capture::bounded(capture::secondsOf(capture::numberAt(row, 0, name_)), kFarthest, name_, place());
   pose.id = id_ = std::string(row.words.front());
@@ -149,7 +162,8 @@ std::vector<PoseLine> readPoseLines(const std::filesystem::path& file, std::vect
   std::vector<PoseLine> poses;
   std::vector<std::string> odd;
   std::map<std::string, std::size_t> ids;  // of `poses`
-  capture::PassedOver lost, repeated;
+  capture::PassedOver lost, cut, repeated;
+  std::optional<CutPose> first;
   const auto line = [&] { return "line " + std::to_string(reader.line()); };
   while (!reader.ended()) {
     try {
@@ -166,11 +180,16 @@ std::vector<PoseLine> readPoseLines(const std::filesystem::path& file, std::vect
       poses.push_back(*pose);
     } catch (const LostPose&) {
       lost.add(line());
+    } catch (const CutPose& e) {
+      if (!first) first = e;
+      cut.add(line());
     }
   }
+  if (poses.empty() && first) throw *first;
   if (poses.empty()) throw InputError(file.string(), "", lost.number() > 0 ? "has no finite pose" : "has no pose");
   capture::addFew(warnings, odd);
   lost.tell(file.filename().string(), capture::kNoFinitePose, warnings);
+  cut.tell(file.filename().string(), capture::kCutPose, warnings);
   repeated.tell(file.filename().string(), capture::kSaidBefore, warnings);
   return poses;
 }

@@ -32,6 +32,12 @@ class LostPose : public InputError {
   using InputError::InputError;
 };
 
+/// The line ends before its pose does, as a full disk or a killed program leaves the last one.
+class CutPose : public InputError {
+ public:
+  using InputError::InputError;
+};
+
 /// The longest line in bytes: one with a camera has 600.
 inline constexpr std::size_t kLongestPoseLine = 65536;
 
@@ -45,6 +51,7 @@ class PoseLineReader {
 
   /// The next pose; nothing at the end. After a throw about a line, the next call reads the line behind it.
   /// @throw LostPose    for a line that says that there is no pose
+  /// @throw CutPose     for a line with fewer numbers than a pose, or of JSON that the end of the file cuts
   /// @throw InputError  (name, "line 7" or "line 7: camera_from_world[0]") for a line that is none, is longer than kLongestPoseLine,
   ///                    or whose pose is not rigid (core/geometry/pose_json.h); with the name alone where the file cannot be read
   std::optional<PoseLine> next();
@@ -73,7 +80,7 @@ class PoseLineReader {
   bool ended_ = false;
 };
 
-/// All poses of a file, in its order. Lines without a pose (LostPose) and lines that say the same again are passed over, with a line in
+/// All poses of a file, in its order. Lines without a whole pose (LostPose, CutPose) and lines that say the same again are passed over, with a line in
 /// `warnings` for each kind.
 /// @throw InputError for the first line that is wrong, for two poses of one id, and where there is no pose at all
 std::vector<PoseLine> readPoseLines(const std::filesystem::path& file, std::vector<std::string>& warnings);

@@ -59,7 +59,8 @@ inline std::string firstLineOf(const std::filesystem::path& file) {
   std::string start(kMost, '\0');
   in.read(start.data(), static_cast<std::streamsize>(kMost));
   start.resize(static_cast<std::size_t>(std::max<std::streamsize>(in.gcount(), 0)));
-  return start.substr(0, start.find_first_of("\r\n"));
+  const std::string_view text = io::withoutMark(start);
+  return std::string(text.substr(0, text.find_first_of("\r\n")));
 }
 
 /// The first of them as they are, the others as a count: a file of thousands of cameras is damaged in one way thousands of times.

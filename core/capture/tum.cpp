@@ -43,10 +43,14 @@ struct TumPose {
 std::vector<TumImage> readTumImages(const fs::path& file, std::vector<std::string>& warnings) {
   std::vector<TumImage> images;
   std::set<std::pair<std::string, double>> said;
-  capture::PassedOver repeated;
+  capture::PassedOver repeated, cut;
   const std::string text = readFile(file, Limit::MeshMegabytes);
   capture::RowReader rows(text, file.string());
   while (const auto row = rows.next()) {
+    if (row->words.size() < 2) {
+      cut.add(row->place());
+      continue;
+    }
     if (row->words.size() != 2)
       throw InputError(file.string(), row->place(),
                        "must be a time and a path without blanks, has " + std::to_string(row->words.size()) + " entries");
@@ -57,20 +61,28 @@ std::vector<TumImage> readTumImages(const fs::path& file, std::vector<std::strin
       images.push_back(std::move(image));
   }
   repeated.tell(file.filename().string(), capture::kSaidBefore, warnings);
+  cut.tell(file.filename().string(), "is not a time and a path (a cut line?)", warnings);
   return images;
 }
 
 /// @param lost  the lines that hold NaN: where tracking was lost, as TUM's own tools pass over them
-std::vector<TumPose> readTumPoses(const fs::path& file, capture::PassedOver& lost) {
+/// @param cut   those of fewer numbers, as a full disk leaves the last one; where there is no other, the first is refused
+std::vector<TumPose> readTumPoses(const fs::path& file, capture::PassedOver& lost, capture::PassedOver& cut) {
   constexpr std::size_t kNumbers = 8;
   std::vector<TumPose> poses;
   const std::string text = readFile(file, Limit::MeshMegabytes);
   capture::RowReader rows(text, file.string());
+  std::optional<InputError> first;
   while (const auto row = rows.next()) {
-    if (row->words.size() != kNumbers)
-      throw InputError(
+    if (row->words.size() != kNumbers) {
+      const InputError wrong(
           file.string(), row->place(),
           "must be 8 numbers (timestamp tx ty tz qx qy qz qw), has " + std::to_string(row->words.size()) + " entries");
+      if (row->words.size() > kNumbers) throw wrong;
+      if (!first) first = wrong;
+      cut.add(row->place());
+      continue;
+    }
     TumPose pose{capture::secondsOf(capture::numberAt(*row, 0, file.string())), {}, {}, row->place()};
     if (capture::anyNotFinite(*row, 1, kNumbers - 1)) {
       lost.add(row->place());
@@ -80,6 +92,7 @@ std::vector<TumPose> readTumPoses(const fs::path& file, capture::PassedOver& los
     for (int i = 0; i < 4; ++i) pose.xyzw[i] = capture::numberAt(*row, std::size_t(4 + i), file.string());
     poses.push_back(std::move(pose));
   }
+  if (poses.empty() && first) throw *first;
   return poses;
 }
 
@@ -113,15 +126,18 @@ class TumReading {
     photographs_ = readTumImages(capture_.file, capture_.warnings);
     if (photographs_.empty()) throw InputError(file, "", "names no photograph");
     const fs::path poseFile = source(kTumPoses);
-    capture::PassedOver lost;
-    poses_ = readTumPoses(poseFile, lost);
+    capture::PassedOver lost, cut;
+    poses_ = readTumPoses(poseFile, lost, cut);
     std::error_code ignored;  // what cannot be asked about is not there
     const bool hasDepth = fs::exists(capture_.folder / kTumDepth, ignored);
     if (hasDepth) depths_ = readTumImages(source(kTumDepth), capture_.warnings);
     addViews(poseFile.string());
     capture::orderByName(capture_);
     setCameras();
-    report(hasDepth, lost);
+    report(hasDepth);
+    lost.tell(kTumPoses, capture::kNoFinitePose, capture_.warnings);
+    cut.tell(kTumPoses, capture::kCutPose, capture_.warnings);
+    names_.tell(capture_.warnings);
     return std::move(capture_);
   }
 
@@ -201,7 +217,7 @@ class TumReading {
     }
   }
 
-  void report(bool hasDepth, const capture::PassedOver& lost) {
+  void report(bool hasDepth) {
     const std::size_t n = capture_.views.size();
     const Camera& camera = capture_.views.front().camera;
     capture_.facts.push_back("TUM RGB-D: " + capture::counted(n, "photograph", "photographs") + " of " +
@@ -225,8 +241,6 @@ class TumReading {
       capture_.warnings.push_back(capture::counted(out, "photograph of ", "photographs of ") +
                                   std::to_string(photographs_.size()) + (out == 1 ? " has" : " have") +
                                   " no pose within 20 ms and " + (out == 1 ? "is left out" : "are left out"));
-    lost.tell(kTumPoses, capture::kNoFinitePose, capture_.warnings);
-    names_.tell(capture_.warnings);
   }
 
   const CaptureOptions& options_;

@@ -10,6 +10,7 @@ namespace glint {
 struct CodecTable {
   const char* version;  ///< GLINT_VERSION of that library: first in every version, so that another one can be told
   cv::Mat (*decode)(const std::string& bytes, std::string& reason);
+  cv::Mat (*decodeDepth)(const std::string& bytes, std::string& reason);
   bool (*encode)(const std::string& ending, const cv::Mat& pixels, std::vector<unsigned char>& bytes,
                  const std::vector<int>& parameters);
   std::unique_ptr<VideoDecoder> (*decoder)();

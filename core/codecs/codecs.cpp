@@ -72,6 +72,8 @@ void loadCodecs() { codecs(); }
 
 cv::Mat decodeOtherFormat(const std::string& bytes, std::string& reason) { return codecs().decode(bytes, reason); }
 
+cv::Mat decodeExrDepth(const std::string& bytes, std::string& reason) { return codecs().decodeDepth(bytes, reason); }
+
 bool encodeWithOpenCv(const std::string& ending, const cv::Mat& pixels, std::vector<unsigned char>& bytes,
                       const std::vector<int>& parameters) {
   return codecs().encode(ending, pixels, bytes, parameters);

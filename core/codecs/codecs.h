@@ -35,6 +35,10 @@ void loadCodecs();
 /// @throws std::exception  damaged data
 cv::Mat decodeOtherFormat(const std::string& bytes, std::string& reason);
 
+/// The one channel of depth (Z or V) of an EXR file, whatever else it has: floats.
+/// @param reason,return  as above. @throws std::exception  damaged data
+cv::Mat decodeExrDepth(const std::string& bytes, std::string& reason);
+
 /// The content of a file, as cv::imencode writes it.
 /// @param ending      with its dot: ".png"
 /// @param pixels      blue first

@@ -61,6 +61,22 @@ std::vector<std::string> chosenChannels(const std::vector<std::string>& names) {
   return single.size() == 1 ? single : std::vector<std::string>();
 }
 
+/// The channel of depth; empty = none, or several.
+std::string depthChannel(const std::vector<std::string>& names) {
+  std::vector<std::string> found, ofDepth;
+  for (const char* last : {"Z", "V"}) {
+    for (const std::string& name : names) {
+      if (name == last) return name;
+      if (!endsOnChannel(name, last)) continue;
+      found.push_back(name);
+      const std::string layer = name.substr(0, name.size() - 2);
+      if (layer == "Depth" || layer.ends_with(".Depth")) ofDepth.push_back(name);
+    }
+  }
+  if (found.size() > 1) found = ofDepth;
+  return found.size() == 1 ? found.front() : "";
+}
+
 std::string listed(const std::vector<std::string>& names) {
   constexpr std::size_t kMost = 12, kLongest = 60;
   std::string text;
@@ -71,27 +87,20 @@ std::string listed(const std::vector<std::string>& names) {
   return names.size() > kMost ? text + " and " + std::to_string(names.size() - kMost) + " more" : text;
 }
 
-}  // namespace
-
-std::optional<cv::Mat> decodeExrLayer(const std::string& bytes, std::string& reason) {
-  if (!bytes.starts_with("\x76\x2f\x31\x01")) return std::nullopt;
-  ExrBytes stream(bytes);
-  Imf::InputFile file(stream, 0);
+std::vector<std::string> namesOf(const Imf::InputFile& file) {
   std::vector<std::string> names;
-  bool whole = true;
   const Imf::ChannelList& channels = file.header().channels();
-  for (auto c = channels.begin(); c != channels.end(); ++c) {
-    const std::string name = c.name();
-    if (name == "R" || name == "G" || name == "B" || name == "Y") return std::nullopt;
-    names.push_back(name);
-    whole = whole && c.channel().xSampling == 1 && c.channel().ySampling == 1;
-  }
-  const std::vector<std::string> chosen = whole ? chosenChannels(names) : std::vector<std::string>();
-  if (chosen.empty()) {
-    reason = "the EXR has the channels " + listed(names) +
-             "; needed are R, G and B, alone or in one layer (or in one named Combined), or one channel of depth Z or V";
-    return cv::Mat();
-  }
+  for (auto c = channels.begin(); c != channels.end(); ++c) names.emplace_back(c.name());
+  return names;
+}
+
+/// Whether each pixel has a value of its own.
+bool isWhole(const Imf::InputFile& file, const std::string& name) {
+  const Imf::Channel* c = file.header().channels().findChannel(name.c_str());
+  return c && c->xSampling == 1 && c->ySampling == 1;
+}
+
+cv::Mat pixelsOf(Imf::InputFile& file, const std::vector<std::string>& chosen) {
   const Imath::Box2i window = file.header().dataWindow();
   const int width = window.max.x - window.min.x + 1, height = window.max.y - window.min.y + 1;
   cv::Mat pixels(height, width, CV_MAKETYPE(CV_32F, int(chosen.size())), cv::Scalar::all(0));
@@ -102,6 +111,36 @@ std::optional<cv::Mat> decodeExrLayer(const std::string& bytes, std::string& rea
   file.setFrameBuffer(frame);
   file.readPixels(window.min.y, window.max.y);
   return pixels;
+}
+
+}  // namespace
+
+std::optional<cv::Mat> decodeExrLayer(const std::string& bytes, std::string& reason) {
+  if (!bytes.starts_with("\x76\x2f\x31\x01")) return std::nullopt;
+  ExrBytes stream(bytes);
+  Imf::InputFile file(stream, 0);
+  const std::vector<std::string> names = namesOf(file);
+  for (const char* plain : {"R", "G", "B", "Y"})
+    if (std::find(names.begin(), names.end(), plain) != names.end()) return std::nullopt;
+  const bool whole = std::all_of(names.begin(), names.end(), [&](const std::string& n) { return isWhole(file, n); });
+  const std::vector<std::string> chosen = whole ? chosenChannels(names) : std::vector<std::string>();
+  if (chosen.empty()) {
+    reason = "the EXR has the channels " + listed(names) +
+             "; needed are R, G and B, alone or in one layer (or in one named Combined), or one channel of depth Z or V";
+    return cv::Mat();
+  }
+  return pixelsOf(file, chosen);
+}
+
+cv::Mat depthOfExr(const std::string& bytes, std::string& reason) {
+  ExrBytes stream(bytes);
+  Imf::InputFile file(stream, 0);
+  const std::vector<std::string> names = namesOf(file);
+  const std::string channel = depthChannel(names);
+  if (!channel.empty() && isWhole(file, channel)) return pixelsOf(file, {channel});
+  reason = "the EXR has the channels " + listed(names) +
+           "; needed is one of depth, Z or V, alone or in one layer (or in one named Depth)";
+  return cv::Mat();
 }
 
 }  // namespace glint

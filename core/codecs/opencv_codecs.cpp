@@ -70,6 +70,7 @@ std::unique_ptr<VideoEncoder> encoder() { return std::make_unique<OpenCvEncoder>
 }  // namespace glint
 
 extern "C" __attribute__((visibility("default"))) const glint::CodecTable* glint_codecs() {
-  static constexpr glint::CodecTable table{GLINT_VERSION, &glint::decode, &glint::encode, &glint::decoder, &glint::encoder};
+  static constexpr glint::CodecTable table{GLINT_VERSION,  &glint::decode,  &glint::depthOfExr,
+                                           &glint::encode, &glint::decoder, &glint::encoder};
   return &table;
 }

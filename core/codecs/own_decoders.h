@@ -25,4 +25,8 @@ std::optional<cv::Mat> decodeTiff(const std::string& bytes, std::string& reason)
 /// @throws std::exception  damaged data
 std::optional<cv::Mat> decodeExrLayer(const std::string& bytes, std::string& reason);
 
+/// The channel of depth of an EXR file: Z or V without a layer, else the one of a layer (the one named Depth, where there are several).
+/// @param reason  takes why there is none; the picture is then empty. @throws std::exception  damaged data
+cv::Mat depthOfExr(const std::string& bytes, std::string& reason);
+
 }  // namespace glint

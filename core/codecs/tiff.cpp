@@ -147,18 +147,19 @@ std::optional<cv::Mat> decodeTiff(const std::string& bytes, std::string& reason)
   const bool half = l.format == SAMPLEFORMAT_IEEEFP && l.bits == 16,
              apart = l.planes != PLANARCONFIG_CONTIG && l.samples > 1 && l.bits > 8;
   const bool turned = l.orientation >= ORIENTATION_LEFTTOP;  // OpenCV would return another size than the header's
-  if (magic == kTiff && !half && !apart && !turned) return std::nullopt;
+  const bool wide = l.bits > 16 && !(l.format == SAMPLEFORMAT_IEEEFP && l.bits == 32);  // OpenCV calls such a file damaged
+  if (magic == kTiff && !half && !apart && !turned && !wide) return std::nullopt;
   const int depth = depthOf(l);
   const bool known =
       l.photometric == PHOTOMETRIC_MINISBLACK ? l.samples <= 2 : l.photometric == PHOTOMETRIC_RGB && l.samples >= 3;
   if (depth < 0 || !known || l.samples > 4) {
     reason = "this kind of TIFF (" + std::to_string(l.samples) + " samples of " + std::to_string(l.bits) +
-             " bits, colours of kind " + std::to_string(l.photometric) +
-             ") is not supported; save it as RGB or grey of 8 or 16 bits or floating point";
+             (l.format == SAMPLEFORMAT_IEEEFP ? " bits of floating point," : " bits,") + " colours of kind " +
+             std::to_string(l.photometric) + ") is not supported; save it as RGB or grey of 8 or 16 bits or floating point";
     return cv::Mat();
   }
   cv::Mat pixels = pixelsOf(tiff.get(), l, depth);
-  if (depth == CV_16F) pixels.convertTo(pixels, CV_32F);
+  if (depth == CV_16F || depth == CV_64F) pixels.convertTo(pixels, CV_32F);
   return pixels;
 }
 

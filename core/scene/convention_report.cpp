@@ -252,6 +252,14 @@ void conclude(const Scene& scene, const SightCheck& sight, ConventionReport& rep
   if (bad)
     report.add(formatted("%d of %d frames have a file that cannot be used; first: ", bad, n) + badId,
                imageScaleCorrection(scene));
+  if (const std::optional<Correction> scale = cameraScaleCorrection(scene)) {
+    const Camera& camera = scene.frames.front().camera;
+    const Pixel c = camera.pixelFromRay.topRightCorner<2, 1>();
+    report.add(formatted("the principal point %g, %g is the middle of pictures of %.0f x %.0f pixels; these have %d x %d: were "
+                         "they resized after the calibration?",
+                         c.x(), c.y(), 2 * c.x() + 1, 2 * c.y() + 1, camera.width, camera.height),
+               scale);
+  }
   if (notFinite)
     report.findings.push_back(formatted("%d of %d frames contain NaN or infinite values; first: frame ", notFinite, n) +
                               notFiniteId);

@@ -18,7 +18,7 @@ constexpr const char* kSimilarityForm =
     "in metres)";
 
 constexpr std::string_view kPrincipalPoint = "principal-point", kFocalLength = "focal-length", kDepthScale = "depth-scale",
-                           kImageScale = "image-scale", kTurnCameras = "turn-cameras";
+                           kImageScale = "image-scale", kCameraScale = "camera-scale", kTurnCameras = "turn-cameras";
 
 struct ValuedCorrection {
   std::string_view name;
@@ -30,6 +30,7 @@ constexpr ValuedCorrection kValued[] = {
     {kPrincipalPoint, -10, 10, "px, added to cx and cy"},  // more is no other origin of pixels but another image
     {kFocalLength, 0.1, 10, "a factor of fx and fy"},      // beyond that it is another camera
     {kDepthScale, 1e-9, 1e9, "metres per unit of depth"},  // as scene files: more is a typing error
+    {kCameraScale, 1.0 / 64, 64, "a factor of fx, fy and of the principal point's distance from the image's corner"},
     {kImageScale, 1.0 / 64, 64, "the size of the photographs in sizes of the cameras' images"},
     {kTurnCameras, 90, 270, "90, 180 or 270 degrees clockwise, as the photographs are turned"},
 };
@@ -119,6 +120,11 @@ void applyValue(Scene& scene, std::string_view name, double value) {
     Eigen::Matrix3d k = f.camera.pixelFromRay;
     if (name == kPrincipalPoint) k(0, 2) += value, k(1, 2) += value;
     if (name == kFocalLength) k(0, 0) *= value, k(1, 1) *= value, k(0, 1) *= value;
+    if (name == kCameraScale) {
+      k.topRows<2>() *= value;
+      k(0, 2) += 0.5 * (value - 1);  // (0, 0) is the centre of the first pixel
+      k(1, 2) += 0.5 * (value - 1);
+    }
     if (name == kDepthScale && f.depthScale > 0) f.depthScale = value, any = true;
     if (k != f.camera.pixelFromRay) takeIntrinsics(f, k);
   }

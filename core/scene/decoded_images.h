@@ -23,6 +23,8 @@ namespace glint {
 struct DecodedImage {
   std::shared_ptr<const cv::Mat> pixels;  ///< 1 or 3 channels, RGB order, the file's own depth
   bool saysLinear = false;                ///< the file says that its codes are linear
+  int orientation = 1;                    ///< of EXIF, by which the pixels were turned
+  bool hasOthers = false;                 ///< an EXR with more channels than one
 };
 
 /// Which content a file has, as far as the system tells without reading it.

@@ -38,22 +38,35 @@ std::string wrongSize(std::uint64_t width, std::uint64_t height, const Camera& c
          (scale ? formatted(" (resized photographs: glint convert INPUT --fix image-scale=%.10g fits the cameras)", *scale) : "");
 }
 
-/// Words on EXIF data that would turn the picture into the camera's size: OpenCV, which calibrates, turns it, and COLMAP does not.
-std::string orientationThatFits(const std::string& bytes, const ImageHeader& header, const Camera& camera) {
-  const int orientation = exifOrientation(bytes);
+/// The EXIF orientation with which the picture has the camera's size, where that takes a quarter turn; 1 = none. OpenCV, which calibrates,
+/// turns such pictures; COLMAP does not, and its cameras have the size of the stored pixels.
+int orientationThatFits(const std::string& bytes, const ImageHeader& header, const Camera& camera) {
   constexpr int kFirstOfQuarterTurns = 5;
-  if (orientation < kFirstOfQuarterTurns || header.width != static_cast<std::uint64_t>(camera.height) ||
-      header.height != static_cast<std::uint64_t>(camera.width))
-    return "";
-  return "; turned by its EXIF orientation " + std::to_string(orientation) +
-         ", the sizes agree: turn the files (ImageMagick: mogrify -auto-orient) and give their folder by --photographs";
+  if (header.width != static_cast<std::uint64_t>(camera.height) || header.height != static_cast<std::uint64_t>(camera.width) ||
+      header.width == header.height)
+    return 1;
+  const int orientation = exifOrientation(bytes);
+  return orientation >= kFirstOfQuarterTurns ? orientation : 1;
+}
+
+/// The pixels as a viewer shows them.
+cv::Mat turnedBy(int orientation, const cv::Mat& stored) {
+  if (orientation == 1) return stored;
+  cv::Mat turned;
+  cv::transpose(stored, turned);  // orientation 5
+  constexpr int kRight = 6, kBoth = 7, kLeft = 8;
+  if (orientation == kRight) cv::flip(turned, turned, 1);
+  if (orientation == kBoth) cv::flip(turned, turned, -1);
+  if (orientation == kLeft) cv::flip(turned, turned, 0);
+  return turned;
 }
 
 /// What is wrong with a file as far as its header tells; "" = nothing.
 std::string headerProblem(const std::string& bytes, const ImageHeader& header, const Camera& camera) {
   if (!header.problem.empty()) return header.problem;
-  if (header.width != static_cast<std::uint64_t>(camera.width) || header.height != static_cast<std::uint64_t>(camera.height))
-    return wrongSize(header.width, header.height, camera) + orientationThatFits(bytes, header, camera);
+  if ((header.width != static_cast<std::uint64_t>(camera.width) || header.height != static_cast<std::uint64_t>(camera.height)) &&
+      orientationThatFits(bytes, header, camera) == 1)
+    return wrongSize(header.width, header.height, camera);
   constexpr int kMostChannels = 4;
   if (header.channels > kMostChannels)
     return "the image has " + std::to_string(header.channels) + " channels, expected 1, 3 or 4";
@@ -75,7 +88,9 @@ Outcome<DecodedImage> decodeFile(const fs::path& file, const Camera& camera) {
   }
   Outcome<cv::Mat> pixels = decodeImage(bytes, header);
   if (!pixels) return unreadable(file, pixels.failure().detail);
-  return DecodedImage{std::make_shared<const cv::Mat>(*std::move(pixels)), header.saysLinear};
+  const int orientation = orientationThatFits(bytes, header, camera);
+  return DecodedImage{std::make_shared<const cv::Mat>(turnedBy(orientation, *pixels)), header.saysLinear, orientation,
+                      header.severalChannels};
 }
 
 /// What an earlier read of the same file found. Nothing beyond a limit that was lowered since.
@@ -90,14 +105,15 @@ std::optional<DecodedImage> keptImage(const fs::path& file, const FileVersion& v
 Outcome<DecodedImage> decode(const fs::path& file, const Camera& camera) {
   const std::optional<FileVersion> version = decodedImages().keepsAny() ? versionOf(file) : std::nullopt;
   std::optional<DecodedImage> image = version ? keptImage(file, *version) : std::nullopt;
-  if (!image) {
+  const auto hasSize = [&camera](const cv::Mat& m) { return m.cols == camera.width && m.rows == camera.height; };
+  if (!image || !hasSize(*image->pixels)) {  // one that is kept may be turned for a camera of another size
     Outcome<DecodedImage> read = decodeFile(file, camera);
     if (!read) return read.failure();
     if (version) decodedImages().keep(file, *version, *read);
     image = *std::move(read);
   }
   const cv::Mat& m = *image->pixels;
-  if (m.cols != camera.width || m.rows != camera.height)  // a decoder may know better than the header
+  if (!hasSize(m))  // a decoder may know better than the header
     return unreadable(file, wrongSize(static_cast<std::uint64_t>(m.cols), static_cast<std::uint64_t>(m.rows), camera));
   return *std::move(image);
 }
@@ -179,6 +195,12 @@ Image notZero(const cv::Mat& codes) {
 bool takenAsLinear(const DecodedImage& d) { return d.pixels->depth() == CV_16U && d.saysLinear; }
 
 std::string howLinear(const Frame& frame, const DecodedImage& d) {
+  if (d.orientation != 1) {
+    DecodedImage stored = d;
+    stored.orientation = 1;
+    return howLinear(frame, stored) + "; turned by its EXIF orientation " + std::to_string(d.orientation) +
+           ", with which the sizes agree";
+  }
   if (isFloat(*d.pixels))
     return frame.response.isStated() ? "float values as stored (the response is of codes)" : "float values as stored";
   return std::string(d.pixels->depth() == CV_8U ? "8-bit codes " : "16-bit codes ") + frame.response.words(takenAsLinear(d)) +
@@ -216,16 +238,18 @@ namespace {
 std::optional<Image> opaquePart(const Frame& frame) {
   if (frame.image.empty() || frame.ofVideo || !frame.radiance.empty()) return std::nullopt;
   std::string bytes;
+  ImageHeader header;
   try {
     bytes = readFile(frame.image, Limit::ImageMegabytes);
-    const ImageHeader header = readImageHeader(bytes);
+    header = readImageHeader(bytes);
     const bool mayHaveAlpha = header.channels == 2 || header.channels == 4;
     if (!mayHaveAlpha || header.format == ImageFormat::Jpeg || !headerProblem(bytes, header, frame.camera).empty())
       return std::nullopt;
   } catch (const InputError&) {
     return std::nullopt;  // who reads the photograph says so
   }
-  const Outcome<cv::Mat> alpha = decodeAlpha(bytes);
+  Outcome<cv::Mat> alpha = decodeAlpha(bytes);
+  if (alpha) *alpha = turnedBy(orientationThatFits(bytes, header, frame.camera), *alpha);
   if (!alpha || !isCode(*alpha) || alpha->cols != frame.camera.width || alpha->rows != frame.camera.height) return std::nullopt;
   const Image mask = toImage(*alpha, [](double v) { return v != 0 ? 1.f : 0.f; });
   if (std::all_of(mask.data.begin(), mask.data.end(), [](float v) { return v != 0; })) return std::nullopt;
@@ -331,6 +355,30 @@ Outcome<std::optional<Image>> readMask(const Frame& frame) {
   return std::optional<Image>(std::move(mask));
 }
 
+namespace {
+/// The depth of a picture: its only channel; that of depth of an EXR file with colours; one of three that are equal, as programs write that have
+/// pictures only.
+Outcome<cv::Mat> depthChannel(const fs::path& file, const DecodedImage& image) {
+  const cv::Mat& picture = *image.pixels;
+  std::string reason = "a depth image has one channel; this one has " + std::to_string(picture.channels());
+  if (image.hasOthers) {
+    try {
+      Outcome<cv::Mat> depth = decodeDepth(readFile(file, Limit::ImageMegabytes));
+      if (depth && depth->size() == picture.size()) return depth;
+      if (!depth) reason = depth.failure().detail;
+    } catch (const InputError& e) {
+      return Failure{Reason::FrameUnreadable, e.what()};
+    }
+  }
+  if (picture.channels() == 1) return picture;
+  std::vector<cv::Mat> channels;
+  cv::split(picture, channels);
+  const auto differs = [&](const cv::Mat& c) { return cv::norm(c, channels[0], cv::NORM_INF) != 0; };
+  if (std::none_of(channels.begin(), channels.end(), differs)) return channels[0];
+  return unreadable(file, reason);
+}
+}  // namespace
+
 Outcome<std::optional<Image>> readDepth(const Frame& frame) {
   if (frame.depth.empty()) return std::optional<Image>();
   std::optional<Camera> depthCamera = frame.depthCamera;
@@ -340,9 +388,9 @@ Outcome<std::optional<Image>> readDepth(const Frame& frame) {
     if (depthCamera) decoded = decode(frame.depth, *depthCamera);
   }
   if (!decoded) return decoded.failure();
-  const cv::Mat& m = *decoded->pixels;
-  if (m.channels() != 1)
-    return unreadable(frame.depth, "a depth image has one channel; this one has " + std::to_string(m.channels()));
+  const Outcome<cv::Mat> single = depthChannel(frame.depth, *decoded);
+  if (!single) return single.failure();
+  const cv::Mat& m = *single;
   if (!isFloat(m) && !(frame.depthScale > 0))
     return unreadable(frame.depth, "an integer depth image needs depth_scale (metres per unit)");
   const double scale = frame.depthScale > 0 ? frame.depthScale : 1.0;

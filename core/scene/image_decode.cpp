@@ -225,8 +225,8 @@ class QuietCerr {
   }
 };
 
-/// All channels in OpenCV's order.
-Outcome<cv::Mat> decodeAll(const std::string& bytes) {
+/// As one of the functions of core/codecs gives it.
+Outcome<cv::Mat> decodeBy(cv::Mat (*decoder)(const std::string&, std::string&), const std::string& bytes) {
   static const bool quiet = [] {
     cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
     return true;
@@ -237,7 +237,7 @@ Outcome<cv::Mat> decodeAll(const std::string& bytes) {
   std::string reason;
   try {
     const QuietCerr guard;
-    m = decodeOtherFormat(bytes, reason);
+    m = decoder(bytes, reason);
   } catch (const std::exception&) {
     return undecodable("truncated or damaged");
   }
@@ -247,6 +247,9 @@ Outcome<cv::Mat> decodeAll(const std::string& bytes) {
     return undecodable("it has " + std::to_string(m.channels()) + " channels, expected 1, 3 or 4");
   return m;
 }
+
+/// All channels in OpenCV's order.
+Outcome<cv::Mat> decodeAll(const std::string& bytes) { return decodeBy(&decodeOtherFormat, bytes); }
 
 Outcome<cv::Mat> decodeOther(const std::string& bytes) {
   Outcome<cv::Mat> all = decodeAll(bytes);
@@ -269,6 +272,8 @@ Outcome<cv::Mat> decodeAlpha(const std::string& bytes) {
   if (c.size() != 4) return undecodable("it has no alpha");
   return c[3];
 }
+
+Outcome<cv::Mat> decodeDepth(const std::string& bytes) { return decodeBy(&decodeExrDepth, bytes); }
 
 Outcome<cv::Mat> decodeImage(const std::string& bytes, const ImageHeader& header) {
   switch (header.format) {

@@ -25,4 +25,8 @@ Outcome<cv::Mat> decodeImage(const std::string& bytes, const ImageHeader& header
 /// @throws CodecsMissing  libglint-codecs is not there
 Outcome<cv::Mat> decodeAlpha(const std::string& bytes);
 
+/// The channel of depth (Z or V) of an EXR file that may have colours, too: floats. FrameUnreadable where there is none, or several.
+/// @throws CodecsMissing  libglint-codecs is not there
+Outcome<cv::Mat> decodeDepth(const std::string& bytes);
+
 }  // namespace glint

@@ -74,6 +74,23 @@ std::optional<Correction> imageScaleCorrection(const Scene& scene) {
                     formatted("Fit the cameras to photographs of %.4g of their size", *scale)};
 }
 
+std::optional<Correction> cameraScaleCorrection(const Scene& scene) {
+  constexpr int kMostFold = 16;
+  constexpr double kOffMiddle = 0.1;  // of half the picture: lenses are centred better
+  std::optional<int> fold;
+  for (const Frame& frame : scene.frames) {
+    const Camera& c = frame.camera;
+    const Eigen::Array2d halves = (c.pixelFromRay.topRightCorner<2, 1>().array() + 0.5) / Eigen::Array2d(c.width, c.height) * 2;
+    const double n = std::round(halves.mean());
+    if (!(n >= 2 && n <= kMostFold) || ((halves / n - 1).abs() > kOffMiddle).any() || (fold && *fold != int(n)))
+      return std::nullopt;
+    fold = int(n);
+  }
+  if (!fold) return std::nullopt;
+  return Correction{formatted("camera-scale=%.10g", 1.0 / *fold),
+                    formatted("Fit the intrinsics to photographs of 1/%d of their size", *fold)};
+}
+
 void applyImageScale(Scene& scene, double scale) {
   for (Frame& frame : scene.frames) {
     std::array<int, 2> size{std::max(1, int(std::lround(scale * frame.camera.width))),

@@ -19,6 +19,10 @@ Camera resized(const Camera& camera, int width, int height);
 /// be read ask for the same factor.
 std::optional<Correction> imageScaleCorrection(const Scene& scene);
 
+/// "camera-scale=0.5": for intrinsics of full photographs where only the principal point tells, as it is the middle of pictures twice, three times,
+/// ... as large. Nothing unless it is so in all frames.
+std::optional<Correction> cameraScaleCorrection(const Scene& scene);
+
 /// The scene with its cameras and given highlights for photographs that were resized by `scale`. Sizes are those of the files, where these
 /// are within a pixel of it.
 void applyImageScale(Scene& scene, double scale);

@@ -176,3 +176,92 @@ def case_bop_no_models__several_instances(report):
         shifts.append(json.loads((report.folder / f"{n}.json").read_text())["frames"][0]["camera_from_world"][0][3])
     assert abs(shifts[1] - shifts[0] - 0.5) < 1e-9, shifts  # mm against m
     says(report.glint("info", "test/000001", "--object", f"{number}:3", *cloud, exit_code=2).stderr, "no image shows the object more than 2 times")
+
+
+def world_to_camera(report):
+    """Names, rotations and translations of the capture, with our axes."""
+    report.glint("convert", ".", "-o", "whole.json")
+    frames = json.loads((report.folder / "whole.json").read_text())["frames"]
+    (report.folder / "whole.json").unlink()
+    return [(f["id"], [row[:3] for row in f["camera_from_world"][:3]], [row[3] for row in f["camera_from_world"][:3]]) for f in frames]
+
+
+def quaternion(r):
+    """w, x, y, z of a rotation, by its largest component."""
+    squares = [1 + r[0][0] + r[1][1] + r[2][2], 1 + r[0][0] - r[1][1] - r[2][2], 1 - r[0][0] + r[1][1] - r[2][2], 1 - r[0][0] - r[1][1] + r[2][2]]
+    k = squares.index(max(squares))
+    d = 2 * squares[k] ** 0.5
+    x, y, z = r[2][1] - r[1][2], r[0][2] - r[2][0], r[1][0] - r[0][1]
+    sums = {(1, 2): r[0][1] + r[1][0], (1, 3): r[0][2] + r[2][0], (2, 3): r[1][2] + r[2][1]}
+    of = lambda i, j: {1: x, 2: y, 3: z}[max(i, j)] if 0 in (i, j) else sums[min(i, j), max(i, j)]  # noqa: E731
+    return [squares[k] / d if i == k else of(i, k) / d for i in range(4)]
+
+
+def centre(r, t):
+    return [-sum(r[i][j] * t[i] for i in range(3)) for j in range(3)]
+
+
+def other_captures(report):
+    """The capture as other programs write it: name -> files and options of the command line."""
+    frames = world_to_camera(report)
+    words = lambda v: " ".join(map(repr, v))  # noqa: E731
+    file = "images/{}.PNG".format
+    nvm = ["NVM_V3", "", str(len(frames))] + [f"{file(n)} 400 {words(quaternion(r))} {words(centre(r, t))} 0 0" for n, r, t in frames] + ["", "0", "", "0"]
+    bundle = ["# Bundle file v0.3", f"{len(frames)} 0"]
+    for _, r, t in frames:  # y up, looking along -z
+        bundle += ["400 0 0", words(r[0]), words([-v for v in r[1]]), words([-v for v in r[2]]), words([t[0], -t[1], -t[2]])]
+    images = [f"{i + 1} {words(quaternion(r))} {words(t)} 1 {n}.PNG\n" for i, (n, r, t) in enumerate(frames)]
+    poses = []
+    for i, (_, r, t) in enumerate(frames):
+        w, x, y, z = quaternion(r)
+        poses.append(f"{10 + i / 10:.6f} {words(centre(r, t))} {words([-x, -y, -z, w])}")
+    return {"nvm": ({"model.nvm": nvm}, []), "bundler": ({"bundle.out": bundle, "list.txt": [file(n) for n, *_ in frames]}, []),
+            "colmap": ({"cameras.txt": ["1 PINHOLE 320 240 400 400 160 120"], "images.txt": images, "points3D.txt": ["# none"]}, []),
+            "tum": ({"rgb.txt": [f"{10 + i / 10:.6f} {file(n)}" for i, (n, *_) in enumerate(frames)], "groundtruth.txt": poses}, ["--camera", "400,400,159.5,119.5"])}
+
+
+def write_capture(report, kind, files, line_end="\n", mark=""):
+    folder = report.folder / kind
+    folder.mkdir()
+    shutil.copytree(report.folder / "images", folder / "images")
+    shutil.copy(report.folder / "mesh.ply", folder)
+    for name, lines in files.items():
+        (folder / name).write_bytes((mark + line_end.join("\n".join(lines).split("\n")) + line_end).encode())
+
+
+def case_path_case__text_of_windows(report):
+    """The mark of UTF-8 and line ends of Windows in the texts of all captures."""
+    for kind, (files, options) in other_captures(report).items():
+        write_capture(report, kind, files, "\r\n", "\ufeff")
+        near(report.errors(kind, *options), WHOLE)
+
+
+def case_path_case__camera_twice(report):
+    files, _ = other_captures(report)["colmap"]
+    write_capture(report, "colmap", files | {"cameras.txt": files["cameras.txt"] * 2})
+    near(report.errors("colmap"), WHOLE)
+    files["cameras.txt"].append("1 PINHOLE 320 240 500 400 160 120")
+    write_capture(report, "other", files)
+    says(report.glint("info", "other", exit_code=2).stderr, "two cameras have the number 1")
+
+
+def half_size(report):
+    """Photographs of half the size in place of the whole ones, each pixel the mean of four."""
+    from images_cases import pixels_of, png_of
+    for image in (report.folder / "images").iterdir():
+        rows = pixels_of(image.read_bytes())
+        pairs = [[[b"".join(bytes([(a + b + 1) // 2]) for a, b in zip(p, q)) for p, q in zip(row[::2], row[1::2])] for row in (up, down)] for up, down in zip(rows[::2], rows[1::2])]
+        image.write_bytes(png_of([[bytes((a + b) // 2 for a, b in zip(p, q)) for p, q in zip(*pair)] for pair in pairs], 1))
+
+
+def case_path_case__resized(report):
+    """Captures whose files do not say the size of their images: the highlights, or the principal point, tell."""
+    captures = other_captures(report)
+    half_size(report)
+    for kind, fix in {"nvm": "focal-length=0.5", "bundler": "focal-length=0.5", "tum": "camera-scale=0.5"}.items():
+        files, options = captures[kind]
+        write_capture(report, kind, files)
+        says(report.info(kind, *options), f"--fix {fix}")
+        report.glint("convert", kind, *options, "--fix", fix, "-o", f"{kind}/fixed.json")
+        errors = report.errors(f"{kind}/fixed.json")
+        assert errors["limit-angle"] < 2 and errors["canonical"] < 4, (kind, errors)

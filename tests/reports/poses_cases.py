@@ -74,3 +74,19 @@ def case_poses_nanoseconds__against_seconds(report):
     (report.folder / "poses.txt").write_text("\n".join(seconds))
     near(report.errors(*POSED), WHOLE)
     says(report.info(*POSED), "nearest in time (3.0 ms at most)")
+
+
+def case_pose_line_twice__cut(report):
+    """As a full disk leaves the last line."""
+    text = (report.folder / "poses.txt").read_text().rstrip("\n")
+    (report.folder / "poses.txt").write_text(text[:text.rindex(" ")])
+    assert len(frames_of(report, *POSED)) == 7
+    says(report.info(*POSED), "poses.txt: line 9: has fewer numbers than a pose (a cut line?); it is left out")
+
+
+def case_pose_infinite_nerf__cut(report):
+    capture = json.loads((report.folder / "transforms.json").read_text())
+    capture["frames"][5]["transform_matrix"][1].pop()
+    (report.folder / "transforms.json").write_text(json.dumps(capture))
+    assert len(frames_of(report)) == 6
+    says(report.info(), "transforms.json: frames[5]: has fewer numbers than a pose", "frames[3]: no finite pose")

@@ -92,7 +92,7 @@ TEST(PoseLines, WhatIsNoPoseIsRefusedWithItsPlace) {
     const char* name;
     std::string line, place, reason;
   } cases[] = {
-      {"syntax", R"({"id": "a", )", "poses: line 1: column", "not valid JSON"},
+      {"syntax", R"({"id": "a", })", "poses: line 1: column", "not valid JSON"},
       {"no name", R"({"camera_from_world": )" + eye + "}", "poses: line 1", "needs an id or a time"},
       {"no pose", R"({"id": "a"})", "poses: line 1: camera_from_world", "is missing"},
       {"mirrored", R"({"id": "a", "camera_from_world": [[-1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]})",
@@ -119,6 +119,22 @@ TEST(PoseLines, WhatIsNoPoseIsRefusedWithItsPlace) {
       {"a list", "[1, 2]", "poses: line 1", "has 2 words"},
   };
   for (const auto& c : cases) EXPECT_THAT(refusalOf(c.line), AllOf(HasSubstr(c.place), HasSubstr(c.reason))) << c.name;
+}
+
+/// As a full disk or a killed program leaves the last one.
+TEST(PoseLines, ALineThatIsCutCostsItsPose) {
+  const TemporaryFolder folder;
+  const std::string whole = R"({"id": "a", "camera_from_world": [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 2], [0, 0, 0, 1]]})";
+  for (const std::string& cut :
+       {std::string(R"({"id": "b", "camera_from_world": [[1, 0, 0, 0], [0, 1)"),
+        std::string(R"({"id": "b", "camera_from_world": [[1, 0, 0, 0], [0, 1, 0]]})"), std::string("1.5 2 3 4")}) {
+    folder.write("poses.txt", whole + "\n" + cut);
+    std::vector<std::string> warnings;
+    EXPECT_EQ(readPoseLines(folder / "poses.txt", warnings).size(), 1u) << cut;
+    EXPECT_THAT(warnings, testing::Contains(HasSubstr("poses.txt: line 2: has fewer numbers than a pose"))) << cut;
+    folder.write("poses.txt", cut);
+    EXPECT_THROW(readPoseLines(folder / "poses.txt", warnings), CutPose) << cut;
+  }
 }
 
 TEST(PoseLines, ReadingGoesOnBehindAWrongLine) {

@@ -172,7 +172,7 @@ TEST(ImageHeader, APngThatClaimsToBeHugeIsSeenBeforeItIsDecoded) {
 
 TEST(ImageHeader, WhatIsNoImageIsSaid) {
   EXPECT_THAT(readImageHeader("").problem, HasSubstr("empty"));
-  EXPECT_THAT(readImageHeader("GIF89a").problem, HasSubstr("not a supported image"));
+  EXPECT_THAT(readImageHeader("GIF89a").problem, HasSubstr("a GIF picture, which is not supported"));
   EXPECT_THAT(readImageHeader("P7\nWIDTH 4\n").problem, HasSubstr("not a supported image"));
   for (const char* start : {"\x89PNG\r\n\x1a\n", "\xff\xd8", "BM", "P6\n", "#?RADIANCE\n", "II*"})
     EXPECT_NE(readImageHeader(start).problem, "") << start;
