@@ -148,7 +148,7 @@ void fitAlone(const LampProblem& problem, LampInFit& lamp) {
     rays.push_back(*ray);
   }
   LampUnknowns& u = lamp.unknowns;
-  const bool several = ballsOf(u) > 1;
+  const bool several = ballsOf(u) > 1 && problem.standApart(u);
   AimedLamp distant;
   distant.reference = u.lamp.reference;
   distant.direction.setZero();

@@ -3,6 +3,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -88,7 +89,17 @@ std::optional<LampProblem::Eliminated> LampProblem::eliminated(const LampUnknown
   return e;
 }
 
+bool LampProblem::standApart(const LampUnknowns& lamp) const {
+  for (const WeightedPeak& a : lamp.peaks)
+    for (const WeightedPeak& b : lamp.peaks) {
+      const MirrorBall one = ball(a.ball), other = ball(b.ball);
+      if ((one.centre - other.centre).norm() > std::max(one.radius, other.radius)) return true;
+    }
+  return false;
+}
+
 bool LampProblem::tellsDistance(const LampUnknowns& lamp) const {
+  if (!standApart(lamp)) return false;
   LampUnknowns free = lamp;
   free.distanceFree = true;
   if (2 * free.peaks.size() < static_cast<std::size_t>(free.count())) return false;

@@ -52,6 +52,8 @@ class LampProblem {
     Eigen::MatrixXd redundant;  ///< residuals x redundant equations: e = redundant^T residuals, columns of length 1
   };
   std::optional<Eliminated> eliminated(const LampUnknowns& lamp) const;
+  /// Whether two of the balls that the peaks lie on stand apart. Where cut-outs have no places in the shot, all balls stand in one place.
+  bool standApart(const LampUnknowns& lamp) const;
   /// Whether the peaks say anything about the lamp's distance, beyond round-off.
   bool tellsDistance(const LampUnknowns& lamp) const;
 

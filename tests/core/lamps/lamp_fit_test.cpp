@@ -75,6 +75,25 @@ TEST(BallLamps, WithoutAFocalLength) {
   EXPECT_THAT(fit->lamps[0].withoutPosition, HasSubstr("without a focal length"));
 }
 
+// Cut-outs whose places in the shot nobody states stand in one place: the peaks' noise is no parallax.
+TEST(BallLamps, CutOutsInOnePlaceGiveADirection) {
+  BallPhotographs p;
+  RefinedOutline o;
+  o.outline = {{70.2, 70.1}, 50};
+  o.covariance = 0.01 * Eigen::Matrix3d::Identity();
+  p.balls = {o, o};
+  const Eigen::Vector3d direction = Eigen::Vector3d(0.6, 0.35, -0.55).normalized();
+  const Eigen::Vector2d at = mirrorPoint({70.2, 70.1, 0}, 50, {{0, 0, -1}, true}, {direction, true}).head<2>();
+  p.seen = {seenOn(0, "a", at + Eigen::Vector2d(0.04, -0.03), 0.05), seenOn(1, "a", at - Eigen::Vector2d(0.04, -0.03), 0.05)};
+  for (const bool outlinesToo : {true, false}) {
+    const auto fit = fitBallLamps(p, outlinesToo);
+    ASSERT_TRUE(fit);
+    ASSERT_FALSE(fit->lamps[0].failure) << fit->lamps[0].failure->message();
+    constexpr double kPeaks = 0.05 * 2 / 50;  // rad: by the peaks' distance from their mean; 10 degrees before
+    EXPECT_LT((fit->lamps[0].direction - direction).norm(), kPeaks);
+  }
+}
+
 // A near lamp before two balls and a distant camera: the directions differ along the line between the balls, and not across it.
 TEST(BallLamps, ParallaxWithoutAFocalLength) {
   BallPhotographs p;
