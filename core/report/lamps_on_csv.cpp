@@ -3,8 +3,8 @@
 
 #include <map>
 
+#include "core/base/csv_text.h"
 #include "core/base/number_text.h"
-#include "core/report/csv_text.h"
 
 namespace glint {
 

@@ -6,10 +6,10 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/angle.h"
+#include "core/base/csv_text.h"
 #include "core/base/json_dom.h"
 #include "core/base/json_text.h"
 #include "core/base/number_text.h"
-#include "core/report/csv_text.h"
 
 namespace glint {
 

@@ -5,12 +5,12 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/base/csv_text.h"
 #include "core/base/json_dom.h"
 #include "core/base/number_text.h"
 #include "core/inspect/summary.h"
 #include "core/model/star.h"
 #include "core/report/band_text.h"
-#include "core/report/csv_text.h"
 #include "core/report/detection_error.h"
 #include "core/report/evaluation_json.h"
 #include "core/report/warnings.h"
