@@ -84,9 +84,17 @@ int answerPoses(const OpenedSession& opened, const InspectionRequest& request, c
   context.info("ready: a line for each pose of " + input.name());
   PoseLineReader reader(input.stream(), input.name());
   Missed missed;
-  for (std::string line = nextAnswer(reader, predictor, missed); !line.empty(); line = nextAnswer(reader, predictor, missed)) {
-    if (interrupted()) throw Stopped{};
-    context.write("-", line);  // flushes
+  std::size_t answered = 0;
+  try {
+    for (std::string line = nextAnswer(reader, predictor, missed); !line.empty(); line = nextAnswer(reader, predictor, missed)) {
+      if (interrupted()) throw Stopped{};
+      context.write("-", line);  // flushes
+      ++answered;
+    }
+  } catch (
+      const ReaderGone&) {  // who reads a table with `head` wants no more; who waits for answers wants to know why there are none
+    throw InputError("standard output", "",
+                     "was closed by its reader after " + std::to_string(answered) + (answered == 1 ? " answer" : " answers"));
   }
   missed.sayTo(context);
   return kDone;

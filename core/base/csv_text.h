@@ -1,15 +1,34 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <string>
+#include <string_view>
+
+#include "core/base/number_text.h"
 
 namespace glint {
 
-/// A CSV field: quoted when it holds a separator or a quote.
-inline std::string csvText(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+/// Text of a cell that no spreadsheet takes for a formula: one that begins like a formula gets an apostrophe before it. Names come from
+/// files of others, and a formula in a table can read other cells and start programs. Numbers stay as they are.
+inline std::string withoutFormula(const std::string& text) {
+  // The last four are = + - @ in full width, which spreadsheets take as well.
+  constexpr std::array<std::string_view, 10> kBeginnings{
+      "=", "+", "-", "@", "\t", "\r", "\xEF\xBC\x9D", "\xEF\xBC\x8B", "\xEF\xBC\x8D", "\xEF\xBC\xA0"};
+  const auto begins = [&](std::string_view with) { return text.starts_with(with); };
+  const bool mayBeFormula = text.size() > 1 && std::any_of(kBeginnings.begin(), kBeginnings.end(), begins);
+  return mayBeFormula && !numberFrom(text) ? "'" + text : text;
+}
+
+enum class CsvQuotes { WhereNeeded, Always };
+
+/// A field of a CSV table, for all that Glint writes: quoted where it holds a separator, a quote or the end of a line; no formula.
+inline std::string csvText(const std::string& text, CsvQuotes quotes = CsvQuotes::WhereNeeded) {
+  const std::string cell = withoutFormula(text);
+  if (quotes == CsvQuotes::WhereNeeded && cell.find_first_of(",\"\r\n") == std::string::npos) return cell;
   std::string out = "\"";
-  for (const char c : text) out += c == '"' ? "\"\"" : std::string(1, c);
+  for (const char c : cell) out += c == '"' ? "\"\"" : std::string(1, c);
   return out + "\"";
 }
 

@@ -11,6 +11,7 @@
 namespace glint::json_dom {
 namespace {
 
+constexpr std::size_t kShort = 15, kFewKeys = 16;  // letters that a text holds in itself; keys that are not indexed (JsonNode)
 constexpr int kDeepest = 100;  // no format of ours nests deeper than 8; recursion over hostile files stays harmless
 
 /// "line 3, column 5" and the rest of the JSON library's message, which starts with an identifier and a position.
@@ -40,7 +41,11 @@ class Builder final : public nlohmann::json_sax<Json> {
   bool number_integer(number_integer_t v) override { return add(v); }
   bool number_unsigned(number_unsigned_t v) override { return add(v); }
   bool number_float(number_float_t v, const string_t&) override { return add(v); }
-  bool string(string_t& v) override { return add(std::move(v)); }
+  bool string(string_t& v) override {
+    constexpr double kString = 48;  // bytes, with what the system keeps of it
+    cost(kString + ofText(v));
+    return add(std::move(v));
+  }
   bool binary(binary_t&) override { return false; }  // JSON text has none
   bool start_object(std::size_t) override { return begin(Json::object()); }
   bool start_array(std::size_t) override { return begin(Json::array()); }
@@ -49,6 +54,9 @@ class Builder final : public nlohmann::json_sax<Json> {
   bool key(string_t& v) override {
     Level& level = levels_.back();
     level.key = v;
+    constexpr double kMember = 32,
+                     kIndexed = 72;  // bytes: the name beside its value; its place in an index, where there are many
+    cost(kMember + ofText(v) + (level.keys.size() >= kFewKeys ? kIndexed : 0));
     if (!level.keys.insert(v).second) throw InputError(file_, where(), "duplicate key");
     return true;
   }
@@ -70,8 +78,17 @@ class Builder final : public nlohmann::json_sax<Json> {
       if (!l.key.empty()) place += (place.empty() ? "" : ".") + l.key;
     return place;
   }
+  /// Bytes of a text that does not fit into its object.
+  static double ofText(const std::string& text) { return text.size() > kShort ? double(text.size()) : 0; }
+  /// A text of some megabytes may take a hundred times as much when it is read.
+  void cost(double bytes) {
+    constexpr double kMegabyte = 1e6;
+    bytes_ += bytes;
+    requireWithin(Limit::JsonMemory, bytes_ / kMegabyte, file_);
+  }
   bool add(Json value) {
     requireWithin(Limit::JsonValues, double(++values_), file_);
+    cost(sizeof(Json));
     if (levels_.empty())
       root = std::move(value);
     else if (levels_.back().value.is_array())
@@ -83,6 +100,8 @@ class Builder final : public nlohmann::json_sax<Json> {
   bool begin(Json empty) {
     if (levels_.size() >= std::size_t(kDeepest))
       throw InputError(file_, "JSON", "nested deeper than " + std::to_string(kDeepest) + " levels");
+    constexpr double kList = 64;  // bytes: the list and its first block
+    cost(kList);
     levels_.push_back({std::move(empty), "", {}});
     return true;
   }
@@ -95,6 +114,7 @@ class Builder final : public nlohmann::json_sax<Json> {
   const std::string& file_;
   std::vector<Level> levels_;
   std::size_t values_ = 0;
+  double bytes_ = 0;
 };
 
 }  // namespace

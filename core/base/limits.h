@@ -9,7 +9,16 @@
 namespace glint {
 
 /// Sizes that no one needs. An input beyond one of them is refused before memory is spent on it; `--limit NAME=VALUE` raises it.
-enum class Limit { JsonMegabytes, JsonValues, MeshMegabytes, ImageMegabytes, ImageMegapixels, SynthFrames };
+enum class Limit {
+  JsonMegabytes,
+  JsonValues,
+  MeshMegabytes,
+  ImageMegabytes,
+  ImageMegapixels,
+  SynthFrames,
+  JsonMemory,
+  ImageMemory
+};
 
 /// All limits, in the order of `Limit`: name, value at the start, and what it counts, for people.
 struct LimitInfo {
@@ -19,7 +28,8 @@ struct LimitInfo {
 };
 const std::vector<LimitInfo>& limitInfos();
 
-/// The limit in its own unit. Safe from every thread.
+/// The limit in its own unit; that of images' memory is half of this machine's memory where that is less and nobody set it. Safe from
+/// every thread.
 double limitOf(Limit limit);
 
 /// Sets one from "NAME=VALUE", for the whole process. InputError (place `--limit ...`) for an unknown name, or a value that is not a

@@ -11,6 +11,7 @@
 #include <thread>
 #include <vector>
 
+#include "core/base/image_memory.h"
 #include "core/base/number_text.h"
 
 namespace glint {
@@ -44,7 +45,7 @@ void parallelFor(int n, const std::function<void(int)>& work, const ProgressFn& 
   std::atomic<bool> stop{false}, stopped{false};
   std::exception_ptr error;
   std::mutex mutex;
-  const int count = inLoop ? 1 : std::min(n, threadCount());
+  const int count = inLoop ? 1 : std::min({n, threadCount(), imagesAtOnce()});
   const auto run = [&] {
     const InLoop mark(count > 1);
     while (!stop) {

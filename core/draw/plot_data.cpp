@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "core/base/csv_text.h"
 #include "core/base/number_text.h"
 
 namespace glint::draw {
@@ -27,13 +28,10 @@ std::string numberText(double v, const char* format = "%.9g") {
   return formatted(format, v);
 }
 
-std::string quoted(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"') out += '"';
-    out += c == '\n' ? ' ' : c;
-  }
-  return out + "\"";
+/// A row is a line.
+std::string quoted(std::string text) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return csvText(text, CsvQuotes::Always);
 }
 
 }  // namespace

@@ -213,6 +213,25 @@ void concludeDepth(const Scene& scene, int depthOff, double worstDepth, Conventi
                                         worstDepth));
 }
 
+/// Numbers have 16 digits: far from the origin few of them are left for the object.
+void concludeDistance(ConventionReport& report) {
+  constexpr double kCoarse = 1e-8;  // of the object's size: its normals are then uncertain by more than a fit leaves
+  for (const auto& s : report.surfaces) {
+    const double size = (s.upper - s.lower).norm();
+    const double farthest = std::max(s.lower.cwiseAbs().maxCoeff(), s.upper.cwiseAbs().maxCoeff());
+    const auto apartAt = [&](auto number) {
+      return double(std::nextafter(number, std::numeric_limits<decltype(number)>::infinity()) - number);
+    };
+    const double apart = apartAt(farthest);
+    if (!(size > 0) || apart <= kCoarse * size) continue;
+    report.findings.push_back(
+        formatted("surface '%s' of %.3g m lies %.3g m from the origin, where coordinates are %.2g m apart "
+                  "(%.2g of its size; in 32-bit files %.2g m): move the origin of surface, cameras and "
+                  "lamps to the object",
+                  s.id.c_str(), size, farthest, apart, apart / size, apartAt(float(farthest))));
+  }
+}
+
 /// Statements about the scene as a whole, each with the likely cause.
 void conclude(const Scene& scene, const SightCheck& sight, ConventionReport& report) {
   int blind = 0, lookingAway = 0, withSurface = 0, bad = 0, depthOff = 0, notFinite = 0, negative = 0;
@@ -265,6 +284,7 @@ void conclude(const Scene& scene, const SightCheck& sight, ConventionReport& rep
                               notFiniteId);
   if (negative)
     report.findings.push_back(formatted("%d of %d frames contain negative values; first: frame ", negative, n) + negativeId);
+  concludeDistance(report);
   if (scene.frames.size() == 1) report.findings.push_back("only one frame: nothing can be held out");
 }
 

@@ -8,6 +8,7 @@
 
 #include "core/base/atomic_file.h"
 #include "core/base/exif.h"
+#include "core/base/image_memory.h"
 #include "core/base/limits.h"
 #include "core/base/median.h"
 #include "core/base/number_text.h"
@@ -82,7 +83,10 @@ Outcome<DecodedImage> decodeFile(const fs::path& file, const Camera& camera) {
     bytes = readFile(file, Limit::ImageMegabytes);
     header = readImageHeader(bytes);
     if (const std::string problem = headerProblem(bytes, header, camera); !problem.empty()) return unreadable(file, problem);
-    requireWithin(Limit::ImageMegapixels, double(header.width) * double(header.height) / kMega, file.string());
+    const double megapixels = double(header.width) * double(header.height) / kMega;
+    requireWithin(Limit::ImageMegapixels, megapixels, file.string());
+    requireRoomForImage(megapixels, file.string());
+    expectImages(megapixels);
   } catch (const InputError& e) {
     return Failure{Reason::FrameUnreadable, e.what()};
   }

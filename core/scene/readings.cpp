@@ -2,6 +2,8 @@
 // Which reader understands an input.
 #include <algorithm>
 
+#include "core/base/image_memory.h"
+#include "core/base/limits.h"
 #include "core/base/plugin_hint.h"
 #include "core/scene/capture_scene.h"
 #include "core/scene/folder_below.h"
@@ -188,16 +190,27 @@ const std::vector<std::unique_ptr<const SceneReader>>& sceneReaders() {
   return readers;
 }
 
+namespace {
+/// How much memory a frame takes is known from here on, before any loop over frames begins.
+Scene withExpectedImages(Scene scene) {
+  constexpr double kMega = 1e6;
+  for (const Frame& f : scene.frames)
+    if (!f.image.empty() || !f.radiance.empty() || !f.depth.empty())
+      expectImages(std::min(double(f.camera.width) * double(f.camera.height) / kMega, limitOf(Limit::ImageMegapixels)));
+  return scene;
+}
+}  // namespace
+
 Scene readScene(const fs::path& input, const ReadOptions& options) {
   const Reading reading = chosenReading(input, options.choices);
-  return readerNamed(reading.as).read(reading.file, options);
+  return withExpectedImages(readerNamed(reading.as).read(reading.file, options));
 }
 
 Scene readSceneOfSession(const fs::path& input, const ReadOptions& options) {
   const Reading reading = chosenReading(input, options.choices);
   if (reading.as == "session")
     throw InputError(reading.file.string(), "", "is a session; the input of a session must be a scene");
-  return readerNamed(reading.as).read(reading.file, options);
+  return withExpectedImages(readerNamed(reading.as).read(reading.file, options));
 }
 
 fs::path recognisedFile(const fs::path& input) {

@@ -434,8 +434,7 @@ Scene readSceneJson(const std::string& text, const fs::path& file, const ReadOpt
 
   std::set<std::string> topKeys = {"glint_scene", "name", "units", "camera", "depth_camera", "frames", "surfaces", "lights"};
   if (isMadeBySynth(root)) topKeys.insert(kMadeBy);
-  const Json top = unknown.of(root, topKeys);
-  keep(unknown.kept, "scene", top);
+  keep(unknown.kept, "scene", unknown.of(root, topKeys));  // it may be most of the file: no copy
   if (!unknown.kept.empty()) scene.unknownJson = unknown.kept.dump();
   return scene;
 }

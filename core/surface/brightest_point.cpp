@@ -9,6 +9,7 @@
 #include <limits>
 #include <numbers>
 
+#include "core/base/number_text.h"
 #include "core/geometry/plane.h"
 #include "core/geometry/seen_window.h"
 #include "core/surface/filled_parts.h"
@@ -28,6 +29,8 @@ using Basis = Eigen::Matrix<double, 3, 2>;
 
 /// Below this angle the reflection law holds: two decades above round-off for well-placed cameras, far below any pixel.
 constexpr double kZeroAngle = 1e-8;
+/// Far from the origin the coordinates themselves are rounded; beyond this angle (a hundredth of a pixel of a long lens) no point can be told.
+constexpr double kMostRoundOff = 1e-4;
 constexpr double kLeastMarginPx = 1e-3;  // round-off of a projection is far below it
 /// Cells of the seed grid along one side: 16 px apart over 7,200 px.
 constexpr double kMostCells = 450;
@@ -45,6 +48,9 @@ struct Shading {
   /// Merit that keeps falling over the whole range 0..pi, where the sine alone would turn back at pi/2.
   double merit() const { return cosine > 0 ? sine : 2 - sine; }
 };
+
+/// m between neighbouring numbers at these coordinates.
+double spacing(const Vector3d& at) { return std::numeric_limits<double>::epsilon() * at.cwiseAbs().maxCoeff(); }
 
 struct Sighting {
   const Surface& surface;
@@ -68,6 +74,16 @@ struct Sighting {
     s.sine = p.normal.cross(s.h).norm();
     s.cosine = p.normal.dot(s.h);
     return s;
+  }
+  /// What rounded coordinates make of an angle of 0 here: they turn both directions and, on a curved surface, the normal.
+  double roundOff(const SurfacePoint& p) const {
+    constexpr double kSteps = 4;  // roundings on the way
+    const Shading s = shade(p);
+    const Outcome<Curvature> c = surface.curvatureAt(p);
+    const double turn = c ? std::max(std::abs(c->k1), std::abs(c->k2)) : 0;
+    const Eigen::Vector4d& lw = light.homogeneous();
+    const double lamp = lw.w() != 0 ? spacing(lw.head<3>() / lw.w()) : 0;
+    return kSteps * (spacing(p.position) * (s.inverseV + s.inverseL + turn) + spacing(eye) * s.inverseV + lamp * s.inverseL);
   }
   /// Foot of p + T step along the normal at p, on the camera's side.
   Outcome<SurfacePoint> moved(const SurfacePoint& p, const Vector3d& offset) const {
@@ -352,12 +368,18 @@ std::vector<Seed> gridSeeds(const Sighting& sighting, const Window& window, doub
 /// Why candidates were turned down, for the detail of the failure.
 struct Rejected {
   int notVisible = 0, notLit = 0, outside = 0, edge = 0;
+  double rounded = 0;  ///< m, of coordinates that hide the law
   std::string text() const {
     if (notVisible)
       return "not visible: the mirror point faces away from the camera or another part of the surface is in front of it";
     if (notLit) return "not lit: the light is behind the surface or hidden by it at the mirror point";
     if (outside) return "outside the image and its margin";
     if (edge) return "off the surface: the mirror point lies beyond its edge";
+    if (rounded > 0)
+      return formatted(
+          "no stationary point can be told: this far from the origin coordinates are %.2g m apart; move the origin to "
+          "the object",
+          rounded);
     return "no stationary point: the reflection law holds nowhere on the visible surface";
   }
 };
@@ -372,13 +394,14 @@ class Finder {
     const Outcome<Curvature> curvature = sighting_.surface.curvatureAt(seed);
     if (!curvature && curvature.failure().reason == Reason::NotSupported) return polishFacets(seed);
     Search search = newton(sighting_, seed, options_.maxIterations);
-    if (search.alpha > kZeroAngle && search.alpha < 0.1 && seed.element >= 0 && !search.touchedEdge) {
+    if (!holds(search) && search.alpha < 0.1 && seed.element >= 0 && !search.touchedEdge) {
       // A kink of a piecewise smooth normal field stopped Newton's method: go on without derivatives, then polish again.
       search = compass(sighting_, search.point, footprint(search.point) * 0.5);
       search = newton(sighting_, search.point, options_.maxIterations);
     }
-    if (!(search.alpha <= kZeroAngle)) {
+    if (!holds(search)) {
       if (search.touchedEdge) ++rejected_.edge;
+      if (search.alpha <= sighting_.roundOff(search.point)) rejected_.rounded = spacing(search.point.position);
       return;
     }
     solved_.push_back(search);
@@ -425,6 +448,11 @@ class Finder {
   }
 
  private:
+  /// Whether the reflection law holds there, as well as the coordinates can say.
+  bool holds(const Search& search) const {
+    return search.alpha <= kZeroAngle || (search.alpha <= kMostRoundOff && search.alpha <= sighting_.roundOff(search.point));
+  }
+
   /// The tangential part of H here is what the Jacobian at a solution says, to half of its length: a second solution close to
   /// this point would need it to point elsewhere. Hidden solutions count as well.
   bool explained(const SurfacePoint& p) const {
@@ -447,7 +475,7 @@ class Finder {
   void polishFacets(const SurfacePoint& seed) {
     Search search = compass(sighting_, seed, 0.5 * footprint(seed));
     hopOverFacets(sighting_, search);
-    if (search.alpha > kZeroAngle) {
+    if (!holds(search)) {
       // A ten-millionth of the distance is below a pixel and above round-off.
       const double jump = normalJump(sighting_, search.point, 1e-7 * (sighting_.eye - search.point.position).norm());
       if (!(search.alpha <= jump)) {
@@ -468,7 +496,7 @@ class Finder {
           sighting_.moved(search.point, search.basis * (reach * footprint(search.point) * direction));
       if (!start) continue;
       const Search twin = newton(sighting_, *start, options_.maxIterations);
-      if (twin.alpha <= kZeroAngle) accept(twin);
+      if (holds(twin)) accept(twin);
     }
   }
 

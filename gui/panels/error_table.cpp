@@ -444,7 +444,8 @@ QString ErrorTable::selectedText(QChar separator) const {
   for (int place = 0; place < head->count(); ++place)
     if (const int column = head->logicalIndex(place); !view_->isColumnHidden(column)) columns.push_back(column);
   const auto field = [separator](QString text) {
-    if (separator == QLatin1Char('\t')) return text.replace(QLatin1Char('\t'), QLatin1Char(' '));
+    if (separator == QLatin1Char('\t'))  // for a spreadsheet, too
+      return exactQString(withoutFormula(text.replace(QLatin1Char('\t'), QLatin1Char(' ')).toStdString()));
     return exactQString(csvText(text.toStdString()));
   };
   QStringList lines, cells;

@@ -147,7 +147,7 @@ def main():
         done = subprocess.run([glint, "predict", few, "--stream", "--allow-outside"], input=json.dumps(pose).encode(), capture_output=True)
         check(done.returncode == 3 and done.stdout == b"" and b"too few views" in done.stderr, "two views: %s" % done)
 
-    # Nobody reads any more: it ends by itself, without a word.
+    # Nobody reads any more: it ends by itself, and says so in one line.
     process = start(glint, session)
     ask(process, pose)
     process.stdout.close()
@@ -157,6 +157,8 @@ def main():
     except BrokenPipeError:
         pass
     check(process.wait(60) == 2, "nobody reads: exit code %d" % process.returncode)
+    said = process.stderr.read() if process.stderr else b""
+    check(b"glint: standard output: was closed by its reader after 1 answer\n" in said, "nobody reads: it says so: %r" % said)
 
     # Ctrl-C while it waits for a pose: the quickest of three, as the machine may be busy.
     times = []

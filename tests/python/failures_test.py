@@ -240,3 +240,19 @@ def test_pickling_is_refused_and_ends_nothing(what):
     program = f"import copy, pickle, glint\nx = glint.Ellipse([1, 2], [3, 2], 0.1)\ntry:\n  {what}\nexcept TypeError as e:\n  print(e)"
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
     assert done.returncode == 0 and "cannot pickle or copy 'Ellipse'" in done.stdout, done.stderr
+
+
+@pytest.mark.parametrize("what", ["base()", "base(x)", "base.__new__(base)", "type('Derived', (base,), {})()",
+                                  "copyreg._reduce_ex(x, 1)"])
+def test_the_base_of_all_objects_makes_none_and_ends_nothing(what):
+    program = f"import copyreg, glint\nx = glint.Ellipse([1, 2], [3, 2], 0.1)\nbase = type(x).__mro__[-2]\ntry:\n  {what}\nexcept TypeError as e:\n  print(e)"
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
+    assert done.returncode == 0 and "cannot create" in done.stdout, done.stderr
+
+
+def test_classes_derived_in_python_still_make_objects():
+    class Named(glint.Ellipse):
+        name = "mine"
+
+    made = Named([1, 2], [3, 2], 0.1)
+    assert made.name == "mine" and made.centre[0] == 1

@@ -27,12 +27,34 @@ void refusePickling(const py::module_& module) {
   }
 }
 
+newfunc newOfRegistered = nullptr;
+
+/// TypeError where pybind11 aborts the process: for its own base class, and for classes of Python derived from that alone.
+PyObject* newOrRefuse(PyTypeObject* type, PyObject* args, PyObject* named) {
+  try {
+    if (!py::detail::all_type_info(type).empty()) return newOfRegistered(type, args, named);
+    PyErr_Format(PyExc_TypeError, "cannot create '%.200s' instances", type->tp_name);
+  } catch (const std::exception& e) {
+    PyErr_SetString(PyExc_RuntimeError, e.what());
+  }
+  return nullptr;
+}
+
+/// Before the classes are declared, which take it over from their base. Another module of pybind11 may have the same base.
+void refuseBareObjects() {
+  auto* const base = reinterpret_cast<PyTypeObject*>(py::detail::get_internals().instance_base);
+  if (base->tp_new == newOrRefuse) return;
+  newOfRegistered = base->tp_new;
+  base->tp_new = newOrRefuse;
+}
+
 }  // namespace
 
 PYBIND11_MODULE(_glint, module) {
   using namespace glint::python;
   module.doc() = "Glint's computing core. Use the package `glint`, which adds the functions that take keyword arguments.";
   module.attr("__version__") = GLINT_VERSION;
+  refuseBareObjects();
   declareFailures(module);
   declareSettings(module);
   declareGeometry(module);

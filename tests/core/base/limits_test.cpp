@@ -3,8 +3,15 @@
 
 #include <gmock/gmock.h>
 
+#include <chrono>
+#include <mutex>
+#include <set>
+#include <thread>
+
 #include "core/base/atomic_file.h"
+#include "core/base/image_memory.h"
 #include "core/base/json_text.h"
+#include "core/base/parallel.h"
 #include "tests/core/scene/scene_fixture.h"
 
 namespace glint {
@@ -49,6 +56,52 @@ TEST(Limits, AJsonTextBeyondThemIsRefusedWithItsFile) {
   EXPECT_THAT(inputErrorOf([] { JsonNode::parse("[1,2,3,4,5,6,7,8,9,10]", "a.json"); }),
               StartsWith("a.json: contains 11 values in a JSON text; the limit is 10"));
   EXPECT_NO_THROW(JsonNode::parse("[1,2,3,4,5,6,7,8,9]", "a.json"));
+}
+
+/// 40,000 lists in 120 kB of text: each takes some 80 bytes.
+TEST(Limits, AJsonTextThatTakesMoreMemoryThanItIsLongIsRefused) {
+  const auto listOf = [](const std::string& value, int n) {
+    std::string text = "[";
+    for (int i = 0; i < n; ++i) text += value + ",";
+    return text + value + "]";
+  };
+  const WithLimit small("json.memory_megabytes", 1);
+  const auto refusal =
+      HasSubstr("a.json: contains 1 MB of values when it is read; the limit is 1 (--limit json.memory_megabytes=2");
+  for (const char* value : {"[]", "\"\"", "{}", "{\"a\":0}", "\"a text of thirty-two letters ....\""})
+    EXPECT_THAT(inputErrorOf([&] { JsonNode::parse(listOf(value, 40'000), "a.json"); }), refusal) << value;
+  EXPECT_NO_THROW(JsonNode::parse(listOf("0", 40'000), "a.json")) << "numbers of contours take 16 bytes";
+  EXPECT_NO_THROW(JsonNode::parse(listOf("[]", 4'000), "a.json"));
+}
+
+TEST(Limits, FramesThatTakeMuchMemoryAreWorkedOnOneByOne) {
+  expectImages(100);  // million pixels: 2.4 GB each
+  const auto threadsOf = [] {
+    std::mutex mutex;
+    std::set<std::thread::id> threads;
+    parallelFor(
+        16,
+        [&](int) {
+          std::this_thread::sleep_for(std::chrono::milliseconds(2));
+          const std::scoped_lock lock(mutex);
+          threads.insert(std::this_thread::get_id());
+        },
+        {}, "test");
+    return threads;
+  };
+  {
+    const WithLimit little("image.memory_megabytes", 2400);
+    EXPECT_EQ(imagesAtOnce(), 1);
+    EXPECT_EQ(threadsOf(), std::set<std::thread::id>{std::this_thread::get_id()});
+    EXPECT_NO_THROW(requireRoomForImage(100, "a.png"));
+    EXPECT_EQ(
+        inputErrorOf([] { requireRoomForImage(150, "a.png"); }),
+        "a.png: contains 3600 MB of pixels while a frame is worked on; the limit is 2400 (--limit image.memory_megabytes=3600 "
+        "raises it)");
+  }
+  const WithLimit more("image.memory_megabytes", 7300);
+  EXPECT_EQ(imagesAtOnce(), 3);
+  EXPECT_LE(threadsOf().size(), 3u);
 }
 
 TEST(Limits, AFileBeyondThemIsNotRead) {

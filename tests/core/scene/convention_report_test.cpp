@@ -43,5 +43,24 @@ TEST(ConventionReport, FramesOfManySurfacesSeeTheirOwn) {
   }
 }
 
+/// IEEE 754: from 2^29 to 2^30 numbers of 53 bits are 2^-23 apart, those of 24 bits 2^6.
+TEST(ConventionReport, AnObjectFarFromTheOriginIsAFinding) {
+  const auto findingsAt = [](double distance) {
+    Scene scene = rowOfBalls(1);
+    scene.surfaces.at("0").analytic->worldFromSurface.translation().x() += distance;
+    for (Frame& f : scene.frames) f.camera.camFromWorld.translation().x() -= distance;
+    std::string all;
+    for (const std::string& f : conventionReport(scene).findings) all += f + "\n";
+    return all;
+  };
+  EXPECT_EQ(findingsAt(0).find("apart"), std::string::npos);
+  EXPECT_EQ(findingsAt(5e6).find("apart"), std::string::npos) << "coordinates of a map";
+  const std::string far = findingsAt(1e9);
+  EXPECT_NE(far.find("surface '0' of 0.866 m lies 1e+09 m from the origin, where coordinates are 1.2e-07 m apart"),
+            std::string::npos)
+      << far;
+  EXPECT_NE(far.find("in 32-bit files 64 m"), std::string::npos) << far;
+}
+
 }  // namespace
 }  // namespace glint

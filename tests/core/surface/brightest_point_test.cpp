@@ -54,6 +54,25 @@ TEST(BrightestPoint, SphereAgreesWithAlhazen) {
   }
 }
 
+/// Where eye and light are as far from the centre, the mirror point bisects their directions: known without a search, and nothing in
+/// it grows with the distance of all three from the origin.
+TEST(BrightestPoint, IsFoundFarFromTheOriginAsWellAsCoordinatesTell) {
+  const double half = 0.4;
+  const Vector3d eye(3 * std::sin(half), 0, 3 * std::cos(half)), light(-eye.x(), 0, eye.z()), top(0, 0, 1);
+  for (const double distance : {0.0, 1e6, 1e8, 1e9}) {
+    SCOPED_TRACE(distance);
+    const Vector3d origin = distance * Vector3d(1, -0.3, 0.2);
+    AnalyticSpec spec = test::sphere(1);
+    spec.worldFromSurface.translation() = origin;
+    const auto sphere = makeAnalytic(spec);
+    const auto found = predictedBrightestPoints(*sphere, test::lookAt(origin + eye, origin, 700), Light::at(origin + light));
+    ASSERT_TRUE(found) << found.failure().message();
+    ASSERT_EQ(found->size(), 1u);
+    // A step of the coordinates at 1e9 is 1.2e-7 m.
+    EXPECT_NEAR(((*found)[0].point.position - origin - top).norm(), 0, 1e-10 + 10 * 2.2e-16 * distance);
+  }
+}
+
 TEST(BrightestPoint, LightAtInfinityOnSphereBisectsTheAngle) {
   // From very far away V is constant too: N = unit(L + V).
   const auto sphere = makeAnalytic(test::sphere(1));
