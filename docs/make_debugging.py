@@ -9,7 +9,7 @@ Every figure of the table is what a program printed: the held-out errors and tho
 processor time by diagnose_times (bench/), which runs what *Find out why* runs. The sequences: a body with two thin ears and a fin, which is made
 here; sessions/vase; and, where they are there, ../shared/data/cycles/torus and two of ../shared/data/ladder.
 --keep DIR       leave the sequence that is made there, or take it from there
---pictures FILE  draw the pictures of each step with this glint-inspector instead of the table (needs xvfb-run and mogrify)
+--pictures FILE  draw the picture with this glint-inspector instead of the table (needs xvfb-run and mogrify)
 --write          put the table into docs/debugging.md; else print it"""
 import argparse
 import json
@@ -24,7 +24,6 @@ import tempfile
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs/debugging.md"
 CAMERA = {"width": 480, "height": 360, "fx": 600, "fy": 600, "cx": 239.5, "cy": 179.5}
-STEPS = ("plots.diagnose", "plots.try-remedy")
 SHARED = ROOT.parent / "shared/data"
 MODELS = ("primal", "dual", "canonical", "limit-angle", "reflectance")
 
@@ -124,13 +123,12 @@ def table(glint, times, sequences):
     return "\n".join(lines + [row(glint, times, name, scene) for name, scene in sequences.items()])
 
 
-def pictures(inspector, scene):
-    """The window after each step that the page tells: what its buttons do, the menu's actions do, too."""
-    for step in range(1, len(STEPS) + 1):
-        target = ROOT / "docs/pictures" / f"debugging-ears-{step}.png"
-        run(["xvfb-run", "-a", "-s", "-screen 0 1600x1000x24 -noreset", "env", "QT_QPA_PLATFORM=xcb", "LIBGL_ALWAYS_SOFTWARE=1", inspector, scene,
-             "--theme", "dark", "--size", "1500x940", "--run", ",".join(STEPS[:step]), "--screenshot", target, "--wait-idle"])
-        run(["mogrify", "-strip", "-colors", "128", "-define", "png:compression-level=9", target])
+def picture(inspector):
+    """The window after *Find out why*: what its button does, the menu's action does, too."""
+    target = ROOT / "docs/pictures/debugging-vase.png"
+    run(["xvfb-run", "-a", "-s", "-screen 0 1600x1000x24 -noreset", "env", "QT_QPA_PLATFORM=xcb", "LIBGL_ALWAYS_SOFTWARE=1", inspector,
+         ROOT / "sessions/vase", "--theme", "dark", "--size", "1500x940", "--run", "plots.diagnose", "--screenshot", target, "--wait-idle"])
+    run(["mogrify", "-strip", "-colors", "128", "-define", "png:compression-level=9", target])
 
 
 def main():
@@ -143,14 +141,13 @@ def main():
     options = parser.parse_args()
     if bool(options.times) == bool(options.pictures):
         parser.error("give either --times or --pictures")
+    if options.pictures:
+        return picture(options.pictures.resolve())
     with tempfile.TemporaryDirectory() as temporary:
         folder = options.keep or pathlib.Path(temporary)
         os.makedirs(folder, exist_ok=True)
         glint = options.glint.resolve()
         sequences = {"ears": make(glint, folder)}
-        if options.pictures:
-            pictures(options.pictures.resolve(), sequences["ears"])
-            return
         for name, scene in {"vase": ROOT / "sessions/vase", "torus": SHARED / "cycles/torus", "panel": SHARED / "ladder/panel", "plastic": SHARED / "ladder/plastic"}.items():
             if (scene / "scene.json").exists():
                 sequences[name] = scene / "scene.json"

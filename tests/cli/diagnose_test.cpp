@@ -36,7 +36,7 @@ Table tableOf(const Json& evaluation, const std::string& model) {
 
 TEST_F(Diagnose, NamesTheFaultAndEveryRemedyHoldsInEvaluate) {
   moveContour(2);
-  const ProgramRun run = on("diagnose", "--models limit-angle --train 0-5 --json -");
+  const ProgramRun run = on("diagnose", "--models limit-angle --train 0-5 --most 2 --json -");
   ASSERT_EQ(run.code, 0) << run.err;
   const Json all = Json::parse(run.out);
   EXPECT_EQ(all["glint_diagnosis"], 2);
@@ -75,7 +75,7 @@ TEST_F(Diagnose, NamesTheFaultAndEveryRemedyHoldsInEvaluate) {
 
 TEST_F(Diagnose, TextIsOneVerdictThenRemediesThenWhatTheyStandOn) {
   moveContour(2);
-  const ProgramRun run = on("diagnose", "--models limit-angle --train 0-5 --most 3");
+  const ProgramRun run = on("diagnose", "--models limit-angle --train 0-5 --most 1");
   ASSERT_EQ(run.code, 0) << run.err;
   EXPECT_LT(run.out.find("the error is "), run.out.find('\n'));
   std::size_t at = 0;
@@ -90,7 +90,7 @@ TEST_F(Diagnose, TextIsOneVerdictThenRemediesThenWhatTheyStandOn) {
 TEST_F(Diagnose, TextJsonAndPageSayTheSame) {
   moveContour(2);
   const ProgramRun run =
-      on("diagnose", "--models limit-angle --train 0-5 --most 2 --json " + out("why.json") + " --html " + out("why.html"));
+      on("diagnose", "--models limit-angle --train 0-5 --most 1 --json " + out("why.json") + " --html " + out("why.html"));
   ASSERT_EQ(run.code, 0) << run.err;
   const std::string verdict = Json::parse(contentOf(folder_ / "why.json"))["verdict"];
   EXPECT_EQ(run.out.substr(0, run.out.find('\n')), verdict);
