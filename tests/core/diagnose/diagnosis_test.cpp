@@ -81,7 +81,7 @@ TEST(Diagnosis, AMovedContourIsNamedAndItsExclusionIsARemedy) {
       std::max_element(evidence.begin(), evidence.end(), [](const auto& a, const auto& b) { return a.weight < b.weight; });
   EXPECT_EQ(worst->frame, 2);
   EXPECT_GE(worst->weight, 1);
-  const auto left = std::find_if(d.remedies.begin(), d.remedies.end(), [](const Remedy& r) { return r.change.exclude == "2"; });
+  const auto left = std::find_if(d.remedies.begin(), d.remedies.end(), [](const Remedy& r) { return r.change.exclude == "v2"; });
   ASSERT_NE(left, d.remedies.end()) << diagnosisText(inspection, d);
   EXPECT_LT(left->after.pct(), kExactPct) << "what is left is exact";
 }
@@ -257,7 +257,7 @@ TEST(Diagnosis, WithoutAUsableViewItSaysSo) {
 TEST(Diagnosis, LeavingAFrameOutOfTheScoreIsNoRemedy) {
   const Inspection inspection = inspected(withMovedContour(7));
   const Diagnosis d = diagnose(inspection, quick());
-  for (const Measured& m : d.measured) EXPECT_NE(m.change.exclude, "7");
+  for (const Measured& m : d.measured) EXPECT_NE(m.change.exclude, "v7");
   const std::vector<std::string>& causes = d.models.at(0).causes;
   EXPECT_TRUE(std::any_of(causes.begin(), causes.end(),
                           [](const std::string& c) { return c.find("held-out frame v7 off by ") != std::string::npos; }));
