@@ -134,7 +134,7 @@ class DiagnosisTest : public QObject {
     QCOMPARE(document.selection().light, std::string("lamp"));
     QCOMPARE(document.selection().model, std::string("limit-angle"));
 
-    QPushButton* const remedy = tryOf(panel, QStringLiteral("--exclude 2"));
+    QPushButton* const remedy = tryOf(panel, QStringLiteral("--exclude v2"));
     QVERIFY2(remedy, qPrintable(lines(panel).join("\n")));
     QVERIFY(remedy->isEnabled());
     const InspectionRequest before = document.request();
@@ -143,7 +143,7 @@ class DiagnosisTest : public QObject {
     QTest::mouseClick(remedy, Qt::LeftButton);
     QCOMPARE(document.request().excluded, std::vector<int>{2});
     QCOMPARE(document.undoStack()->index(), steps + 1);
-    QCOMPARE(document.undoStack()->undoText(), QStringLiteral("Try: leave out 2"));
+    QCOMPARE(document.undoStack()->undoText(), QStringLiteral("Try: leave out v2"));
     // Of the state before: until the new one is asked about, there is nothing to try.
     for (const QPushButton* const button : tries(panel)) QVERIFY(!button->isEnabled());
     compute(document);
@@ -155,7 +155,7 @@ class DiagnosisTest : public QObject {
     document.undoStack()->undo();
     QVERIFY(document.request() == before);
     compute(document);
-    QVERIFY(tryOf(panel, QStringLiteral("--exclude 2")));
+    QVERIFY(tryOf(panel, QStringLiteral("--exclude v2")));
   }
 
   /// The action (menu, palette, a script) does what a click on the first "Try" does, and says so where there is none.
@@ -267,7 +267,7 @@ class DiagnosisTest : public QObject {
     QVERIFY2(row.height() >= 2 * metrics.lineSpacing(), qPrintable(QString::number(row.height())));
     bool words = false;
     for (const QLabel* label : panel.list()->findChildren<QLabel*>())
-      words = words || label->text().startsWith(QStringLiteral("leave out 2: error "));
+      words = words || label->text().startsWith(QStringLiteral("leave out v2: error "));
     QVERIFY(words);
     QStringList said = lines(panel);
     said.removeAll(QString());
