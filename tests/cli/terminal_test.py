@@ -41,7 +41,7 @@ def main():
         piped = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, check=True)
         assert piped.stderr == "" and "\x1b" not in piped.stdout, piped
         first, head = piped.stdout.splitlines()[:2]
-        assert first == "contour errors of held-out frames (2); trained on 4 of 6 frames (0-3); % of a highlight's diameter", first
+        assert first == "contour errors of held-out frames (2); trained on 4 of 6 frames (0000-0003); % of a highlight's diameter", first
         row = piped.stdout.splitlines()[2].split()
         assert head.split()[0] == "model" and row[0] == "dual"
         assert all(len(number.split(".")[1]) == 3 for number in row[2:7]), row
