@@ -456,29 +456,30 @@ class Check {
     for (std::size_t i = 0; i < views_.size(); ++i) beside += !asGiven_ || asGiven_->chosen[i] < 0;
     std::string words = formatted("no light explains the highlights of %d frames", result_.views);
     if (given)
-      words +=
-          formatted(": the best leaves %.2g px, %.0f %% of their radius", given->rmsPx, 100 * given->rmsPx / radiusOf(*asGiven_));
+      words += formatted("; the best light leaves %.2g px, %.0f %% of their radius", given->rmsPx,
+                         100 * given->rmsPx / radiusOf(*asGiven_));
     if (carried && carried->miss < kMeets && fixed > 2 * carried->miss && fixed > kMeets)
       words += formatted(
-          "; the lamp seems to move with the camera: in the camera's axes the mirrored rays pass one place by %.2g degrees, "
-          "in the world's by %s (a flash or a ring light; Glint expects a lamp that stands still)",
+          "; the lamp seems to move with the camera: if it does, the mirrored rays miss it by %.2g degrees; if it stands still, "
+          "by %s (a "
+          "flash or a ring light; Glint expects a lamp that stands still)",
           carried->miss * kDegrees, missText(asGiven_).c_str());
     else if (fixed < kMeets)
       words += formatted(
-          "; their places fit: mirrored rays pass one lamp by %.2g degrees. Their shapes do not: the scene is outside of the "
-          "models (print or "
-          "wood under the highlight, bumps of a scanned mesh, brushed metal, several lamps in one highlight)",
+          "; their positions fit: the mirrored rays miss one lamp by only %.2g degrees. Their shapes do not: no model covers "
+          "this scene "
+          "(print or wood under the highlight, bumps of a scanned mesh, brushed metal, several lamps in one highlight)",
           fixed * kDegrees);
     else
       words += formatted(
-          "; none of %zu likely mistakes explains it: mesh, poses and photographs do not belong together (the best lamp is "
-          "passed by %s%s%s). Is "
-          "it the mesh of another object, or is it shifted, deformed or bumpy? Are the poses those of other photographs? Does "
-          "the lamp "
-          "move?",
+          "; undoing one of %zu likely mistakes does not help: mesh, poses and photographs do not belong together (the mirrored "
+          "rays miss "
+          "the best lamp by %s%s%s). Is it the mesh of another object, or is it shifted, deformed or bumpy? Are the poses those "
+          "of other "
+          "photographs? Does the lamp move?",
           result_.hypotheses.size() - 1, missText(asGiven_).c_str(),
           beside ? formatted("; in %d frames every highlight lies beside the surface", beside).c_str() : "",
-          inside ? formatted("; %d cameras are inside of the surface", inside).c_str() : "");
+          inside ? formatted("; %d cameras are inside the surface", inside).c_str() : "");
     result_.findings.push_back(words);
   }
 

@@ -101,9 +101,9 @@ const std::vector<LikelyMistake>& likelyMistakes() {
     list.push_back(scaledMesh("twice as large as it should be", 0.5, nullptr, "Halve the mesh"));
     for (const GeometryCorrection& c : geometryCorrections())
       if (c.inverse || c.turned) list.push_back(otherPoses(c));
-    list.push_back(resizedImages("of half the size that the focal length is of", 1.0 / 2));
-    list.push_back(resizedImages("of a quarter of the size that the focal length is of", 1.0 / 4));
-    list.push_back(resizedImages("of an eighth of the size that the focal length is of", 1.0 / 8));
+    list.push_back(resizedImages("half as large as the calibrated ones", 1.0 / 2));
+    list.push_back(resizedImages("a quarter as large as the calibrated ones", 1.0 / 4));
+    list.push_back(resizedImages("an eighth as large as the calibrated ones", 1.0 / 8));
     list.push_back(images("turned by 90 degrees clockwise", true, false, true, "-rotate -90", 90));
     list.push_back(images("turned by 90 degrees counterclockwise", true, true, false, "-rotate 90", 270));
     for (LikelyMistake* m : {&list[list.size() - 2], &list[list.size() - 1]})

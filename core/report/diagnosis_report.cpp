@@ -150,7 +150,7 @@ std::string diagnosisText(const Inspection& inspection, const Diagnosis& d) {
   std::string text = d.verdict + "\n";
   for (const Remedy& r : d.remedies)
     text += formatted("  %-36s %s\n      (%s)\n", flagsOf(r.change).c_str(), effectText(r).c_str(), r.why.c_str());
-  text += commandText(inspection, d) + "What this stands on, measured in " + placeText(d) + ":\n";
+  text += commandText(inspection, d) + "Evidence, measured in " + placeText(d) + ":\n";
   for (const std::string& note : d.notes) text += "  " + note + "\n";
   for (const Measured& m : d.measured)
     if (!m.change.train && !m.change.set && !m.change.exclude)

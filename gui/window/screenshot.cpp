@@ -13,6 +13,7 @@
 #include "gui/base/text.h"
 #include "gui/base/write_png.h"
 #include "gui/document/own_files.h"
+#include "gui/window/input_report.h"
 #include "gui/window/main_window.h"
 
 namespace glint::gui {
@@ -46,7 +47,7 @@ void Screenshot::look() {
     }
   }
   const bool opening = !window_.document().scene() && window_.runner().busy();
-  const bool quiet = waitIdle_ ? window_.idle() : !opening;
+  const bool quiet = waitIdle_ ? window_.idle() && !window_.report()->busy() : !opening;
   quietLooks_ = quiet ? quietLooks_ + 1 : 0;
   if (quietLooks_ >= kQuietLooks)
     write();

@@ -79,7 +79,7 @@ TEST_F(Diagnose, TextIsOneVerdictThenRemediesThenWhatTheyStandOn) {
   ASSERT_EQ(run.code, 0) << run.err;
   EXPECT_LT(run.out.find("the error is "), run.out.find('\n'));
   std::size_t at = 0;
-  for (const char* words : {"the error is ", "\n  --", " -> ", "as a command: glint evaluate ", "What this stands on",
+  for (const char* words : {"the error is ", "\n  --", " -> ", "as a command: glint evaluate ", "Evidence, measured in",
                             "  limit-angle ", "against limit-angle: frame 0002"}) {
     at = run.out.find(words, at);
     ASSERT_NE(at, std::string::npos) << words << "\n" << run.out;

@@ -250,6 +250,19 @@ class ProgramTest : public QObject {
     QVERIFY(QImage(path("shot.png")).width() > 160);
   }
 
+  /// The check of the input ends after the results: a picture without what it found would be a clean bill.
+  void aScreenshotWaitsForFindings() {
+    const QString capture = QStringLiteral(GLINT_SHARED_DIR "/data/reports/mesh-y-up");
+    if (!QFileInfo::exists(capture)) QSKIP("no data beside the project");
+    const QString file = folder_.filePath(QStringLiteral("finding.png"));
+    const Run r = run({capture, QStringLiteral("--wait-idle"), QStringLiteral("--screenshot"), file});
+    QVERIFY2(r.code == 0, qPrintable(r.err));
+    const QImage shown(file);
+    int ofTheBar = 0;
+    for (int x = 0; x < shown.width(); ++x) ofTheBar += shown.pixelColor(x, 82) == QColor(0x24, 0x4f, 0x7a);
+    QVERIFY2(ofTheBar > shown.width() / 4, qPrintable(QString::number(ofTheBar)));
+  }
+
   void aPlatformWithoutOpenGlIsRefused() {
     const Run r =
         run({QStringLiteral("--screenshot"), folder_.filePath(QStringLiteral("never.png"))}, QStringLiteral("offscreen"));
