@@ -36,7 +36,9 @@ void loadCodecs();
 cv::Mat decodeOtherFormat(const std::string& bytes, std::string& reason);
 
 /// The one channel of depth (Z or V) of an EXR file, whatever else it has: floats.
-/// @param reason,return  as above. @throws std::exception  damaged data
+/// @param reason  takes why there is no depth in it
+/// @return empty: refused, or not an EXR file
+/// @throws std::exception  damaged data
 cv::Mat decodeExrDepth(const std::string& bytes, std::string& reason);
 
 /// The content of a file, as cv::imencode writes it.

@@ -398,9 +398,9 @@ void DiagnosisPanel::fillAdvice() {
   top->setFont(0, bold);
   top->setData(0, kModel, toQString(advisedFor_));
   for (const Remedy& remedy : diagnosis_->remedies) addRemedy(top, remedy);
-  auto* const stands = new QTreeWidgetItem(top, {tr("evidence: %1 of %2 known changes tried")
-                                                     .arg(diagnosis_->tried)
-                                                     .arg(std::max(diagnosis_->known, diagnosis_->tried))});
+  auto* const stands = new QTreeWidgetItem(
+      top,
+      {tr("evidence: %1 of %2 known changes tried").arg(diagnosis_->tried).arg(std::max(diagnosis_->known, diagnosis_->tried))});
   const auto line = [&](const QString& text) { new QTreeWidgetItem(stands, {text}); };
   for (const std::string& note : diagnosis_->notes) line(toQString(note));
   for (const Measured& m : diagnosis_->measured)
