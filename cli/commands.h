@@ -13,7 +13,6 @@ Command diagnoseCommand();
 Command evaluateCommand();
 Command infoCommand();
 Command lightsCommand();
-Command mergeCommand();
 Command movieCommand();
 Command renderCommand();
 Command predictCommand();
@@ -22,7 +21,6 @@ Command replayCommand();
 Command retextureCommand();
 Command settingsCommand();
 Command shareCommand();
-Command stabilityCommand();
 Command synthCommand();
 Command tradeoffCommand();
 

@@ -3,9 +3,7 @@
 #include "cli/inspection_arguments.h"
 #include "core/base/number_text.h"
 #include "core/base/version.h"
-#include "core/inspect/shard.h"
 #include "core/report/evaluation.h"
-#include "core/report/evaluation_part.h"
 #include "core/report/report.h"
 #include "core/report/warnings.h"
 #include "core/scene/outputs.h"
@@ -14,7 +12,7 @@ namespace glint::cli {
 
 Command evaluateCommand() {
   struct Arguments : InspectionArguments {
-    std::string json, csv, html, goodEnough, shard;
+    std::string json, csv, html, goodEnough;
     std::optional<double> goodEnoughFrom() const {
       if (models != "auto" || goodEnough.empty()) return std::nullopt;
       const std::optional<double> percent = numberFrom(goodEnough);
@@ -39,19 +37,15 @@ Command evaluateCommand() {
       "  glint evaluate scene.json                                all models, trained on the first 6 frames\n"
       "  glint evaluate scene.json --train spread:6 --html r.html a page with plots and the worst frames\n"
       "  glint evaluate scene.json --models auto --good-enough-pct 0.5\n"
-      "  glint evaluate scene.json --train 0-5 --json - --set fit.solver=anchored\n"
-      "  glint evaluate scene.json --shard 2/8 --json part-2.json the second eighth of the frames, for glint merge\n";
+      "  glint evaluate scene.json --train 0-5 --json - --set fit.solver=anchored\n";
   c.declare = [a](Options& o) {
     a->declare(o, "Models to compare: " + modelNames() + "; or auto (default: all)");
     o.option(a->goodEnough, "--good-enough-pct", "E", "With --models auto: contour error in percent that is good enough");
     o.option(a->json, "--json", "FILE", "Write the whole evaluation as JSON (- = standard output)");
     o.option(a->csv, "--csv", "FILE", "Write CSV, one row per model, frame and highlight (- = standard output)");
     o.option(a->html, "--html", "FILE", "Write a self-contained HTML page");
-    o.option(a->shard, "--shard", "i/n",
-             "Score the i-th of n equal parts of the frames; --json FILE is a part for `glint merge`");
   };
   c.run = [a](const Context& context) -> int {
-    const std::optional<Shard> shard = shardOf(a->shard, *a, a->json, {{"--csv", a->csv}, {"--html", a->html}});
     InspectionRequest request = a->request();
     ReportContext report;
     const std::shared_ptr<const Scene> scene = a->scene(request, &report.levelReason);
@@ -62,12 +56,6 @@ Command evaluateCommand() {
     outputs.file(a->html, "--html", OutputKind::page());
     report.input = a->input;
     report.program = "glint " GLINT_VERSION;
-    if (shard) {
-      const Inspection part = inspectShard(scene, request, *shard, context.progress());
-      context.write(a->json, evaluationPart(part, report, *shard, context.progress()));
-      warnOfUnusedTrainingFrames(part, context);
-      return kDone;  // whether a model answers is known when all parts are merged
-    }
     const std::string levelText = report.levelReason.empty() ? "" : report.levelReason + "\n\n";
     const EvaluationQuestion question{a->models == "auto", a->goodEnoughFrom(), a->sets("predict.query")};
     const Evaluation e = evaluate(scene, request, report, question, context.progress());

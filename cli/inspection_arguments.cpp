@@ -137,18 +137,6 @@ void warnOfUnusedTrainingFrames(const Inspection& inspection, const Context& con
                " training frames could not be used; first: " + unused.front());
 }
 
-std::optional<Shard> shardOf(const std::string& shard, const InspectionArguments& arguments, const std::string& json,
-                             const std::vector<std::pair<std::string, std::string>>& others) {
-  if (shard.empty()) return std::nullopt;
-  const Shard parsed = parseShard(shard, "--shard");
-  if (json.empty()) throw InputError("", "--shard " + shard, "needs --json FILE, where the part is written");
-  for (const auto& [flag, file] : others)
-    if (!file.empty()) throw InputError("", flag + " " + file, "is not written of a part; leave it out with --shard");
-  if (arguments.models == "auto")
-    throw InputError("", "--models auto", "is not for shards, which could choose differently; choose once, then name the model");
-  return parsed;
-}
-
 void requireUsableViews(const Inspection& inspection) {
   if (std::optional<Failure> none = noUsableView(inspection)) throw CannotAnswer{*std::move(none)};
 }

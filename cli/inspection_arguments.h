@@ -9,7 +9,6 @@
 
 #include "cli/command.h"
 #include "cli/scene_arguments.h"
-#include "core/base/shard.h"
 #include "core/inspect/inspection.h"
 
 namespace glint {
@@ -67,12 +66,6 @@ std::vector<std::string> splitList(const std::string& text, const std::string& f
 
 /// One warning when training frames could not be used, with the first reason; silent when all could.
 void warnOfUnusedTrainingFrames(const Inspection& inspection, const Context& context);
-
-/// What `--shard` asks for; nothing where it is not given. InputError for another form, without --json, with --models auto (whose choice
-/// depends on times) and with an output that only the whole can have.
-/// @param others  such outputs by their flag; "" = not asked for
-std::optional<Shard> shardOf(const std::string& shard, const InspectionArguments& arguments, const std::string& json,
-                             const std::vector<std::pair<std::string, std::string>>& others);
 
 /// Throws CannotAnswer when no training view could be used at all, with the first reason.
 void requireUsableViews(const Inspection& inspection);

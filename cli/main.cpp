@@ -18,7 +18,6 @@ int main(int argc, char** argv) {
         evaluateCommand(),
         diagnoseCommand(),
         tradeoffCommand(),
-        mergeCommand(),
         lightsCommand(),
         synthCommand(),
         convertCommand(),
@@ -27,7 +26,6 @@ int main(int argc, char** argv) {
         shareCommand(),
         replayCommand(),
         compareCommand(),
-        stabilityCommand(),
         settingsCommand(),
     };
     // clang-format on

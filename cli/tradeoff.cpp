@@ -8,7 +8,7 @@
 #include "core/report/tradeoff_html.h"
 #include "core/scene/outputs.h"
 #include "core/session/session.h"
-#include "core/trials/part.h"
+#include "core/trials/run.h"
 
 namespace glint::cli {
 namespace {
@@ -31,7 +31,7 @@ std::string workFileFor(const std::vector<std::string>& outputs) {
 
 Command tradeoffCommand() {
   struct Arguments : InspectionArguments {
-    std::string budget, maxError, json, html, out, work, shard;
+    std::string budget, maxError, json, html, out, work;
     int repeats = 5, maxTrials = SearchOptions{}.maxTrials;
   };
   const auto a = std::make_shared<Arguments>();
@@ -48,8 +48,7 @@ Command tradeoffCommand() {
       "  glint tradeoff scene.json --html tradeoff.html\n"
       "  glint tradeoff scene.json --budget-us 100 -o fast.glint   a session with the chosen settings\n"
       "  glint tradeoff run.glint --max-error-pct 0.5 --json -\n"
-      "  glint evaluate fast.glint --preset fast\n"
-      "  glint tradeoff scene.json --shard 3/20 --json part-3.json\n";
+      "  glint evaluate fast.glint --preset fast\n";
   c.declare = [a](Options& o) {
     a->declare(o, "Models to compare (default: the session's, else all)");
     o.option(a->budget, "--budget-us", "T", "Choose the most accurate setting within this many microseconds per frame");
@@ -61,14 +60,10 @@ Command tradeoffCommand() {
     o.option(a->work, "--work", "FILE", "File for unfinished work (default: beside the first output file)");
     o.option(a->repeats, "--repeats", "N", "Repeats of each timed prediction");
     o.option(a->maxTrials, "--max-trials", "N", "Maximum number of settings tried on a few frames");
-    o.option(a->shard, "--shard", "i/n",
-             "Measure every n-th of a fixed list of settings, from the i-th on; --json FILE is a part for `glint merge`");
   };
   c.run = [a](const Context& context) -> int {
     if (a->models == "auto")
       throw InputError("", "--models auto", "not available here; name the models to compare or omit the flag");
-    const std::optional<Shard> shard =
-        shardOf(a->shard, *a, a->json, {{"--html", a->html}, {"--out", a->out}, {"--work", a->work}});
     if (!a->preset.empty()) throw InputError("", "--preset " + a->preset, "not available here; this command finds the presets");
     TradeoffOptions options;
     options.bound.budgetUs = positive(a->budget, "--budget-us", "microseconds");
@@ -82,7 +77,7 @@ Command tradeoffCommand() {
     options.search.maxTrials = a->maxTrials;
     options.input = a->input;
     options.program = GLINT_VERSION;
-    options.workFile = shard ? "" : a->work.empty() ? workFileFor({a->json, a->html, a->out}) : a->work;
+    options.workFile = a->work.empty() ? workFileFor({a->json, a->html, a->out}) : a->work;
     InspectionRequest request = a->request();
     if (!isSession && a->models.empty()) {
       request.models.clear();
@@ -96,10 +91,6 @@ Command tradeoffCommand() {
     outputs.file(a->html, "--html", OutputKind::page());
     outputs.file(a->out, "--out", OutputKind::document("glint_session"));
     outputs.file(options.workFile, "--work", OutputKind::document("glint_tradeoff_work"));
-    if (shard) {
-      context.write(a->json, tradeoffPart(scene, request, options, *shard, context.progress()));
-      return kDone;  // what is chosen is known when all parts are merged
-    }
     const Tradeoff t = measureTradeoff(scene, request, options, context.progress());
 
     if (!a->json.empty()) context.write(a->json, tradeoffJson(t));

@@ -45,14 +45,6 @@ def command_line(job):
     return errors_of(json.loads((job.folder / "whole.json").read_text()))
 
 
-def shards(job):
-    parts = [job.folder / f"part-{i}.json" for i in (1, 2, 3)]
-    for i, part in enumerate(parts, 1):
-        run([job.glint, "evaluate", job.session, "--shard", f"{i}/3", "--json", part])
-    run([job.glint, "merge", *parts, "-o", job.folder / "merged.json"])
-    return errors_of(json.loads((job.folder / "merged.json").read_text()))
-
-
 PYTHON = """
 import json, sys, glint
 inspection = glint.inspect(glint.open(sys.argv[1]))
@@ -152,7 +144,7 @@ def blender(job):
     return found, errors_of(json.loads((job.folder / "asked.json").read_text()))
 
 
-HOSTS = {"shards": ("three shards and `glint merge`", shards), "python": ("Python", python), "cpp": ("C++ program, `find_package(Glint)`", cpp),
+HOSTS = {"python": ("Python", python), "cpp": ("C++ program, `find_package(Glint)`", cpp),
          "paraview": ("ParaView, table of errors", paraview), "blender": ("Blender, errors per frame", blender)}
 
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Writes the table of docs/stability.md from `glint stability --markdown`."""
+"""Writes the table of docs/stability.md from the program `stability` of the tests."""
 import argparse
 import pathlib
 import subprocess
@@ -8,9 +8,9 @@ import sys
 
 root = pathlib.Path(__file__).resolve().parent.parent
 parser = argparse.ArgumentParser(description=__doc__)
-parser.add_argument("--glint", default=str(root / "build/release/bin/glint"))
-program = parser.parse_args().glint
-run = subprocess.run([program, "stability", "--markdown"], stdout=subprocess.PIPE, text=True)
+parser.add_argument("--program", default=str(root / "build/ci/bin/stability"))
+program = parser.parse_args().program
+run = subprocess.run([program, "--markdown"], stdout=subprocess.PIPE, text=True)
 if run.returncode not in (0, 1):
     sys.exit(f"make_stability.py: {program} failed with {run.returncode}")
 page = root / "docs/stability.md"

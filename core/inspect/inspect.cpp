@@ -19,7 +19,6 @@
 #include "core/inspect/live_prediction.h"
 #include "core/inspect/lobe_stage.h"
 #include "core/inspect/requested_evidence.h"
-#include "core/inspect/shard.h"
 #include "core/inspect/stage_inputs.h"
 #include "core/inspect/texture_stage.h"
 #include "core/model/pixel_evidence.h"
@@ -73,12 +72,11 @@ bool sameObservation(const Inspection& r, int frame, int other) {
   });
 }
 
-/// Which frames are predicted; the training ones are looked at as well, and more where that is needed.
+/// Which frame is predicted; the training ones are looked at as well, and more where that is needed.
 struct Only {
-  std::optional<std::vector<int>> frames;  ///< sorted; nothing = every frame
-  bool wholeSurfaces = false;              ///< with every surface that they show they are all of its frames
-  bool withoutPixels = false;              ///< see firstLook()
-  bool predicts(int frame) const { return !frames || std::binary_search(frames->begin(), frames->end(), frame); }
+  std::optional<int> frame;    ///< nothing = every frame
+  bool withoutPixels = false;  ///< see firstLook()
+  bool predicts(int i) const { return !frame || *frame == i; }
 };
 
 class Run {
@@ -87,7 +85,7 @@ class Run {
       : r_(result),
         progress_(progress),
         previous_(previous && previous->given == result.given ? previous : nullptr),
-        only_(std::move(only)) {}
+        only_(only) {}
 
   void highlights();
   void lobes();
@@ -132,7 +130,6 @@ class Run {
 
   void gather(const std::vector<int>& frames);
   std::vector<int> framesToGather() const;
-  std::vector<int> framesLeft() const;
   bool lightsAreOpen() const { return lightsAreOpenIn(*r_.scene, r_.request); }
 
   Inspection& r_;
@@ -167,14 +164,7 @@ void Run::highlights() {
     r_.evidence.resize(r_.scene->frames.size());
   }
   std::vector<int> missing = framesToGather();
-  if (!missing.empty()) {
-    gather(missing);
-    if (only_.wholeSurfaces && !lightsKnownFrom(r_, *only_.frames)) {
-      const std::vector<int> left = framesLeft();
-      gather(left);
-      missing.insert(missing.end(), left.begin(), left.end());
-    }
-  }
+  if (!missing.empty()) gather(missing);
   judged.insert(judged.end(), missing.begin(), missing.end());
   rejectTextures(
       r_, judged, [this](int frame) { return surfaceOf(frame); }, [this](const std::vector<int>& more) { gather(more); },
@@ -182,20 +172,13 @@ void Run::highlights() {
   if (together && !missing.empty()) assignSeveralLights();
 }
 
-std::vector<int> Run::framesLeft() const {
-  std::vector<int> frames;
-  for (int i = 0; i < static_cast<int>(r_.evidence.size()); ++i)
-    if (r_.evidence[static_cast<std::size_t>(i)].frame < 0) frames.push_back(i);
-  return frames;
-}
-
 /// Frames whose evidence is not there yet and is asked for.
 std::vector<int> Run::framesToGather() const {
   std::vector<int> frames;
-  const bool trainingToo = !(r_.train.perSurface && only_.wholeSurfaces);  // those of other surfaces serve other fits
-  const bool all = !only_.frames || (r_.train.perSurface && trainingToo) || lightsAreOpen();
-  for (const int i : framesLeft())
-    if (all || only_.predicts(i) || (trainingToo && std::binary_search(r_.train.frames.begin(), r_.train.frames.end(), i)))
+  const bool all = !only_.frame || r_.train.perSurface || lightsAreOpen();
+  for (int i = 0; i < static_cast<int>(r_.evidence.size()); ++i)
+    if (r_.evidence[static_cast<std::size_t>(i)].frame < 0 &&
+        (all || only_.predicts(i) || std::binary_search(r_.train.frames.begin(), r_.train.frames.end(), i)))
       frames.push_back(i);
   return frames;
 }
@@ -465,7 +448,7 @@ void Run::predictionsAndComparisons() {
       int frame, fit;
     };
     std::vector<Task> tasks;
-    result.oneFrame = only_.frames.has_value();
+    result.oneFrame = only_.frame.has_value();
     for (int frame = 0; frame < static_cast<int>(r_.scene->frames.size()); ++frame) {
       if (!only_.predicts(frame)) continue;
       for (int f = 0; f < static_cast<int>(result.fits.size()); ++f) {
@@ -530,7 +513,7 @@ std::shared_ptr<const Scene> whatIfScene(const std::shared_ptr<const Scene>& giv
 }
 
 Inspection run(std::shared_ptr<const Scene> scene, const InspectionRequest& request, int onlyFrame, const ProgressFn& progress,
-               const Inspection* previous, const Shard* shard = nullptr, bool withoutPixels = false) {
+               const Inspection* previous, bool withoutPixels = false) {
   require(scene != nullptr, "inspect: no scene");
   Inspection result;
   result.given = scene;
@@ -550,11 +533,7 @@ Inspection run(std::shared_ptr<const Scene> scene, const InspectionRequest& requ
   if (request.noisePx > 0 && request.settings.text("fit.evidence") == "pixels")
     throw InputError("", "--noise-px", "noise is added to contours, which fit.evidence=pixels does not use");
   for (const std::string& m : request.models) modelByName(m);  // unknown names are refused before any work
-  Only only;
-  if (onlyFrame >= 0) only.frames = {onlyFrame};
-  only.withoutPixels = withoutPixels;
-  if (shard) only = {framesOfShard(*shard, result), true};
-  Run run(result, progress, previous, std::move(only));
+  Run run(result, progress, previous, {onlyFrame >= 0 ? std::optional(onlyFrame) : std::nullopt, withoutPixels});
   run.highlights();
   run.lobes();
   run.changeHighlights();
@@ -584,14 +563,7 @@ std::optional<Inspection> firstLook(std::shared_ptr<const Scene> scene, const In
   const std::optional<InspectionRequest> quick =
       withoutPixels(*scene, request, previous && previous->given == scene ? previous : nullptr);
   if (!quick) return std::nullopt;
-  return run(std::move(scene), *quick, frame, progress, previous, nullptr, true);
-}
-
-Inspection inspectShard(std::shared_ptr<const Scene> scene, const InspectionRequest& request, const Shard& shard,
-                        const ProgressFn& progress) {
-  Inspection result = run(std::move(scene), request, -1, progress, nullptr, &shard);
-  keepOwnSurfaces(result, framesOfShard(shard, result));
-  return result;
+  return run(std::move(scene), *quick, frame, progress, previous, true);
 }
 
 }  // namespace glint

@@ -5,10 +5,10 @@
 
 namespace glint {
 
-std::optional<BandScore> bandSummary(const std::vector<ComparisonTally>& tallies) {
+std::optional<BandScore> bandSummary(const Inspection& inspection, const ModelResult& result) {
   BandScore mean;
   double count = 0;
-  for (const ComparisonTally& tally : tallies)
+  for (const ComparisonTally& tally : talliesOf(inspection, result))
     for (const BandScore& band : tally.bands) {
       mean.sigmaPx += band.sigmaPx;
       mean.coverage += band.coverage;
@@ -18,10 +18,6 @@ std::optional<BandScore> bandSummary(const std::vector<ComparisonTally>& tallies
   mean.sigmaPx /= count;
   mean.coverage /= count;
   return mean;
-}
-
-std::optional<BandScore> bandSummary(const Inspection& inspection, const ModelResult& result) {
-  return bandSummary(talliesOf(inspection, result));
 }
 
 std::vector<std::string> bandLines(const Inspection& inspection, const ModelResult& result) {

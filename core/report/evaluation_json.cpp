@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "core/base/csv_text.h"
 #include "core/base/json_dom.h"
 #include "core/diagnose/mismatch.h"
 #include "core/model/star.h"
@@ -217,7 +218,14 @@ void addRows(const Inspection& inspection, const ModelResult& result, const Fram
   }
 }
 
-Json summaryValues(const ModelSummary& s) {
+Json heldOutRows(const Inspection& inspection, const ModelResult& result) {
+  Json out = Json::array();
+  for (const FrameComparison& c : result.frames)
+    if (inspection.isHeldOut(c.frame)) addRows(inspection, result, c, out);
+  return out;
+}
+
+Json summaryJson(const ModelSummary& s) {
   return {{"frames", s.frames},
           {"predicted", s.predicted},
           {"contour_error_pct", statistic(s.contourErrorPct)},
@@ -234,19 +242,17 @@ Json summaryValues(const ModelSummary& s) {
           {"time_us", {{"median", numberOrNull(s.timeUs.median)}, {"p99", numberOrNull(s.timeP99Us)}}}};
 }
 
-Json bandOf(const std::optional<BandScore>& score) {
+Json bandJson(const std::optional<BandScore>& score) {
   return {{"sigma_px", score ? numberOrNull(score->sigmaPx) : Json(nullptr)},
           {"coverage_95", score ? numberOrNull(score->coverage) : Json(nullptr)}};
 }
 
-Json detectionOfAll(const DetectionError& d) {
+Json detectionJson(const DetectionError& d) {
   return {{"frames", d.frames},
           {"missed", d.missed},
           {"contour_error_pct", statistic(d.contourErrorPct)},
           {"contour_error_px", statistic(d.contourErrorPx)}};
 }
-
-std::string textOf(const Json& value) { return value.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
 Json modelJson(const Inspection& inspection, const ModelResult& result) {
   const ModelSummary s = summarise(inspection, result);
@@ -255,19 +261,17 @@ Json modelJson(const Inspection& inspection, const ModelResult& result) {
   j["reason"] = s.reason;
   j["fits"] = Json::array();
   for (const ModelResult::Fit& f : result.fits) j["fits"].push_back(fitJson(inspection, f));
-  j["summary"] = summaryValues(s);
+  j["summary"] = summaryJson(s);
   if (inspection.request.settings.flag("predict.band")) {
     const std::optional<BandScore> band = bandSummary(inspection, result);
-    j["band"] = bandOf(band);
+    j["band"] = bandJson(band);
     j["band"].update({{"scale_tolerance", inspection.request.settings.number("input.scale_tolerance")},
                       {"focal_tolerance", inspection.request.settings.number("input.focal_tolerance")},
                       {"remarks", Json::array()}});
     for (const ModelResult::Fit& f : result.fits)
       for (const std::string& remark : f.bandRemarks) j["band"]["remarks"].push_back(remark);
   }
-  j["frames"] = Json::array();
-  for (const FrameComparison& c : result.frames)
-    if (inspection.isHeldOut(c.frame)) addRows(inspection, result, c, j["frames"]);
+  j["frames"] = heldOutRows(inspection, result);
   return j;
 }
 
@@ -288,7 +292,7 @@ Json trainingJson(const Inspection& inspection) {
       any = true;
       add(frame, v.highlight.light, v.failure());
     }
-    if (!any && inspection.evidence[frame].frame >= 0 && inspection.isTraining(frame))  // else another shard has it
+    if (!any && inspection.isTraining(frame))
       add(frame, "", inspection.evidence[frame].failure.value_or(Failure{Reason::NoHighlight, ""}));
   }
   return out;
@@ -312,20 +316,6 @@ BestModel bestOf(const std::vector<std::pair<std::string, ModelSummary>>& models
                "training frames alone.";
   return best;
 }
-
-std::string rowsJson(const Inspection& inspection, const ModelResult& result, const FrameComparison& comparison) {
-  Json rows = Json::array();
-  addRows(inspection, result, comparison, rows);
-  return textOf(rows);
-}
-
-int rowCount(const FrameComparison& c) {
-  return c.rows.empty() && c.prediction.highlights().empty() ? 1 : static_cast<int>(c.rows.size());
-}
-
-std::string summaryJson(const ModelSummary& summary) { return textOf(summaryValues(summary)); }
-std::string bandJson(const std::optional<BandScore>& score) { return textOf(bandOf(score)); }
-std::string detectionJson(const DetectionError& error) { return textOf(detectionOfAll(error)); }
 
 }  // namespace evaluation
 
@@ -351,13 +341,34 @@ std::string evaluationJson(const Inspection& inspection, const ReportContext& co
   j["warnings"] = std::move(warnings);
   j["chosen_model"] = context.chosenModel.empty() ? Json(nullptr) : Json(context.chosenModel);
   j["why_chosen"] = context.whyChosen;
-  if (const std::optional<DetectionError> d = detectionError(inspection)) j["detection"] = detectionOfAll(*d);
+  if (const std::optional<DetectionError> d = detectionError(inspection)) j["detection"] = detectionJson(*d);
   if (context.selection) j["selection"] = selectionJson(*context.selection);
   j["models"] = Json::object();
   for (const std::string& name : inspection.request.models)
     if (const auto it = inspection.models.find(name); it != inspection.models.end())
       j["models"][name] = modelJson(inspection, it->second);
   return j.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+const char* const kEvaluationCsvHeader =
+    "model,index,id,light,highlight,status,reason,contour_error_pct,contour_error_px,ellipse_error_pct,hausdorff_px,iou,"
+    "centre_offset_px,axis_ratio_error,angle_error_deg,peak_offset_px,coverage,time_us\n";
+
+std::string evaluationCsv(const Inspection& inspection) {
+  std::string out = kEvaluationCsvHeader;
+  for (const std::string& name : inspection.request.models) {
+    const auto it = inspection.models.find(name);
+    if (it == inspection.models.end()) continue;
+    for (const evaluation::Json& r : evaluation::heldOutRows(inspection, it->second)) {
+      out += csvText(name) + "," + r["index"].dump() + "," + csvText(r["id"]) + "," + csvText(r["light"]) + "," +
+             r["highlight"].dump() + "," + csvText(r["status"]) + "," + csvText(r["reason"]);
+      for (const char* key : {"contour_error_pct", "contour_error_px", "ellipse_error_pct", "hausdorff_px", "iou",
+                              "centre_offset_px", "axis_ratio_error", "angle_error_deg", "peak_offset_px", "coverage", "time_us"})
+        out += "," + (r.contains(key) && !r[key].is_null() ? r[key].dump() : "");
+      out += "\n";
+    }
+  }
+  return out;
 }
 
 }  // namespace glint

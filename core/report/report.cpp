@@ -3,10 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
-#include "core/base/csv_text.h"
-#include "core/base/json_dom.h"
 #include "core/base/number_text.h"
 #include "core/inspect/summary.h"
 #include "core/model/star.h"
@@ -17,8 +14,6 @@
 
 namespace glint {
 namespace {
-
-using nlohmann::ordered_json;
 
 /// With as many decimals in every row, so that a column can be read from top to bottom.
 std::string cell(double v, const char* format = "%.3f") {
@@ -46,32 +41,6 @@ BestModel bestModel(const Inspection& inspection) {
     if (const auto it = inspection.models.find(name); it != inspection.models.end())
       models.emplace_back(name, summarise(inspection, it->second));
   return evaluation::bestOf(models);
-}
-
-const char* const kEvaluationCsvHeader =
-    "model,index,id,light,highlight,status,reason,contour_error_pct,contour_error_px,ellipse_error_pct,hausdorff_px,iou,"
-    "centre_offset_px,axis_ratio_error,angle_error_deg,peak_offset_px,coverage,time_us\n";
-
-std::string evaluationCsv(const Inspection& inspection) {
-  std::string out = kEvaluationCsvHeader;
-  for (const std::string& name : inspection.request.models) {
-    const auto it = inspection.models.find(name);
-    if (it == inspection.models.end()) continue;
-    ordered_json rows = ordered_json::array();
-    for (const FrameComparison& c : it->second.frames)
-      if (inspection.isHeldOut(c.frame))
-        for (ordered_json& row : ordered_json::parse(evaluation::rowsJson(inspection, it->second, c)))
-          rows.push_back(std::move(row));
-    for (const ordered_json& r : rows) {
-      out += csvText(name) + "," + r["index"].dump() + "," + csvText(r["id"]) + "," + csvText(r["light"]) + "," +
-             r["highlight"].dump() + "," + csvText(r["status"]) + "," + csvText(r["reason"]);
-      for (const char* key : {"contour_error_pct", "contour_error_px", "ellipse_error_pct", "hausdorff_px", "iou",
-                              "centre_offset_px", "axis_ratio_error", "angle_error_deg", "peak_offset_px", "coverage", "time_us"})
-        out += "," + (r.contains(key) && !r[key].is_null() ? r[key].dump() : "");
-      out += "\n";
-    }
-  }
-  return out;
 }
 
 std::string evaluationTable(const Inspection& inspection) {

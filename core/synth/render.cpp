@@ -3,7 +3,6 @@
 #include <cmath>
 #include <map>
 #include <mutex>
-#include <numeric>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <random>
@@ -18,8 +17,6 @@
 #include "core/codecs/codecs.h"
 #include "core/scene/scene_json.h"
 #include "core/synth/output_folder.h"
-#include "core/synth/part.h"
-#include "core/synth/part_files.h"
 #include "core/synth/synth.h"
 
 namespace glint {
@@ -204,21 +201,15 @@ bool isInPlace(const fs::path& mesh, const fs::path& place) {
   return fs::equivalent(mesh, place, ignored);
 }
 
-std::vector<int> allFrames(const Scene& scene) {
-  std::vector<int> frames(scene.frames.size());
-  std::iota(frames.begin(), frames.end(), 0);
-  return frames;
-}
-
-/// Of these frames, and the meshes; relative to the scene's folder.
-std::vector<fs::path> filesWritten(const Scene& scene, const std::vector<int>& frames,
-                                   const std::map<fs::path, std::string>& meshes, const std::optional<RenderOptions>& render) {
+/// Files of the frames and the meshes; relative to the scene's folder.
+std::vector<fs::path> filesWritten(const Scene& scene, const std::map<fs::path, std::string>& meshes,
+                                   const std::optional<RenderOptions>& render) {
   std::vector<fs::path> files;
   for (const auto& [mesh, name] : meshes)
     if (!isInPlace(mesh, scene.folder / "mesh" / name)) files.push_back(fs::path("mesh") / name);
   if (!render) return files;
-  for (const int i : frames) {
-    const std::string name = fileNameOf(scene.frames[static_cast<std::size_t>(i)].id);
+  for (const Frame& frame : scene.frames) {
+    const std::string name = fileNameOf(frame.id);
     if (render->bits != 32) files.push_back(fs::path("frames") / (name + photographExtension(*render)));
     for (const char* kind : {"radiance", "depth", "normals"}) files.push_back(fs::path(kind) / (name + ".tiff"));
     files.push_back(fs::path("mask") / (name + ".png"));
@@ -237,19 +228,18 @@ void copyMeshes(Scene& scene, const std::map<fs::path, std::string>& meshes, con
     if (source.mesh) source.mesh = scene.folder / "mesh" / meshes.at(*source.mesh);
 }
 
-/// Photographs, radiance, depth, normals and masks of these frames, written into `out`, which will be the scene's folder.
+/// Photographs, radiance, depth, normals and masks of all frames, written into `out`, which will be the scene's folder.
 /// @param top  the brightest value of the sequence
-void renderFrames(Scene& scene, const std::vector<int>& frames, const RenderOptions& render, const Material& material,
-                  const SurfaceCache& surfaces, double top, const fs::path& out, const ProgressFn& progress) {
+void renderFrames(Scene& scene, const RenderOptions& render, const Material& material, const SurfaceCache& surfaces, double top,
+                  const fs::path& out, const ProgressFn& progress) {
   const double exposure = render.exposure > 0 ? render.exposure : (top > 0 ? 0.9 / top : 1);
   for (const char* name : {"frames", "radiance", "depth", "normals", "mask"}) {
     if (render.bits == 32 && std::string(name) == "frames") continue;
     makeFolder(out / name);
   }
   parallelFor(
-      static_cast<int>(frames.size()),
-      [&](int n) {
-        const int i = frames[static_cast<std::size_t>(n)];
+      static_cast<int>(scene.frames.size()),
+      [&](int i) {
         Frame& frame = scene.frames[static_cast<std::size_t>(i)];
         const Outcome<std::shared_ptr<const Surface>> surface = surfaces.surfaceOf(i, NormalPolicy::Curved);
         RenderedFrame r = renderFrame(**surface, frame.camera, lightsOf(scene, frame), material, render.samples);
@@ -287,21 +277,19 @@ std::string textOf(Scene scene) {
 /// What is known of a scene before anything is written.
 struct Traced {
   Scene scene;     ///< with highlights, in its new folder
-  double top = 0;  ///< brightest value of the traced frames; 0 where nothing is rendered
+  double top = 0;  ///< brightest value of the frames; 0 where nothing is rendered
   std::map<fs::path, std::string> meshes;
 };
 
-/// Highlights of these frames. Everything that can be wrong with the specification is found here.
-Traced traced(const SynthSpec& spec, const std::vector<int>& frames, const SurfaceCache& surfaces, const fs::path& folder,
-              const ProgressFn& progress) {
+/// Highlights of all frames. Everything that can be wrong with the specification is found here.
+Traced traced(const SynthSpec& spec, const SurfaceCache& surfaces, const fs::path& folder, const ProgressFn& progress) {
   Traced result{spec.scene, 0, {}};
   Scene& scene = result.scene;
-  std::vector<double> tops(frames.size(), 0);
+  std::vector<double> tops(scene.frames.size(), 0);
   std::mutex warningMutex;
   parallelFor(
-      static_cast<int>(frames.size()),
-      [&](int n) {
-        const int i = frames[static_cast<std::size_t>(n)];
+      static_cast<int>(scene.frames.size()),
+      [&](int i) {
         Frame& frame = scene.frames[static_cast<std::size_t>(i)];
         const Outcome<std::shared_ptr<const Surface>> surface = surfaces.surfaceOf(i, NormalPolicy::Curved);
         if (!surface) throw InputError(scene.file.string(), "frames[" + std::to_string(i) + "]", surface.failure().message());
@@ -316,7 +304,7 @@ Traced traced(const SynthSpec& spec, const std::vector<int>& frames, const Surfa
             scene.warnings.push_back("frame " + frame.id + ", " + lightName(light.id) + ": " + found.failure().message());
           }
         }
-        if (spec.render) tops[static_cast<std::size_t>(n)] = brightest(**surface, frame, lights, spec.material);
+        if (spec.render) tops[static_cast<std::size_t>(i)] = brightest(**surface, frame, lights, spec.material);
       },
       progress, "highlights");
   std::sort(scene.warnings.begin(), scene.warnings.end());
@@ -333,46 +321,16 @@ Traced traced(const SynthSpec& spec, const std::vector<int>& frames, const Surfa
 
 Scene synthesise(const SynthSpec& spec, const fs::path& folder, const ProgressFn& progress) {
   const SurfaceCache surfaces(spec.scene);
-  const std::vector<int> frames = allFrames(spec.scene);
-  Traced t = traced(spec, frames, surfaces, folder, progress);
-  std::vector<fs::path> files = filesWritten(t.scene, frames, t.meshes, spec.render);
+  Traced t = traced(spec, surfaces, folder, progress);
+  std::vector<fs::path> files = filesWritten(t.scene, t.meshes, spec.render);
   files.insert(files.begin(), t.scene.file.filename());
   requireSynthFolder(t.scene.folder, files);
   atomicFiles(folder, "scene.json", [&](const fs::path& out) {
     copyMeshes(t.scene, t.meshes, out);
-    if (spec.render) renderFrames(t.scene, frames, *spec.render, spec.material, surfaces, t.top, out, progress);
+    if (spec.render) renderFrames(t.scene, *spec.render, spec.material, surfaces, t.top, out, progress);
     atomicWrite(out / t.scene.file.filename(), textOf(t.scene));
   });
   return t.scene;
-}
-
-SynthPart synthesisePart(const SynthSpec& spec, const fs::path& folder, const Shard& shard, const std::string& program,
-                         const ProgressFn& progress) {
-  const SurfaceCache surfaces(spec.scene);
-  const std::vector<int> all = allFrames(spec.scene);
-  const auto range = rangeOf(shard, static_cast<int>(all.size()));  // no structured binding: a lambda of clang 14 cannot take one
-  const std::vector<int> own(all.begin() + range.first, all.begin() + range.second);
-  const bool needsAll = spec.render && (spec.render->exposure <= 0 || spec.render->noise > 0);
-  Traced t = traced(spec, needsAll ? all : own, surfaces, folder, progress);
-  if (needsAll) {
-    std::set<std::string> ids;
-    for (const int i : own) ids.insert("frame " + spec.scene.frames[static_cast<std::size_t>(i)].id + ", ");
-    const auto ofOthers = [&](const std::string& w) {
-      return w.rfind("frame ", 0) == 0 && !ids.count(w.substr(0, w.find(", ") + 2));
-    };
-    std::erase_if(t.scene.warnings, ofOthers);
-  }
-  const std::vector<fs::path> files = filesWritten(t.scene, own, t.meshes, spec.render);
-  const SynthPartFiles part(t.scene.folder, shard, files);
-  part.write([&](const fs::path& out) {
-    copyMeshes(t.scene, t.meshes, out);
-    if (spec.render) renderFrames(t.scene, own, *spec.render, spec.material, surfaces, t.top, out, progress);
-    return synthPartText({textOf(t.scene), spec.scene.file, needsAll ? t.top : 0, files, out}, shard, program, range.first,
-                         range.second);
-  });
-  SynthPart result{part.file(), static_cast<int>(own.size()), 0, t.scene.warnings};
-  for (const int i : own) result.highlights += static_cast<int>(t.scene.frames[static_cast<std::size_t>(i)].highlights.size());
-  return result;
 }
 
 }  // namespace glint

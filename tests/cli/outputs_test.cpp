@@ -97,7 +97,6 @@ TEST_F(OutputsOfCommands, EveryOtherOutputRefusesAnotherKind) {
   const Row rows[] = {
       {"movie " + session + " --size 320x240 -o " + out("m.mp4"), "--out", "m.mp4", "is not a movie"},
       {"movie " + session + " --size 320x240 --frames 0,1 -o " + out("p.png"), "--out", "p_0001.png", "is not a PNG"},
-      {"stability --json " + out("s.json"), "--json", "s.json", "is not a JSON file with \"glint_stability\""},
       {"compare " + session + " " + session + " --json " + out("c.json"), "--json", "c.json",
        "is not a JSON file with \"glint_comparison\""},
       {tradeoff + " -o " + out("t.glint"), "--out", "t.glint", "is not a JSON file with \"glint_session\""},

@@ -230,18 +230,5 @@ TEST_F(Requests, JsonAloneOnStandardOutputAndNoProgressInAPipe) {
   EXPECT_THAT(on("evaluate", "--models limit-angle --csv -").out, StartsWith("model,index,id,light,"));
 }
 
-TEST(Stability, JsonGoesToStandardOutputAloneAndNothingIsWrong) {
-  const ProgramRun run = runGlint("stability --stage conic --json -");  // all of them: core_stability
-  EXPECT_EQ(run.code, 0) << run.err;
-  EXPECT_THAT(run.out, testing::StartsWith("{"));
-  EXPECT_THAT(run.out, testing::HasSubstr("\"glint_stability\": 1"));
-  EXPECT_THAT(run.out, testing::Not(testing::HasSubstr("\"wrong\"")));
-  EXPECT_THAT(run.out, testing::Not(testing::HasSubstr("lens distortion")));
-  const ProgramRun unknown = runGlint("stability --stage nowhere");
-  EXPECT_EQ(unknown.code, 2);
-  EXPECT_EQ(unknown.errorLines(), 1);
-  EXPECT_THAT(unknown.err, testing::HasSubstr("--stage: must be one of "));
-}
-
 }  // namespace
 }  // namespace glint

@@ -26,11 +26,10 @@ function(forbid what pattern)
   set(leaks "${leaks}" PARENT_SCOPE)
 endfunction()
 
-# Headers of core: an allow list, because it is the contract of all other layers. json_dom.h and fifty_digits.h are internal: only
-# sources of core and of core/stability include them (below), so that their libraries reach no other layer. The two of core/capture are
-# internal to it and use io.
+# Headers of core: an allow list, because it is the contract of all other layers. json_dom.h is internal: only
+# sources of core include it (below), so that its library reaches no other layer. The two of core/capture are internal to it and use io.
 file(GLOB_RECURSE files "${SRC}/core/*.h")
-list(FILTER files EXCLUDE REGEX "/core/(base/json_dom|stability/fifty_digits|capture/colmap_parts|capture/text_rows)[.]h$")
+list(FILTER files EXCLUDE REGEX "/core/(base/json_dom|capture/colmap_parts|capture/text_rows)[.]h$")
 foreach(f IN LISTS files)
   file(STRINGS "${f}" lines REGEX "^[ \t]*#[ \t]*include")
   foreach(line IN LISTS lines)
@@ -142,8 +141,7 @@ foreach(folder IN LISTS folders)
 endforeach()
 
 only_in("of core, only core/scene and core/capture read files through io" "\"io/" "/core/(scene|capture)/" core/*.cpp)
-only_in("fifty digits are for sources of core/stability" "\"core/stability/fifty_digits[.]h" "/core/stability/[^/]*[.]cpp$" core/*.cpp core/*.h viz/*.cpp gui/*.cpp
-  cli/*.cpp)
+forbid("fifty digits are for tests/stability" "boost/multiprecision" io/*.cpp core/*.h core/*.cpp viz/*.cpp gui/*.cpp cli/*.cpp bench/*.cpp)
 
 only_in("internal to core/capture" "\"core/capture/(colmap_parts|text_rows|parts|image_sizes)[.]h" "/core/capture/" core/*.cpp core/*.h viz/*.cpp gui/*.cpp cli/*.cpp)
 
@@ -165,7 +163,7 @@ forbid("only the benchmarks of the window know gui" "\"([^\"]*/)?gui/" bench/*.h
 function(forbid_link what pattern)
   foreach(layer IN LISTS ARGN)
     file(GLOB_RECURSE files "${SRC}/${layer}/CMakeLists.txt")
-    list(FILTER files EXCLUDE REGEX "/bench/gui/|/tests/core/stability/")
+    list(FILTER files EXCLUDE REGEX "/bench/gui/")
     foreach(f IN LISTS files)
       file(STRINGS "${f}" hits REGEX "${pattern}")
       if(hits)
@@ -178,7 +176,6 @@ function(forbid_link what pattern)
 endfunction()
 forbid_link("Qt belongs to gui" "Qt([0-9]|[$])|GUISupportQt|glint::gui|glint_gui" io core viz cli bench)
 forbid_link("io links Eigen and core/base" "VTK|PCL|pcl_|opencv|ceres|embree|nlohmann|glint::(core|viz|gui)|glint_(core|viz|gui)" io)
-forbid_link("the extreme cases belong to glint and their own tests" "glint::stability|glint_stability|ROOMS.* stability" io viz gui plugins bench tests)
 forbid_link("core stands below viz" "glint::viz|glint_viz" core)
 # PCL's own lists bring VTK and Qt along, its io and visualization by themselves, its features by what they say that they need.
 forbid_link("the computing core has no VTK" "VTK::|vtk[A-Z]|PCL_[A-Z_]*LIBRARIES|pcl_(io|visualization|surface|apps)|[^:]pcl_(features|2d)" core)

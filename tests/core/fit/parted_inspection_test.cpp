@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // detect.background = colours in an inspection: contours on the specular part, and a warning where the colours do not tell it.
 #include "core/inspect/requested_evidence.h"
-#include "core/report/evaluation_notes.h"
 #include "core/report/warnings.h"
 #include "tests/core/fit/coloured_scene.h"
 
@@ -51,15 +50,19 @@ TEST(ColoursAsBackground, GreyFramesKeepTheSmoothOneAndSayWhy) {
 }
 
 TEST(ColoursAsBackground, ReasonsAreListedWithTheirFrames) {
-  std::vector<FrameNote> notes(5);
+  Inspection r;
+  Scene scene;
   for (int f = 0; f < 5; ++f) {
-    notes[std::size_t(f)].frame = f;
-    notes[std::size_t(f)].id = "00" + std::to_string(20 + f);
-    notes[std::size_t(f)].heldOut = f != 4;  // the last one is excluded
-    notes[std::size_t(f)].notParted = f == 1 ? "too much noise" : f == 3 ? "" : "the image is grey";
+    scene.frames.emplace_back().id = "00" + std::to_string(20 + f);
+    r.evidence.emplace_back().frame = f;
+    r.evidence.back().notParted = f == 1 ? "too much noise" : f == 3 ? "" : "the image is grey";
   }
+  r.scene = std::make_shared<const Scene>(std::move(scene));
+  r.request.excluded = {4};
+  const std::vector<std::string> warnings = warningsOf(r);
+  ASSERT_EQ(warnings.size(), 1U);
   EXPECT_EQ(
-      notPartedWarning(notes),
+      warnings[0],
       "colours do not tell what is specular, and the smooth background is used, in frames 0020, 0022 (the image is grey); frame "
       "0021 (too much noise)");
 }
