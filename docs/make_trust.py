@@ -28,7 +28,6 @@ expected = [
     ("faults", "Injected faults", "tests/run_faults"),
     ("kills", "Kills at random", "tests/run_kills"),
     ("determinism", "Determinism", "tests/run_determinism"),
-    ("comma_locale", "The test-suite under a comma locale", "tests/run_comma_locale"),
     ("asan", "The test-suite under the address and undefined-behaviour sanitizers, assertions on", "tests/run_sanitizers asan"),
     ("lsan", "The command line under the leak sanitizer", "tests/run_sanitizers lsan"),
     ("tsan", "Threads under the thread sanitizer", "tests/run_sanitizers tsan"),

@@ -1,7 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Rows for docs/trust.md of a run of the tests: one for each test program, "name<TAB>count<TAB>findings<TAB>note". Used by tests/run_sanitizers
-and tests/run_comma_locale.
+"""Rows for docs/trust.md of a run of the tests: one for each test program, "name<TAB>count<TAB>findings<TAB>note". Used by tests/run_sanitizers.
 
   tests/test_rows.py --build FOLDER [--pattern REGEX] [--leave-out REGEX] [--reports FOLDER] JUNIT...    the rows; a test in several files counts as in the last one
   tests/test_rows.py --build FOLDER [--pattern REGEX] [--leave-out REGEX] --programs    names of all programs that a complete run has

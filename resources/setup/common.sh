@@ -91,6 +91,13 @@ build() {
   (cd "$root" && cmake --build --preset "$preset" -j "$jobs" "${targets[@]}" </dev/null)
 }
 
+# hard_ground BUILD: assignments for env, one a line: a locale with a decimal comma, which every program sets before main, as Qt does (of numbers
+# only: messages of the system stay in English, which tests compare), and new and freed memory full of a pattern.
+hard_ground() {
+  printf '%s
+' LC_NUMERIC=de_DE.UTF-8 "LOCPATH=$1/locale" "LD_PRELOAD=$1/locale/comma_locale.so" MALLOC_PERTURB_=165
+}
+
 # True when the session has a display that answers: a local one must have its socket.
 have_display() {
   local number

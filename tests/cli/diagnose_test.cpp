@@ -73,9 +73,11 @@ TEST_F(Diagnose, NamesTheFaultAndEveryRemedyHoldsInEvaluate) {
   EXPECT_LT(table(all["remedies"][0]["flags"]).pct, before.pct);
 }
 
-TEST_F(Diagnose, TextIsOneVerdictThenRemediesThenWhatTheyStandOn) {
+/// One verdict, wherever it is read, then the remedies, then what both stand on.
+TEST_F(Diagnose, TextJsonAndPageSayTheSame) {
   moveContour(2);
-  const ProgramRun run = on("diagnose", "--models limit-angle --train 0-5 --most 1");
+  const ProgramRun run =
+      on("diagnose", "--models limit-angle --train 0-5 --most 1 --json " + out("why.json") + " --html " + out("why.html"));
   ASSERT_EQ(run.code, 0) << run.err;
   EXPECT_LT(run.out.find("the error is "), run.out.find('\n'));
   std::size_t at = 0;
@@ -84,14 +86,6 @@ TEST_F(Diagnose, TextIsOneVerdictThenRemediesThenWhatTheyStandOn) {
     at = run.out.find(words, at);
     ASSERT_NE(at, std::string::npos) << words << "\n" << run.out;
   }
-}
-
-/// One verdict, wherever it is read.
-TEST_F(Diagnose, TextJsonAndPageSayTheSame) {
-  moveContour(2);
-  const ProgramRun run =
-      on("diagnose", "--models limit-angle --train 0-5 --most 1 --json " + out("why.json") + " --html " + out("why.html"));
-  ASSERT_EQ(run.code, 0) << run.err;
   const std::string verdict = Json::parse(contentOf(folder_ / "why.json"))["verdict"];
   EXPECT_EQ(run.out.substr(0, run.out.find('\n')), verdict);
   EXPECT_THAT(contentOf(folder_ / "why.html"), HasSubstr("<p>" + verdict + "</p>"));

@@ -100,10 +100,9 @@ TEST_F(FrameNames, SessionsPredictAndDiagnoseByIds) {
   EXPECT_FALSE(fs::exists(folder_ / "detected/0000.png"));
   ASSERT_EQ(onSession("predict", "--masks " + out("masks")).code, 0);
   EXPECT_TRUE(fs::exists(folder_ / "masks/masks/dual/lamp/0015.png") || fs::exists(folder_ / "masks/masks/dual/light/0015.png"));
-  const ProgramRun diagnosis = on("diagnose", "--models dual --train 0-3");
+  const ProgramRun diagnosis = on("diagnose", "--models dual --train 0-3 --json " + out("why.json"));
   expectIds("diagnosis", diagnosis.out);
-  const Json j = Json::parse(on("diagnose", "--models dual --train 0-3 --json -").out);
-  EXPECT_EQ(j["train_ids"], idsOf({0, 1, 2, 3}));
+  EXPECT_EQ(Json::parse(contentOf(folder_ / "why.json"))["train_ids"], idsOf({0, 1, 2, 3}));
 }
 
 TEST_F(FrameNames, ATradeOffNamesWhatTrained) {

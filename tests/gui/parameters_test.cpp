@@ -94,8 +94,8 @@ const std::vector<Turn>& turns() {
 std::map<std::string, std::string> baseOf(const Turn& t) {
   std::map<std::string, std::string> base = t.base;
   const std::string key = t.key;
-  if ((key.rfind("surface.", 0) == 0 && key != "surface.normals") || key.rfind("light.refine_depth", 0) == 0 ||
-      key == "light.depth_sigma" || key.rfind("light.refine_normals", 0) == 0 || key == "light.normal_sigma") {
+  const auto isOf = [&](const char* group) { return key.rfind(group, 0) == 0; };
+  if ((isOf("surface.") && key != "surface.normals") || isOf("light.") || isOf("predict.") || isOf("input.")) {
     base.emplace("detect.background", "smooth");
     base.emplace("fit.evidence", "contours");
   }

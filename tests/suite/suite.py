@@ -1,14 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs the tests of a build by ctest and says case by case what failed and what was skipped. Used by glint-test, tests/run_sanitizers and
-tests/run_comma_locale.
+"""Runs the tests of a build by ctest and says case by case what failed and what was skipped. Used by glint-test, tests/run_nightly
+and tests/run_sanitizers.
 
-  tests/suite/suite.py --build FOLDER [--filter REGEX] [--leave-out REGEX] [--built] [--junit FILE] [CTEST-ARGUMENT...]
+  tests/suite/suite.py --build FOLDER [--filter REGEX] [--leave-out REGEX] [--changed] [--built] [--junit FILE] [CTEST-ARGUMENT...]
   tests/suite/suite.py --build FOLDER [--filter REGEX] [--leave-out REGEX] --list      only names them
 
 The name of a GoogleTest case is PROGRAM.Suite.Case (core_geometry.Conic.Scale); of every other test, that of its CTest entry (rules.layers).
 --filter and --leave-out match these names. A program that is not built is a failure, unless --built leaves it out; with a filter nobody knows its
 cases, and it is left out, too. FILE gets all results, as JUnit XML with one test case each.
+--changed leaves out the groups of occasional.txt whose code is what it was when they passed, and says which.
 Exit code: ctest's own.
 """
 import argparse
@@ -25,6 +26,7 @@ import xml.etree.ElementTree as xml
 
 sys.dont_write_bytecode = True  # no folder among the sources
 import entry as cases
+import occasional
 
 
 def entriesOf(build):
@@ -59,6 +61,13 @@ def namesOf(build, only="", leaveOut=""):
         else:
             names[name] = None
     return names
+
+
+def unchanged(names):
+    """The entries of groups whose code did not change: group -> names."""
+    run = {group.name for group in occasional.changed(occasional.HERE.parent.parent)}
+    found = {g.name: [name for name in names if g.entries.search(name)] for g in occasional.groups() if g.name not in run}
+    return {name: entries for name, entries in found.items() if entries}
 
 
 def exactly(names):
@@ -132,6 +141,7 @@ def main():
     parser.add_argument("--build", required=True, type=pathlib.Path)
     parser.add_argument("--filter", default="")
     parser.add_argument("--leave-out", default="")
+    parser.add_argument("--changed", action="store_true")
     parser.add_argument("--built", action="store_true")
     parser.add_argument("--junit", type=pathlib.Path)
     parser.add_argument("--list", action="store_true")
@@ -155,6 +165,10 @@ def main():
     chosen = list(entries)
     if narrowed:
         chosen = [name for name in chosen if names[name] != []]
+    if arguments.changed:
+        for group, left in unchanged(chosen).items():
+            print(f"left out, {len(left)} of '{group}': their code is what it was when they passed (tests/suite/occasional.py)")
+            chosen = [name for name in chosen if name not in left]
     if narrowed or arguments.built:
         missing = [name for name in chosen if entries[name] is None or (entries[name] and not entries[name].program.exists())]
         chosen = [name for name in chosen if name not in missing]

@@ -3,6 +3,7 @@
 """suite_test.py SAMPLE: tests of entry.py and suite.py. A case that is lost here would be a test that seems to pass."""
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -12,6 +13,9 @@ import xml.etree.ElementTree as xml
 
 here = pathlib.Path(__file__).resolve().parent
 sample = pathlib.Path(sys.argv.pop(1)).resolve()
+sys.path.insert(0, str(here))
+import occasional  # noqa: E402
+
 # Of whoever runs this test.
 environment = {name: value for name, value in os.environ.items() if not name.startswith(("GLINT_TEST_", "GTEST_"))}
 
@@ -182,6 +186,60 @@ class Suite(Folder):
         self.assertEqual(code, 0)
         self.assertEqual(said.split(), sorted(["p.Good.A", "p.Good.B", "p.Good.C", "p.Bad.Fails", "p.Bad.IsSkipped", "p.Ends.Never", "python",
                                                *(f"p.Some/Numbers.ArePositive/{i}" for i in range(4))]))
+
+
+class Occasional(Folder):
+    """Groups that run when their code changed. A group that is forgotten would be a test that never runs."""
+
+    def git(self, *arguments):
+        subprocess.run(["git", "-C", self.folder, "-c", "user.name=a", "-c", "user.email=a@b", *arguments], check=True, capture_output=True)
+
+    def setUp(self):
+        super().setUp()
+        self.git("init", "-q")
+        for name, text in (("a/one.cpp", "1"), ("a/two.cpp", "2"), ("b/three.cpp", "3")):
+            (self.folder / name).parent.mkdir(exist_ok=True)
+            (self.folder / name).write_text(text)
+        self.git("add", ".")
+        self.git("commit", "-qm", "all")
+        (self.folder / "groups.txt").write_text("# words\nfirst ^f\\.\n  a\n\nsecond ^s\\.\n  b/*.cpp\n")
+        self.groups = occasional.groups(self.folder / "groups.txt")
+        self.stamps = {g.name: occasional.digest(self.folder, g) for g in self.groups}
+
+    def names(self, stamps=None):
+        return [g.name for g in occasional.changed(self.folder, self.groups, self.stamps if stamps is None else stamps)]
+
+    def testContentOfTheirPathsAlone(self):
+        self.assertEqual(self.names(), [])
+        self.assertEqual(self.names({}), ["first", "second"])
+        (self.folder / "b/three.cpp").write_text("4")
+        self.assertEqual(self.names(), ["second"], "not committed")
+        self.git("commit", "-qam", "b")
+        self.assertEqual(self.names(), ["second"])
+        (self.folder / "b/three.cpp").write_text("3")
+        self.assertEqual(self.names(), [], "as it was")
+        (self.folder / "a/new.cpp").write_text("")
+        self.assertEqual(self.names(), ["first"], "a new file")
+        (self.folder / "a/new.cpp").unlink()
+        (self.folder / "a/two.cpp").rename(self.folder / "a/2.cpp")
+        self.assertEqual(self.names(), ["first"], "another name")
+
+    def testWithoutGitEverythingRuns(self):
+        shutil.rmtree(self.folder / ".git")
+        self.assertEqual(self.names(), ["first", "second"])
+
+    def testTheListNamesEntriesAndPathsThatAre(self):
+        root = here.parent.parent
+        scripts = "".join(file.read_text() for file in root.glob("tests/**/CMakeLists.txt"))
+        for group in occasional.groups():
+            for path in group.paths:
+                self.assertTrue((root / path).exists(), f"{group.name}: {path}")
+            words = re.findall(r"[a-z_]{4,}", group.entries.pattern)
+            for word in words:
+                self.assertIn(word, scripts, group.name)
+        names = [group.name for group in occasional.groups()]
+        self.assertEqual(len(set(names)), len(names))
+        self.assertLessEqual(set(occasional.stamps()), set(names))
 
 
 unittest.main()
