@@ -158,7 +158,8 @@ def model_rows(label, run):
             if f["reason"] and f["status"] != "spurious" and f["index"] not in held_in(run):
                 reason = f["reason"].split("; ")[0]  # what follows is of this highlight alone
                 reasons[reason] = reasons.get(reason, 0) + 1
-        remark = model["reason"] if model["status"] != "ok" else "; ".join(f"{n} × {r}" for r, n in sorted(reasons.items()))
+        poor = "poor: " if model["status"] == "poor" else ""
+        remark = poor + model["reason"] if model["status"] != "ok" else "; ".join(f"{n} × {r}" for r, n in sorted(reasons.items()))
         rows.append(label + [
             name, number(e["mean"]), number(e["median"]), number(e["p95"]), number(e["max"]),
             number(s["contour_error_px"]["mean"]), number(s["ellipse_error_pct"]["mean"]), number(s["iou"]["mean"], 4),
