@@ -359,8 +359,10 @@ class Check {
       if (fitted && fitted->rmsPx < here->rmsPx) here = fitted;
       return fitted ? std::optional(fitted->rmsPx * fitted->rmsPx) : std::nullopt;
     };
-    if (here) shift = lowestPlace(shift, 0.005 * *whole, cost);
-    if (here) here = fit(shiftedBy(shift), *lamp, which, {});
+    if (here && here->rmsPx <= kNothingRadii * radiusOf(*lamp)) {  // what leaves more is no shift
+      shift = lowestPlace(shift, 0.005 * *whole, cost);
+      here = fit(shiftedBy(shift), *lamp, which, {});
+    }
     add(formatted("Move the mesh by (%.3g, %.3g, %.3g) m", shift.x(), shift.y(), shift.z()), here);
     // Three numbers hide much of another shape: a flatter body left 4.5 %, right ones leave 1 to 3 % in 8 bits.
     constexpr double kShifted = 0.03;

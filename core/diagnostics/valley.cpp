@@ -2,7 +2,6 @@
 #include "core/diagnostics/valley.h"
 
 #include <Eigen/Eigenvalues>
-#include <algorithm>
 
 namespace glint {
 namespace {
@@ -13,15 +12,17 @@ struct Quadric {
   Vector3d slope;
   Matrix3d bend;
 
-  /// To its least value; away from where the slope falls along what does not bend upwards.
+  /// To its least value; where it does not bend upwards, down the slope.
   Vector3d down() const {
     constexpr double kFlat = 1e-3;   // of the largest bend: rounding beside it
     constexpr double kFarthest = 8;  // steps: the quadric says nothing about what lies farther away
     const Eigen::SelfAdjointEigenSolver<Matrix3d> axes(bend);
     const Eigen::Array3d bends = axes.eigenvalues().array().abs();
+    if (!(bends.maxCoeff() > 0)) return Vector3d::Zero();
     const Eigen::Array3d along = (axes.eigenvectors().transpose() * slope).array() / bends.max(kFlat * bends.maxCoeff());
     const Vector3d step = -(axes.eigenvectors() * along.matrix());
-    return step * std::min(1.0, kFarthest / std::max(step.norm(), 1e-300));
+    const double length = step.norm();
+    return length > kFarthest ? Vector3d(kFarthest / length * step) : step;
   }
 };
 
