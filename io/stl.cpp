@@ -4,7 +4,9 @@
 #include <chrono>
 #include <cstdint>
 #include <limits>
+#include <optional>
 
+#include "core/base/outcome.h"
 #include "io/binary.h"
 #include "io/mesh_builder.h"
 #include "io/mesh_reader.h"
@@ -62,15 +64,25 @@ class Welder {
   std::uint64_t seed_ = static_cast<std::uint64_t>(std::chrono::steady_clock::now().time_since_epoch().count());
 };
 
-void addFacet(MeshContent& mesh, Welder& welder, const Vector3d (&corners)[3], const std::string& file,
-              const std::string& place) {
+/// A facet with a corner that has no place is none. @param bad  takes the first of them, for a file without any other
+void addFacet(MeshContent& mesh, Welder& welder, const Vector3d (&corners)[3], const std::string& file, const std::string& place,
+              std::optional<InputError>& bad) {
+  for (const Vector3d& corner : corners)
+    if (const char* reason = io::badCoordinate(corner)) {
+      if (!bad) bad.emplace(file, place, std::string("a vertex ") + reason);
+      return;
+    }
   int number[3];
   for (int k = 0; k < 3; ++k) {
-    if (const char* reason = io::badCoordinate(corners[k])) io::fail(file, place, std::string("a vertex ") + reason);
     number[k] = welder.numberOf(corners[k]);
     if (number[k] < 0) io::fail(file, place, "more than 2147483647 vertices");
   }
   mesh.triangles.emplace_back(number[0], number[1], number[2]);
+}
+
+MeshContent finishedStl(MeshContent mesh, const std::string& file, const std::optional<InputError>& bad) {
+  if (mesh.triangles.empty() && bad) throw InputError(*bad);
+  return io::finished(std::move(mesh), file);
 }
 
 bool sameWord(std::string_view word, std::string_view lower) {
@@ -103,14 +115,15 @@ MeshContent parseStlBinary(std::string_view bytes, const std::string& file) {
                    " facets that the header declares");
   MeshContent mesh;
   Welder welder(mesh.vertices);
+  std::optional<InputError> bad;
   mesh.triangles.reserve((promised - io::kStlHead) / io::kStlFacet);
   for (std::size_t at = io::kStlHead; at < promised; at += io::kStlFacet) {
     Vector3d corners[3];
     for (int k = 0; k < 9; ++k)
       corners[k / 3][k % 3] = io::valueAt<float>(bytes.data() + at + io::kStlNormal + sizeof(float) * std::size_t(k), false);
-    addFacet(mesh, welder, corners, file, io::byteNo(at) + ", facet " + std::to_string(mesh.triangles.size()));
+    addFacet(mesh, welder, corners, file, io::byteNo(at) + ", facet " + std::to_string((at - io::kStlHead) / io::kStlFacet), bad);
   }
-  return io::finished(std::move(mesh), file);
+  return finishedStl(std::move(mesh), file, bad);
 }
 
 MeshContent parseStlText(std::string_view bytes, const std::string& file) {
@@ -120,6 +133,7 @@ MeshContent parseStlText(std::string_view bytes, const std::string& file) {
   // Statements as they may follow each other; each begins a line.
   enum class Inside { Nothing, Solid, Facet, Loop, LoopDone } inside = Inside::Nothing;
   Vector3d corners[3];
+  std::optional<InputError> badFacet;
   int corner = 0;
   while (std::optional<std::string_view> line = lines.next()) {
     const std::string_view word = io::takeWord(*line);
@@ -158,7 +172,7 @@ MeshContent parseStlText(std::string_view bytes, const std::string& file) {
           bad("unexpected " + io::quoted(rest) + " after a vertex");
         if (++corner < 3) break;
         inside = Inside::LoopDone;
-        addFacet(mesh, welder, corners, file, io::lineNo(lines.number()));
+        addFacet(mesh, welder, corners, file, io::lineNo(lines.number()), badFacet);
         break;
       }
       case Inside::LoopDone:
@@ -173,7 +187,7 @@ MeshContent parseStlText(std::string_view bytes, const std::string& file) {
     }
   }
   if (inside != Inside::Nothing) io::fail(file, io::lineNo(lines.number()), "the STL is truncated: endsolid is missing");
-  return io::finished(std::move(mesh), file);
+  return finishedStl(std::move(mesh), file, badFacet);
 }
 
 }  // namespace glint

@@ -19,6 +19,7 @@ struct BundlerCamera {
   std::string place;
   double focal = 0, k1 = 0, k2 = 0;                                ///< focal 0: not registered
   bool lost = false;                                               ///< its numbers are not finite; focal is 0
+  bool unread = false;                                             ///< its lines cannot be read, which is told; focal is 0
   Eigen::Isometry3d camFromWorld = Eigen::Isometry3d::Identity();  ///< ours: y down, z forward
 };
 
@@ -45,47 +46,65 @@ struct BundlerImage {
   bool fisheye = false;
 };
 
-/// The words of the file: programs break its lines differently.
+constexpr std::size_t kWord = 2;                                     // bytes, with what separates it
+constexpr std::size_t kCameraLines = 5, kInLine = 3, kEachView = 4;  // lines, and numbers in each; numbers of a measurement
+
+/// The words of the file. Programs break its lines differently; where the cameras stand in lines as Bundler writes them, a bad line does not
+/// touch what follows it.
 class BundlerWords {
  public:
   BundlerWords(std::string_view text, const std::string& file) : rows_(text, file), text_(text), file_(file) {}
-  /// @param what  "camera 3 of 11", for a file that ends before it
-  double number(const std::string& what) {
-    advance(what);
-    return capture::numberAt(row_, word_, file_);
-  }
-  /// NaN and infinite ones as well: they cost their camera only.
-  double anyNumber(const std::string& what) {
-    advance(what);
-    const std::optional<double> value = io::numberOf(row_.words[word_]);
-    return value && !std::isfinite(*value) ? *value : capture::numberAt(row_, word_, file_);
-  }
-  Eigen::Vector3d vector(const std::string& what) {
-    Eigen::Vector3d v;
-    for (double& x : v) x = number(what);
-    return v;
-  }
   std::int64_t integer(const std::string& what) {
     advance(what);
     return capture::integerAt(row_, word_, file_);
   }
-  /// A count of what takes `wordsEach` words each.
-  std::size_t count(const std::string& what, std::size_t wordsEach) {
-    const std::int64_t n = integer("the number of " + what);
-    constexpr std::size_t kWord = 2;  // bytes, with what separates it
-    return capture::possibleCount(n, wordsEach * kWord, bytesLeft(), what, file_, place());
+  /// Looks how the lines of so many cameras are broken.
+  void lookAtLines(std::size_t cameras) {
+    constexpr std::size_t kLooked = 1000;  // lines: a program breaks all of them in one way
+    RowReader ahead = rows_;
+    std::size_t seen = 0, ofThree = 0;
+    while (seen < std::min(kLooked, kCameraLines * cameras)) {
+      const std::optional<Row> row = ahead.next();
+      if (!row) break;
+      ++seen;
+      ofThree += row->words.size() == kInLine;
+    }
+    inLines_ = word_ + 1 == row_.words.size() && 2 * ofThree > seen;
+  }
+  bool inLines() const { return inLines_; }
+  /// Three numbers, whatever they are. @param what  "camera 3 of 11", for a file that ends before it
+  Row three(const std::string& what) {
+    if (inLines_) return rows_.need(what);
+    Row row;
+    for (std::size_t i = 0; i < kInLine; ++i) take(row, what);
+    return row;
+  }
+  /// The number of views of a point, and four numbers for each.
+  Row views(const std::string& what) {
+    if (inLines_) return rows_.need(what);
+    Row row;
+    take(row, what);
+    const std::size_t n =
+        capture::possibleCount(capture::integerAt(row, 0, file_), kEachView * kWord, bytesLeft(), "views", file_, place());
+    for (std::size_t i = 0; i < kEachView * n; ++i) take(row, what);
+    return row;
   }
   std::string place() const { return row_.place(); }  ///< of the word that was read last
+  std::size_t bytesLeft() const {
+    const std::string_view word = row_.words[word_];
+    return inLines_ ? rows_.bytesLeft() : text_.size() - static_cast<std::size_t>(word.data() + word.size() - text_.data());
+  }
 
  private:
+  void take(Row& to, const std::string& what) {
+    advance(what);
+    if (to.words.empty()) to.number = row_.number;
+    to.words.push_back(row_.words[word_]);
+  }
   void advance(const std::string& what) {
     if (++word_ < row_.words.size()) return;
     row_ = rows_.need(what);
     word_ = 0;
-  }
-  std::size_t bytesLeft() const {
-    const std::string_view word = row_.words[word_];
-    return text_.size() - static_cast<std::size_t>(word.data() + word.size() - text_.data());
   }
 
   RowReader rows_;
@@ -93,7 +112,14 @@ class BundlerWords {
   std::string file_;
   Row row_;
   std::size_t word_ = 0;
+  bool inLines_ = false;
 };
+
+void requireWords(const Row& row, std::size_t words, const std::string& file) {
+  if (row.words.size() != words)
+    throw InputError(file, row.place(),
+                     "needs " + std::to_string(words) + " entries, has " + std::to_string(row.words.size()) + " (a cut line?)");
+}
 
 /// Our pose of Bundler's, whose camera has y up and looks along -z. As typedPose: a rotation of few digits is replaced by the nearest one.
 Eigen::Isometry3d bundlerPose(const Eigen::Matrix3d& r, const Eigen::Vector3d& t, const std::string& file,
@@ -115,11 +141,16 @@ Eigen::Isometry3d bundlerPose(const Eigen::Matrix3d& r, const Eigen::Vector3d& t
 /// `f k1 k2`, the rotation row by row, the translation.
 BundlerCamera bundlerCamera(BundlerWords& words, const std::string& what, const std::string& file,
                             std::vector<std::string>& repaired) {
+  std::array<Row, kCameraLines> rows;
+  for (Row& row : rows) row = words.three(what);  // all of them before any is refused: the next camera begins behind them
   BundlerCamera camera;
-  Eigen::Matrix<double, 15, 1> v;
-  for (Eigen::Index i = 0; i < v.size(); ++i) {
-    v[i] = words.anyNumber(what);
-    if (i == 0) camera.place = words.place();
+  camera.place = rows[0].place();
+  Eigen::Matrix<double, kCameraLines * kInLine, 1> v;
+  for (std::size_t i = 0; i < kCameraLines * kInLine; ++i) {
+    const Row& row = rows[i / kInLine];
+    requireWords(row, kInLine, file);
+    const std::optional<double> value = io::numberOf(row.words[i % kInLine]);  // NaN and infinite ones are lost poses
+    v[Eigen::Index(i)] = value && !std::isfinite(*value) ? *value : capture::numberAt(row, i % kInLine, file);
   }
   camera.lost = !v.allFinite();
   if (camera.lost) return camera;
@@ -136,23 +167,38 @@ BundlerCamera bundlerCamera(BundlerWords& words, const std::string& what, const 
 
 /// Position, colour, and a list of `camera key x y`.
 BundlerPoint bundlerPoint(BundlerWords& words, const std::string& what, std::size_t cameras, const std::string& file) {
-  BundlerPoint point{words.vector(what), {}};
-  for (const double x : point.place) capture::bounded(x, kFarthest, file, words.place());
-  words.vector(what);  // the colour
-  constexpr std::size_t kEach = 4;
-  const std::size_t views = words.count("views", kEach);
-  point.seen.reserve(views);
-  for (std::size_t i = 0; i < views; ++i) {
-    const std::int64_t index = words.integer(what);
+  const Row place = words.three(what), colour = words.three(what), seen = words.views(what);  // as above
+  for (const Row* row : {&place, &colour}) requireWords(*row, kInLine, file);
+  BundlerPoint point{capture::placeAt(place, 0, file), {}};
+  const std::int64_t views = capture::integerAt(seen, 0, file);
+  requireWords(seen, 1 + kEachView * capture::possibleCount(views, 1, seen.words.size(), "views", file, seen.place()), file);
+  for (std::size_t at = 1; at < seen.words.size(); at += kEachView) {
+    const std::int64_t index = capture::integerAt(seen, at, file);
     if (index < 0 || static_cast<std::uint64_t>(index) >= cameras)
-      throw InputError(file, words.place(),
+      throw InputError(file, seen.place(),
                        "there is no camera " + std::to_string(index) + ", there are " + std::to_string(cameras));
-    words.integer(what);  // the key point
-    const auto coordinate = [&] { return capture::bounded(words.number(what), kFarthestPx, file, words.place()); };
-    const double x = coordinate(), y = coordinate();
-    point.seen.push_back({static_cast<std::size_t>(index), {x, -y}});
+    capture::integerAt(seen, at + 1, file);  // the key point
+    const auto coordinate = [&](std::size_t word) {
+      return capture::bounded(capture::numberAt(seen, word, file), kFarthestPx, file, seen.place());
+    };
+    point.seen.push_back({static_cast<std::size_t>(index), {coordinate(at + 2), -coordinate(at + 3)}});
   }
   return point;
+}
+
+/// Of the file that is behind its cameras. Where nothing tells where the next point begins, a bad one ends the reading.
+void readBundlerPoints(BundlerWords& words, std::uint64_t points, const std::string& file, BundlerModel& model) {
+  capture::BadLines bad;
+  for (std::uint64_t i = 0; i < points; ++i) {
+    const std::size_t before = words.bytesLeft();
+    const std::string what = "point " + std::to_string(i + 1) + " of " + std::to_string(points) + " is complete";
+    if (bad.passes([&] { model.points.push_back(bundlerPoint(words, what, model.cameras.size(), file)); })) {
+      model.measurements += model.points.back().seen.size();
+      continue;
+    }
+    if (!words.inLines() || words.bytesLeft() == before) break;  // the latter: nothing follows
+  }
+  bad.tell(model.warnings);
 }
 
 BundlerModel readBundler(const fs::path& path) {
@@ -166,22 +212,27 @@ BundlerModel readBundler(const fs::path& path) {
 
   BundlerWords words(text, file);
   BundlerModel model;
-  constexpr std::size_t kCameraWords = 15, kPointWords = 7;
-  const std::size_t cameras = words.count("cameras", kCameraWords), points = words.count("points", kPointWords);
+  const std::int64_t stated = words.integer("the number of cameras");
+  const std::size_t cameras =
+      capture::possibleCount(stated, kCameraLines * kInLine * kWord, words.bytesLeft(), "cameras", file, words.place());
+  const std::int64_t points = words.integer("the number of points");  // of which a file that is cut holds fewer
+  if (points < 0) throw InputError(file, words.place(), "the number of points must not be negative");
   if (cameras == 0) throw InputError(file, words.place(), "holds no cameras");
-  const auto which = [](const char* what, std::size_t i, std::size_t n) {
-    return what + std::to_string(i + 1) + " of " + std::to_string(n) + " is complete";
-  };
+  words.lookAtLines(cameras);
   std::vector<std::string> repaired;
-  model.cameras.reserve(cameras);
-  for (std::size_t i = 0; i < cameras; ++i)
-    model.cameras.push_back(bundlerCamera(words, which("camera ", i, cameras), file, repaired));
-  capture::addFew(model.warnings, repaired);
-  model.points.reserve(points);
-  for (std::size_t i = 0; i < points; ++i) {
-    model.points.push_back(bundlerPoint(words, which("point ", i, points), cameras, file));
-    model.measurements += model.points.back().seen.size();
+  capture::BadLines bad;
+  model.cameras.resize(cameras);
+  bool any = false;
+  for (std::size_t i = 0; i < cameras; ++i) {
+    const std::string what = "camera " + std::to_string(i + 1) + " of " + std::to_string(cameras) + " is complete";
+    BundlerCamera& camera = model.cameras[i];
+    camera.unread = !bad.passes([&] { camera = bundlerCamera(words, what, file, repaired); });
+    any = any || camera.focal != 0;
   }
+  if (!any) bad.refuse();
+  bad.tell(model.warnings);
+  capture::addFew(model.warnings, repaired);
+  readBundlerPoints(words, std::uint64_t(points), file, model);
   return model;
 }
 
@@ -292,8 +343,10 @@ class BundlerReader : public CaptureReader {
     std::vector<std::string> skipped;
     capture::FileNames names(options.rights, options.photographs);
     capture::PassedOver lost;
+    capture::BadLines bad;
     for (std::size_t i = 0; i < model.cameras.size(); ++i) {
       const BundlerImage& image = listed.images[i];
+      if (model.cameras[i].unread) continue;
       if (model.cameras[i].lost) {
         lost.add(model.cameras[i].place);
         continue;
@@ -309,9 +362,10 @@ class BundlerReader : public CaptureReader {
       view.name = image.name;
       view.image = names.image(image.name, {capture.folder}, listed.file.string(), image.place);
       const std::array<int, 2> size = capture::sizeOfImage(view.image, listed.file.string(), image.place);
-      view.camera = cameraOfBundler(model.cameras[i], size, file.string());
-      capture.views.push_back(std::move(view));
+      if (bad.passes([&] { view.camera = cameraOfBundler(model.cameras[i], size, file.string()); }))
+        capture.views.push_back(std::move(view));
     }
+    if (capture.views.empty()) bad.refuse();
     if (capture.views.empty())
       throw InputError(file.string(), "",
                        lost.number() > 0 ? "no image has a finite pose and a focal length other than 0"
@@ -319,6 +373,7 @@ class BundlerReader : public CaptureReader {
     capture::orderByName(capture);
     describeBundler(model, skipped, capture);
     lost.tell(capture.file.filename().string(), capture::kNoFinitePose, capture.warnings);
+    bad.tell(capture.warnings);
     names.tell(capture.warnings);
     return capture;
   }

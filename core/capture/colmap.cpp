@@ -128,16 +128,19 @@ void addViews(const std::vector<ModelImage>& images, const std::vector<ModelCame
   const std::vector<fs::path> folders{capture.folder / "images", capture.folder, files.folder};
   FileNames names(options.rights, options.photographs);
   PassedOver lost;
+  BadLines strayed;
   for (const ModelImage& image : images) {
     if (image.lost) {
       lost.add(image.place);
       continue;
     }
     const auto camera = cameraById.find(image.camera);
-    if (camera == cameraById.end())
-      throw InputError(file, image.place,
-                       "image " + io::quoted(image.name) + " is of camera " + std::to_string(image.camera) + ", which " +
-                           files("cameras").filename().string() + " does not have");
+    if (camera == cameraById.end()) {
+      strayed.add(InputError(file, image.place,
+                             "image " + io::quoted(image.name) + " is of camera " + std::to_string(image.camera) + ", which " +
+                                 files("cameras").filename().string() + " does not have"));
+      continue;
+    }
     CaptureView view;
     view.name = image.name;
     view.image = names.image(image.name, folders, file, image.place);
@@ -145,8 +148,10 @@ void addViews(const std::vector<ModelImage>& images, const std::vector<ModelCame
     view.camera.camFromWorld = image.camFromWorld;
     capture.views.push_back(std::move(view));
   }
+  if (capture.views.empty()) strayed.refuse();
   if (capture.views.empty()) throw InputError(file, "", "has no finite pose");
   orderByName(capture);
+  strayed.tell(capture.warnings);
   lost.tell(files("images").filename().string(), kNoFinitePose, capture.warnings);
   names.tell(capture.warnings);
 }
@@ -162,7 +167,7 @@ std::size_t countPoints(const Files& files, const std::vector<ModelImage>& image
   capture.sources.push_back(files("points3D"));
   const auto index = indexById(images, "images", files("images").string());
   std::size_t points = 0, entries = 0, noImage = 0, noPixel = 0;
-  readPoints(files, [&](const Eigen::Vector3d&, const std::vector<TrackEntry>& track) {
+  readPoints(files, capture.warnings, [&](const Eigen::Vector3d&, const std::vector<TrackEntry>& track) {
     ++points;
     entries += track.size();
     for (const TrackEntry& entry : track) {
@@ -214,7 +219,7 @@ Capture readModel(const fs::path& cameraFile, const CaptureOptions& options) {
   capture.file = files("cameras");
   capture.folder = projectRoot(files.folder);
   capture.sources = {files("cameras"), files("images")};
-  const std::vector<ModelCamera> cameras = readCameras(files);
+  const std::vector<ModelCamera> cameras = readCameras(files, capture.warnings);
   std::vector<std::string> quaternions;
   std::vector<ModelImage> images;
   {
@@ -267,7 +272,8 @@ std::vector<CaptureTrack> tracksOf(const Capture& capture) {
   std::unordered_map<std::uint32_t, std::size_t> index;
   const std::vector<Shown> shown = shownIn(files, capture, index);
   std::vector<CaptureTrack> tracks;
-  readPoints(files, [&](const Eigen::Vector3d& point, const std::vector<TrackEntry>& entries) {
+  std::vector<std::string> known;  // `read` has warned of them
+  readPoints(files, known, [&](const Eigen::Vector3d& point, const std::vector<TrackEntry>& entries) {
     CaptureTrack track{point, {}};
     track.seen.reserve(entries.size());
     for (const TrackEntry& entry : entries) {

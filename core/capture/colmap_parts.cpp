@@ -132,11 +132,11 @@ bool isSameCamera(const ModelCamera& a, const ModelCamera& b) {
 }
 }  // namespace
 
-std::vector<ModelCamera> readCameras(const Files& files) {
+std::vector<ModelCamera> readCameras(const Files& files, std::vector<std::string>& warnings) {
   const fs::path file = files("cameras");
   const std::string bytes = readFile(file, Limit::MeshMegabytes);
   std::vector<ModelCamera> cameras =
-      files.binary ? readCamerasBinary(bytes, file.string()) : readCamerasText(bytes, file.string());
+      files.binary ? readCamerasBinary(bytes, file.string()) : readCamerasText(bytes, file.string(), warnings);
   if (cameras.empty()) throw InputError(file.string(), "", "contains no camera");
   std::unordered_map<std::uint32_t, const ModelCamera*> first;
   std::vector<ModelCamera> once;
@@ -180,10 +180,10 @@ std::vector<Pixel> pixelsOf(const Files& files, std::string_view bytes, const Mo
   return files.binary ? pixelsOfBinary(bytes, image, file) : pixelsOfText(bytes, image, file);
 }
 
-void readPoints(const Files& files, const EachPoint& each) {
+void readPoints(const Files& files, std::vector<std::string>& warnings, const EachPoint& each) {
   const fs::path file = files("points3D");
   const std::string bytes = readFile(file, Limit::MeshMegabytes);
-  files.binary ? readPointsBinary(bytes, file.string(), each) : readPointsText(bytes, file.string(), each);
+  files.binary ? readPointsBinary(bytes, file.string(), each) : readPointsText(bytes, file.string(), warnings, each);
 }
 
 }  // namespace glint::capture::colmap

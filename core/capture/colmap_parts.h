@@ -57,26 +57,28 @@ using EachPoint = std::function<void(const Eigen::Vector3d& point, const std::ve
 
 // Of both kinds, by Files::binary. `bytes` is the content of the file.
 
-std::vector<ModelCamera> readCameras(const Files& files);
+// In a text, a line that cannot be read is a warning; its camera, image or point is not there. InputError where nothing is left.
+
+std::vector<ModelCamera> readCameras(const Files& files, std::vector<std::string>& warnings);
 /// Poses and names; the 2D points are skipped. An image that is there twice, word for word, counts once. `warnings`: one line for each
 /// quaternion that was not of length 1.
 std::vector<ModelImage> readImages(const Files& files, std::string_view bytes, std::vector<std::string>& warnings);
 /// The 2D points of one image, in our pixels.
 std::vector<Pixel> pixelsOf(const Files& files, std::string_view bytes, const ModelImage& image);
 /// Calls `each` for every point, in the order of the file.
-void readPoints(const Files& files, const EachPoint& each);
+void readPoints(const Files& files, std::vector<std::string>& warnings, const EachPoint& each);
 /// Compares `rigs` and `frames` with the images where a model has them. They say the same once more; what a later version of
 /// COLMAP writes there may not be understood, which is a warning.
 void checkRigs(const Files& files, const std::vector<ModelImage>& images, Capture& capture);
 
 std::vector<ModelCamera> readCamerasBinary(std::string_view bytes, const std::string& file);
-std::vector<ModelCamera> readCamerasText(std::string_view bytes, const std::string& file);
+std::vector<ModelCamera> readCamerasText(std::string_view bytes, const std::string& file, std::vector<std::string>& warnings);
 std::vector<ModelImage> readImagesBinary(std::string_view bytes, const std::string& file, std::vector<std::string>& warnings);
 std::vector<ModelImage> readImagesText(std::string_view bytes, const std::string& file, std::vector<std::string>& warnings);
 std::vector<Pixel> pixelsOfBinary(std::string_view bytes, const ModelImage& image, const std::string& file);
 std::vector<Pixel> pixelsOfText(std::string_view bytes, const ModelImage& image, const std::string& file);
 void readPointsBinary(std::string_view bytes, const std::string& file, const EachPoint& each);
-void readPointsText(std::string_view bytes, const std::string& file, const EachPoint& each);
+void readPointsText(std::string_view bytes, const std::string& file, std::vector<std::string>& warnings, const EachPoint& each);
 
 // Shared by both kinds.
 

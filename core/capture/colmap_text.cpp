@@ -96,43 +96,69 @@ void countPixels(std::string_view line, std::size_t number, const std::string& f
   if (line.size() < kFirstLine) readPixels(line, image.pixels, file, lineNo(number), [](double, double) {});
 }
 
+/// Whether a line could be the first one of an image.
+bool beginsImage(std::string_view line) {
+  std::vector<std::string> ignored;
+  return BadLines().passes([&] { imageOf(line, 0, "", ignored); });
+}
+
+ModelCamera cameraOfLine(std::string_view line, std::size_t number, const std::string& file) {
+  const std::size_t words = wordsIn(line);
+  constexpr std::size_t kBefore = 4;  // CAMERA_ID, MODEL, WIDTH, HEIGHT
+  if (words < kBefore) throw InputError(file, lineNo(number), "is not CAMERA_ID, MODEL, WIDTH, HEIGHT, PARAMS");
+  const std::uint32_t id = takeNumber32(line, file, number);
+  const CameraModel& model = cameraModelOf(io::takeWord(line), file, lineNo(number));
+  const std::uint32_t width = takeNumber32(line, file, number), height = takeNumber32(line, file, number);
+  std::vector<double> parameters(std::size_t(model.parameters()));
+  if (words - kBefore != parameters.size())
+    throw InputError(file, lineNo(number),
+                     std::string(model.name) + " has " + counted(parameters.size(), "parameter") + ", the line has " +
+                         std::to_string(words - kBefore));
+  for (double& p : parameters) p = takeNumber(line, file, number);
+  return cameraOf(id, model, width, height, parameters, file, lineNo(number));
+}
+
 }  // namespace
 
-std::vector<ModelCamera> readCamerasText(std::string_view bytes, const std::string& file) {
+std::vector<ModelCamera> readCamerasText(std::string_view bytes, const std::string& file, std::vector<std::string>& warnings) {
   std::vector<ModelCamera> cameras;
+  BadLines bad;
   io::Lines lines(bytes);
-  while (std::optional<std::string_view> line = lines.next()) {
-    if (isCommentOrEmpty(*line)) continue;
-    const std::size_t number = lines.number(), words = wordsIn(*line);
-    constexpr std::size_t kBefore = 4;  // CAMERA_ID, MODEL, WIDTH, HEIGHT
-    if (words < kBefore) throw InputError(file, lineNo(number), "is not CAMERA_ID, MODEL, WIDTH, HEIGHT, PARAMS");
-    const std::uint32_t id = takeNumber32(*line, file, number);
-    const CameraModel& model = cameraModelOf(io::takeWord(*line), file, lineNo(number));
-    const std::uint32_t width = takeNumber32(*line, file, number), height = takeNumber32(*line, file, number);
-    std::vector<double> parameters(std::size_t(model.parameters()));
-    if (words - kBefore != parameters.size())
-      throw InputError(file, lineNo(number),
-                       std::string(model.name) + " has " + counted(parameters.size(), "parameter") + ", the line has " +
-                           std::to_string(words - kBefore));
-    for (double& p : parameters) p = takeNumber(*line, file, number);
-    cameras.push_back(cameraOf(id, model, width, height, parameters, file, lineNo(number)));
-  }
+  while (const auto line = lines.next())
+    if (!isCommentOrEmpty(*line)) bad.passes([&] { cameras.push_back(cameraOfLine(*line, lines.number(), file)); });
+  if (cameras.empty()) bad.refuse();
+  bad.tell(warnings);
   return cameras;
 }
 
 std::vector<ModelImage> readImagesText(std::string_view bytes, const std::string& file, std::vector<std::string>& warnings) {
   std::vector<ModelImage> images;
+  BadLines bad, withoutPixels;
   io::Lines lines(bytes);
   while (const auto first = lines.next()) {
     if (isCommentOrEmpty(*first)) continue;
-    ModelImage image = imageOf(*first, lines.number(), file, warnings);
+    ModelImage image;
+    const bool isImage = bad.passes([&] { image = imageOf(*first, lines.number(), file, warnings); });
     image.from = lines.at();
-    if (const auto second = lines.next()) {  // the last line may lack where it is empty
-      countPixels(*second, lines.number(), file, image);
-      image.size = second->size();
+    const io::Lines here = lines;
+    const auto second = lines.next();  // the last line may lack where it is empty
+    if (second) image.size = second->size();
+    if (!isImage) {
+      if (second && beginsImage(*second)) lines = here;  // the bad line was not one of two
+      continue;
+    }
+    try {
+      if (second) countPixels(*second, lines.number(), file, image);
+    } catch (const InputError& e) {
+      if (beginsImage(*second)) throw;  // the file lacks these lines: every second image would be lost
+      withoutPixels.add(e);
+      image.pixels = 0;
     }
     images.push_back(std::move(image));
   }
+  if (images.empty()) bad.refuse();
+  bad.tell(warnings);
+  withoutPixels.tell(warnings);
   return images;
 }
 
@@ -145,29 +171,37 @@ std::vector<Pixel> pixelsOfText(std::string_view bytes, const ModelImage& image,
   return pixels;
 }
 
-void readPointsText(std::string_view bytes, const std::string& file, const EachPoint& each) {
+namespace {
+Eigen::Vector3d pointOfLine(std::string_view line, std::size_t number, const std::string& file, std::vector<TrackEntry>& track) {
+  constexpr std::size_t kBeforeTrack = 8;  // POINT3D_ID, X, Y, Z, R, G, B, ERROR
+  const std::size_t words = wordsIn(line);
+  if (words < kBeforeTrack || words % 2 != 0)
+    throw InputError(file, lineNo(number),
+                     "is not POINT3D_ID, X, Y, Z, R, G, B, ERROR and a track of IMAGE_ID, POINT2D_IDX: it has " +
+                         counted(words, "entry", "entries"));
+  io::takeWord(line);
+  const double x = takeNumber(line, file, number), y = takeNumber(line, file, number), z = takeNumber(line, file, number);
+  const Eigen::Vector3d point = pointAt(x, y, z, file, [&] { return lineNo(number); });
+  for (int i = 0; i < 4; ++i) io::takeWord(line);  // colour and error
+  track.resize((words - kBeforeTrack) / 2);
+  for (TrackEntry& entry : track) {
+    entry.image = takeNumber32(line, file, number);
+    entry.pixel = takeNumber32(line, file, number);
+  }
+  return point;
+}
+}  // namespace
+
+void readPointsText(std::string_view bytes, const std::string& file, std::vector<std::string>& warnings, const EachPoint& each) {
+  BadLines bad;
   io::Lines lines(bytes);
   std::vector<TrackEntry> track;
   while (const auto line = lines.next()) {
     if (isCommentOrEmpty(*line)) continue;
-    constexpr std::size_t kBeforeTrack = 8;  // POINT3D_ID, X, Y, Z, R, G, B, ERROR
-    const std::size_t number = lines.number(), words = wordsIn(*line);
-    if (words < kBeforeTrack || words % 2 != 0)
-      throw InputError(file, lineNo(number),
-                       "is not POINT3D_ID, X, Y, Z, R, G, B, ERROR and a track of IMAGE_ID, POINT2D_IDX: it has " +
-                           counted(words, "entry", "entries"));
-    std::string_view rest = *line;
-    io::takeWord(rest);
-    const double x = takeNumber(rest, file, number), y = takeNumber(rest, file, number), z = takeNumber(rest, file, number);
-    const Eigen::Vector3d point = pointAt(x, y, z, file, [&] { return lineNo(number); });
-    for (int i = 0; i < 4; ++i) io::takeWord(rest);  // colour and error
-    track.resize((words - kBeforeTrack) / 2);
-    for (TrackEntry& entry : track) {
-      entry.image = takeNumber32(rest, file, number);
-      entry.pixel = takeNumber32(rest, file, number);
-    }
-    each(point, track);
+    Eigen::Vector3d point;
+    if (bad.passes([&] { point = pointOfLine(*line, lines.number(), file, track); })) each(point, track);
   }
+  bad.tell(warnings);
 }
 
 }  // namespace glint::capture::colmap

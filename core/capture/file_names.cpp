@@ -19,7 +19,28 @@ fs::path FileNames::image(const std::string& name, const std::vector<fs::path>& 
     if (found.empty()) found = finder_.under(fs::absolute(folder), below(slashed(name)), FileFinder::Ending::AnyImage);
     if (!found.empty()) return found;
   }
-  return in(folders, name, FileFinder::Ending::AnyImage, file, place);
+  const fs::path own = in(folders, name, FileFinder::Ending::AnyImage, file, place);
+  std::error_code ignored;  // what cannot be asked about is not there
+  const fs::path copy = fs::is_regular_file(own, ignored) ? fs::path() : smallerCopy(own, file, place);
+  return copy.empty() ? own : copy;
+}
+
+/// Empty = none.
+fs::path FileNames::smallerCopy(const fs::path& missing, const std::string& file, const std::string& place) {
+  std::error_code ignored;  // as above
+  fs::path gone;            // the outermost folder without anything in it
+  for (fs::path p = missing.parent_path(); !fs::is_directory(p, ignored) || fs::is_empty(p, ignored); p = p.parent_path())
+    gone = p;
+  if (gone.empty()) return {};
+  for (const char* fold : {"_2", "_4", "_8"}) {
+    const std::string smaller = gone.filename().string() + fold;
+    const fs::path found =
+        finder_.at(gone.parent_path() / smaller, missing.lexically_relative(gone).string(), FileFinder::Ending::AnyImage);
+    if (found.empty()) continue;
+    smaller_ = "the photographs are those of the folder " + smaller + ": there are none in " + gone.filename().string();
+    return resolveInside(gone.parent_path(), found.lexically_relative(gone.parent_path()).string(), rights_, file, place);
+  }
+  return {};
 }
 
 fs::path FileNames::other(const fs::path& folder, const std::string& name, const std::string& file, const std::string& place) {
@@ -48,6 +69,7 @@ fs::path FileNames::in(const std::vector<fs::path>& folders, const std::string& 
 
 void FileNames::tell(std::vector<std::string>& warnings) const {
   if (const std::string line = finder_.differences(); !line.empty()) warnings.push_back(line);
+  if (!smaller_.empty()) warnings.push_back(smaller_);
 }
 
 }  // namespace glint::capture

@@ -25,7 +25,8 @@ struct NvmCamera {
   Eigen::Quaterniond camFromWorld = Eigen::Quaterniond::Identity();
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
   double radial = 0;
-  bool lost = false, cut = false;  ///< its numbers are not finite; are too few
+  bool lost = false;   ///< its numbers are not finite
+  bool unread = true;  ///< its line cannot be read, which is told
 };
 
 struct NvmMeasurement {
@@ -71,20 +72,16 @@ std::string nvmName(const Row& row, std::size_t numbers) {
 /// `name f qw qx qy qz cx cy cz r 0`
 NvmCamera nvmCamera(const Row& row, const std::string& file, std::vector<std::string>& warnings) {
   constexpr std::size_t kNumbers = 10;
-  if (row.words.size() < 2)  // a row of one word is a count: there are fewer cameras than the file states
-    throw InputError(file, row.place(), "a camera needs a name and 10 numbers, has 1 entry");
-  if (row.words.size() < kNumbers + 1) {
-    NvmCamera cut;
-    cut.name = std::string(row.words.front());
-    cut.place = row.place();
-    cut.cut = true;
-    return cut;
-  }
+  if (row.words.size() < kNumbers + 1)
+    throw InputError(
+        file, row.place(),
+        "a camera needs a name and 10 numbers, has " + capture::counted(row.words.size(), "entry", "entries") + " (a cut line?)");
   const std::size_t first = row.words.size() - kNumbers;
   const auto number = [&](std::size_t i) { return capture::numberAt(row, first + i, file); };
   NvmCamera camera;
   camera.name = nvmName(row, kNumbers);
   camera.place = row.place();
+  camera.unread = false;
   camera.lost = capture::anyNotFinite(row, first, kNumbers);
   if (camera.lost) return camera;
   camera.focal = number(0);
@@ -169,26 +166,40 @@ NvmModel readNvm(const fs::path& path) {
   const std::string file = path.string(), text = readFile(path, Limit::MeshMegabytes);
   RowReader rows(text, file);
   NvmModel model;
-  const auto countIn = [&](const Row& row, std::size_t bytesEach, const std::string& what) {
+  const auto countIn = [&](const Row& row, const std::string& what) {
     if (!nvmCountOf(row)) throw InputError(file, row.place(), "expected the number of " + what);
-    return capture::possibleCount(*nvmCountOf(row), bytesEach, rows.bytesLeft(), what, file, row.place());
+    return *nvmCountOf(row);
   };
-  constexpr std::size_t kCameraBytes = 22, kPointBytes = 14;  // 11 words and 7 words of one letter with what separates them
-  const std::size_t cameras = countIn(readNvmHeader(rows, model, file), kCameraBytes, "cameras");
+  constexpr std::size_t kCameraBytes = 22;  // 11 words of one letter with what separates them
+  const Row first = readNvmHeader(rows, model, file);
+  const std::size_t cameras =
+      capture::possibleCount(countIn(first, "cameras"), kCameraBytes, rows.bytesLeft(), "cameras", file, first.place());
   if (cameras == 0) throw InputError(file, "", "holds no cameras");
   std::vector<std::string> lengths;
-  model.cameras.reserve(cameras);
+  capture::BadLines bad;
+  model.cameras.resize(cameras);
   for (std::size_t i = 0; i < cameras; ++i)
-    model.cameras.push_back(
-        nvmCamera(rows.need("camera " + std::to_string(i + 1) + " of " + std::to_string(cameras)), file, lengths));
+    bad.passes([&] {
+      const Row row = rows.need("camera " + std::to_string(i + 1) + " of " + std::to_string(cameras));
+      model.cameras[i] = nvmCamera(row, file, lengths);
+    });
   capture::addFew(model.warnings, lengths);
-  const std::size_t points = countIn(rows.need("the number of points"), kPointBytes, "points");
-  model.points.reserve(points);
-  for (std::size_t i = 0; i < points; ++i) {
-    model.points.push_back(
-        nvmPoint(rows.need("point " + std::to_string(i + 1) + " of " + std::to_string(points)), cameras, file));
-    model.measurements += model.points.back().seen.size();
+  if (std::none_of(model.cameras.begin(), model.cameras.end(), [](const NvmCamera& c) { return !c.unread; })) bad.refuse();
+  std::int64_t points = 0;
+  // A file that is cut ends anywhere, also before the points that it states.
+  if (rows.bytesLeft() > 0) points = countIn(rows.need("the number of points"), "points");
+  if (points < 0) throw InputError(file, "", "the number of points must not be negative");
+  for (std::int64_t i = 0; i < points; ++i) {
+    const std::size_t left = rows.bytesLeft();
+    if (bad.passes([&] {
+          const Row row = rows.need("point " + std::to_string(i + 1) + " of " + std::to_string(points));
+          model.points.push_back(nvmPoint(row, cameras, file));
+        }))
+      model.measurements += model.points.back().seen.size();
+    else if (rows.bytesLeft() == left)
+      break;  // nothing follows
   }
+  bad.tell(model.warnings);
   if (points == 0) model.warnings.push_back("the model has no points: VisualSFM lists images without a pose so");
   skipOtherNvmModels(rows, model);
   return model;
@@ -291,27 +302,29 @@ class NvmReader : public CaptureReader {
     capture.sources = {capture.file};
     const NvmModel model = readNvm(file);
     capture::FileNames names(options.rights, options.photographs);
-    capture::PassedOver lost, cut;
+    capture::PassedOver lost;
+    capture::BadLines bad;
     std::vector<std::optional<std::size_t>> viewOf;  // of the cameras, in the model's own order
     for (const NvmCamera& from : model.cameras) {
-      viewOf.push_back(from.lost || from.cut ? std::nullopt : std::optional(capture.views.size()));
-      if (from.lost || from.cut) {
-        (from.cut ? cut : lost).add(from.place);
-        continue;
-      }
+      viewOf.push_back(std::nullopt);
+      if (from.lost) lost.add(from.place);
+      if (from.lost || from.unread) continue;
       CaptureView view;
       view.name = from.name;
       view.image = names.image(from.name, {capture.folder}, file.string(), from.place);
-      view.camera = cameraOfNvm(from, model.fixed, capture::sizeOfImage(view.image, file.string(), from.place), file.string());
+      const std::array<int, 2> size = capture::sizeOfImage(view.image, file.string(), from.place);
+      if (!bad.passes([&] { view.camera = cameraOfNvm(from, model.fixed, size, file.string()); })) continue;
+      viewOf.back() = capture.views.size();
       capture.views.push_back(std::move(view));
     }
+    if (capture.views.empty()) bad.refuse();
     if (capture.views.empty()) throw InputError(file.string(), "", "has no finite pose");
     const bool fromCorner = nvmFromCorner(
         model, [&](std::size_t i) -> const Camera* { return viewOf[i] ? &capture.views[*viewOf[i]].camera : nullptr; });
     capture::orderByName(capture);
     describeNvm(model, fromCorner, capture);
     lost.tell(capture.file.filename().string(), capture::kNoFinitePose, capture.warnings);
-    cut.tell(capture.file.filename().string(), capture::kCutPose, capture.warnings);
+    bad.tell(capture.warnings);
     names.tell(capture.warnings);
     return capture;
   }

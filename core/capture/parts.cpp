@@ -90,6 +90,13 @@ void PassedOver::tell(const std::string& file, const std::string& why, std::vect
                      (number_ > 1 ? "; they are left out" : "; it is left out"));
 }
 
+void BadLines::tell(std::vector<std::string>& warnings) const {
+  if (!first_) return;
+  const std::string more = number_ > 1 ? "; it and " + std::to_string(number_ - 1) + " more are left out" : "; it is left out";
+  warnings.push_back(fs::path(first_->file()).filename().string() + std::string(first_->what()).substr(first_->file().size()) +
+                     more);
+}
+
 bool isLostPose(const JsonNode& pose) {
   if (!pose.isArray()) return pose.isNull();
   for (std::size_t i = 0; i < pose.size(); ++i) {

@@ -55,6 +55,35 @@ class PassedOver {
   std::size_t number_ = 0;
   std::string first_;
 };
+/// Lines that cannot be read, each of which costs no more than its frame or point.
+class BadLines {
+ public:
+  /// Whether `read` went through without an InputError.
+  template <class Read>
+  bool passes(const Read& read) {
+    try {
+      read();
+      return true;
+    } catch (const InputError& e) {
+      add(e);
+      return false;
+    }
+  }
+  void add(const InputError& error) {
+    if (number_++ == 0) first_ = error;
+  }
+  /// InputError of the first one, where there is any: for files of which nothing is left.
+  void refuse() const {
+    if (first_) throw InputError(*first_);
+  }
+  /// Adds "FILE: line 7: WHY; it and 3 more are left out" where there are any.
+  void tell(std::vector<std::string>& warnings) const;
+
+ private:
+  std::size_t number_ = 0;
+  std::optional<InputError> first_;
+};
+
 /// Why a frame or a line is passed over, for PassedOver::tell().
 inline constexpr const char* kNoFinitePose = "no finite pose (tracking was lost)";
 inline constexpr const char* kCutPose = "has fewer numbers than a pose (a cut line?)";

@@ -14,7 +14,7 @@ namespace glint {
 /// change. What the highlights cannot tell (a shift that another place of the light explains as well) stays unsaid. Throws Stopped, and InputError where a surface cannot be read.
 CameraCheck checkCameras(const Scene& scene, const ProgressFn& progress = {});
 
-/// The convention report, with this check where most cameras see their surface, and the place of a mesh that misses the sparse points.
+/// The convention report, with this check where most cameras see their surface or where it finds why they do not, and the place of a mesh that misses the sparse points.
 ConventionReport fullReport(const Scene& scene, const ProgressFn& progress = {});
 
 }  // namespace glint

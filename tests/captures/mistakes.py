@@ -64,7 +64,7 @@ def other_mesh(kind):
             factor = 1 + 0.45 * ball[:, 2:]
             normals = np.stack([ball[:, 0] / factor[:, 0] ** 1, ball[:, 1] / factor[:, 0], ball[:, 2] - 0.45 * (ball[:, 0] ** 2 + ball[:, 1] ** 2) / 1], -1)
             ball = ball * np.hstack([factor, factor, np.ones_like(factor)])
-        half = (high - low) / 2 * np.array({"box": [1, 1, 1], "pear": [1, 1, 1], "lying": [1.35, 0.75, 0.8]}[kind])
+        half = (high - low) / 2 * np.array({"box": [1, 1, 1], "pear": [1, 1, 1], "lying": [1.35, 0.75, 0.8], "flat": [1, 1, 0.8]}[kind])
         normals = normals / half
         c.vertices, c.normals, c.triangles = (high + low) / 2 + ball * half, normals / np.linalg.norm(normals, axis=1, keepdims=True), faces
 

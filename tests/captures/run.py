@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""What `glint info` says of 40 captures that were made wrong on purpose, and of 20 right ones.
+"""What `glint info` says of captures that were made wrong on purpose, 40 of them and some more, and of 20 right ones.
 
 run.py GLINT DATA SESSIONS [--only WORD] [--part K/N]
 
@@ -51,10 +51,10 @@ WRONG = [
     ("report", "nerfstudio", m.halved(), ["half as large"]),
     ("plastic", "colmap", m.halved(True), ["half as large", *ELSEWHERE]),
     ("torus", "mesh", m.scaled(2), ["twice as large"]),
-    ("report", "mesh", m.shifted(0.25, 0, 0), [NOTHING, AWAY]),
-    ("vase", "nerfstudio", m.shifted(0, 0.1, 0), [NOTHING]),
+    ("report", "mesh", m.shifted(0.25, 0, 0), ["the mesh seems to be shifted by"]),
+    ("vase", "nerfstudio", m.shifted(0, 0.1, 0), ["the mesh seems to be shifted by"]),
     ("torus", "colmap", m.shifted(0, 0, 0.3), [NOTHING, *ELSEWHERE]),
-    ("ellipsoid", "nerfstudio", m.shifted(0.1, 0.1, 0), [NOTHING]),
+    ("ellipsoid", "nerfstudio", m.shifted(0.1, 0.1, 0), ["the mesh seems to be shifted by"]),
     ("report", "mesh", m.other_mesh("box"), [NOTHING]),
     ("plastic", "nerfstudio", m.other_mesh("pear"), [NOTHING]),
     ("torus", "mesh", m.other_mesh("lying"), [NOTHING]),
@@ -71,6 +71,10 @@ WRONG = [
     ("report", "colmap", m.focal(0.7), [NOTHING, "focal length", *ELSEWHERE]),
     ("report", "nerfstudio", m.no_highlight, ["no highlight was found", NOTHING]),
     ("flash", "nerfstudio", None, ["the lamp seems to move with the camera"]),
+    ("report", "mesh", m.other_mesh("flat"), [NOTHING]),
+    ("ellipsoid", "mesh", m.shifted(0.03, 0.02, 0), ["the mesh seems to be shifted by"]),
+    ("board", "mesh", m.scaled(1 / 0.3048), ["in feet"]),
+    ("vase", "nerfstudio", m.turned(0, 180), ["turned by 180 degrees about its x axis"]),
 ]
 RIGHT = [(base, writer, None, []) for base, writer in [
     ("report", "mesh"), ("report", "colmap"), ("report", "nerfstudio"), ("plastic", "mesh"), ("plastic", "colmap"), ("panel", "nerfstudio"),
@@ -120,7 +124,7 @@ def main():
         return 77
     bases, failed, slow = Bases(pathlib.Path(a.data), pathlib.Path(a.sessions)), [], []
     names = {value: name for name, value in vars(m).items() if callable(value)}
-    assert len(WRONG) == 40 and len(RIGHT) == 20
+    assert len(WRONG) >= 40 and len(RIGHT) == 20
     part, parts = map(int, a.part.split("/"))
     for number, (base, writer, mistake, words) in enumerate([*WRONG, *RIGHT]):
         wrong = number < len(WRONG)

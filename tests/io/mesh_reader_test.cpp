@@ -8,6 +8,8 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <cstring>
+#include <limits>
 #include <locale>
 #include <set>
 
@@ -355,6 +357,26 @@ TEST(MeshReader, NormalsOfObj) {
   EXPECT_EQ(parsed("f 1//1 2//1 3//1\n" + points).triangles.size(), 1u);
 }
 
+TEST(MeshReader, AFacetOfStlWithoutAPlaceIsLeftOut) {
+  const std::string text = stlText();
+  const std::size_t corner = 84 + 12, facet = 50;  // bytes before the first corner, and of a facet
+  for (const float bad : {std::nanf(""), std::numeric_limits<float>::infinity(), 3e38f}) {
+    std::string binary = stlBinary();
+    std::memcpy(binary.data() + corner + 4, &bad, sizeof bad);  // y of the first corner
+    const MeshContent second = parsed(binary, "a.stl");
+    EXPECT_THAT(second.vertices, ElementsAre(Vector3d(0, 0, 0), Vector3d(1, 1, 0), Vector3d(0, 1, 0)));
+    EXPECT_THAT(second.triangles, ElementsAre(Vector3i(0, 1, 2)));
+    std::memcpy(binary.data() + corner + facet, &bad, sizeof bad);
+    EXPECT_THAT(inputErrorOf([&] { parseMesh(binary, "a.stl"); }), HasSubstr("byte 84, facet 0: a vertex is"));
+  }
+  for (const char* bad : {"nan", "-nan(ind)", "inf", "1e31"}) {
+    const std::string once = with(text, "vertex 1 0 0", std::string("vertex 1 0 ") + bad);
+    EXPECT_THAT(parsed(once).vertices, ElementsAre(Vector3d(0, 0, 0), Vector3d(1, 1, 0), Vector3d(0, 1, 0))) << bad;
+    EXPECT_THAT(inputErrorOf([&] { parseMesh(with(once, "vertex 0 1 0", std::string("vertex 0 1 ") + bad), "m"); }),
+                HasSubstr("line 6: a vertex is"));
+  }
+}
+
 TEST(MeshReader, EqualCornersOfStlAreOneVertex) {
   EXPECT_EQ(parsed(with(stlText(), "vertex 0 0 0\n   vertex 1 1 0", "vertex -0 0 -0.0\n   vertex 1 1 0")).vertices.size(), 4u);
   EXPECT_EQ(parsed(stlText() + stlText()).triangles.size(), 4u);  // two solids in a file
@@ -444,7 +466,6 @@ TEST(MeshReader, DamageIsNamedWithItsPlace) {
       {"v 1 2 3\n", "as OBJ it has no faces"},
       {with(stl, "vertex 1 1 0", "vertex 1 1"), "line 6: a vertex needs three numbers"},
       {with(stl, "vertex 1 1 0", "vertex 1 1 0 0"), "line 6: unexpected '0' after a vertex"},
-      {with(stl, "vertex 1 1 0", "vertex 1 nan 0"), "line 6: a vertex is not finite"},
       {with(stl, "  outer loop\n", ""), "line 3: the STL has 'vertex' where outer loop is expected"},
       {with(stl, "  endloop\n", ""), "line 7: the STL has 'endfacet' where endloop is expected"},
       {with(stl, "endsolid s\n", ""), "endsolid is missing"},

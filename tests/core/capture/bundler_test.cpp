@@ -9,6 +9,7 @@
 namespace glint::bundler_tests {
 namespace {
 using namespace testing_support;
+using testing::AllOf;
 using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -295,17 +296,55 @@ TEST_P(BadBundle, IsOneLineWithFilePlaceAndReason) {
 
 INSTANTIATE_TEST_SUITE_P(
     Bundler, BadBundle,
+    testing::Values(BundleCase{"another file", "# Bundle", "# Bunch", "line 1: ", "expected '# Bundle file v0.3'"},
+                    BundleCase{"an older version", "v0.3", "v0.2",
+                               "line 1: ", "only version 0.3 is supported, not '# Bundle file v0.2'"},
+                    BundleCase{"a newer version", "v0.3", "v0.4", "line 1: ", "only version 0.3"},
+                    BundleCase{"no counts", "3 1\n", "\n", "line 3: ", "100 cameras do not fit"},
+                    BundleCase{"no cameras", "3 1\n", "0 1\n", "line 2: ", "holds no cameras"},
+                    BundleCase{"negative count", "3 1\n", "-3 1\n", "line 2: ", "the number of cameras must not be negative"},
+                    BundleCase{"count with a fraction", "3 1\n", "3.5 1\n", "line 2: ", "'3.5' is not a whole number"},
+                    BundleCase{"more cameras than bytes", "3 1\n", "3000000000 1\n", "line 2: ", "3000000000 cameras do not fit"},
+                    BundleCase{"negative points", "3 1\n", "3 -1\n", "line 2: ", "the number of points must not be negative"}));
+
+/// One bad line costs its image or its point, with a warning.
+class BadBundleLine : public testing::TestWithParam<BundleCase> {};
+
+TEST_P(BadBundleLine, IsAWarningAndTheRestIsRead) {
+  const BundleCase& bad = GetParam();
+  const TemporaryFolder folder;
+  writeBundlerImages(folder);
+  const BundlerRead whole = readBundlerText(folder, smallBundle());
+  const BundlerRead read = readBundlerText(folder, with(smallBundle(), bad.from, bad.to));
+  EXPECT_THAT(read.capture.warnings, Contains(AllOf(HasSubstr(std::string("bundle.out: ") + bad.place), HasSubstr(bad.reason),
+                                                    HasSubstr("it is left out"))))
+      << bad.name;
+  // What is left is as it was.
+  const int line = std::atoi(bad.place + std::string("line ").size());
+  constexpr int kThird = 13, kPoint = 18;
+  const bool points = line >= kPoint;
+  ASSERT_EQ(read.capture.views.size(), points ? 2u : 1u) << bad.name;
+  for (const CaptureView& v : read.capture.views) {
+    EXPECT_EQ(v.camera.camFromWorld.matrix(), viewNamed(whole.capture, v.name).camera.camFromWorld.matrix());
+    if (!points) EXPECT_EQ(v.name, line < kThird ? "a.pgm" : "c.pgm") << bad.name;
+  }
+  if (!points) {
+    ASSERT_EQ(read.tracks.size(), 1u) << bad.name;
+    EXPECT_EQ(read.tracks[0].seen.size(), 1u) << bad.name;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Bundler, BadBundleLine,
     testing::Values(
-        BundleCase{"another file", "# Bundle", "# Bunch", "line 1: ", "expected '# Bundle file v0.3'"},
-        BundleCase{"an older version", "v0.3", "v0.2", "line 1: ", "only version 0.3 is supported, not '# Bundle file v0.2'"},
-        BundleCase{"a newer version", "v0.3", "v0.4", "line 1: ", "only version 0.3"},
-        BundleCase{"no counts", "3 1\n", "\n", "line 3: ", "100 cameras do not fit"},
-        BundleCase{"no cameras", "3 1\n", "0 1\n", "line 2: ", "holds no cameras"},
-        BundleCase{"negative count", "3 1\n", "-3 1\n", "line 2: ", "the number of cameras must not be negative"},
-        BundleCase{"count with a fraction", "3 1\n", "3.5 1\n", "line 2: ", "'3.5' is not a whole number"},
-        BundleCase{"more cameras than bytes", "3 1\n", "3000000000 1\n", "line 2: ", "3000000000 cameras do not fit"},
-        BundleCase{"more points than bytes", "3 1\n", "3 1000000000000\n", "line 2: ", "1000000000000 points do not fit"},
         BundleCase{"one point too many", "3 1\n", "3 2\n", "line 20: ", "the file ends before point 2 of 2 is complete"},
+        BundleCase{"more points than bytes", "3 1\n", "3 1000000000000\n",
+                   "line 20: ", "the file ends before point 2 of 1000000000000 is complete"},
+        BundleCase{"cut rotation", "0 -1 0\n", "0 -1\n", "line 14: ", "needs 3 entries, has 2 (a cut line?)"},
+        BundleCase{"cut intrinsics", "100 0 0\n", "100\n", "line 3: ", "needs 3 entries, has 1"},
+        BundleCase{"too many numbers", "0 -1 0\n", "0 -1 0 7\n", "line 14: ", "needs 3 entries, has 4"},
+        BundleCase{"cut point", "1 2 -5\n", "1 2\n", "line 18: ", "needs 3 entries, has 2"},
+        BundleCase{"cut measurement", " 0.5 -0.25", " 0.5", "line 20: ", "needs 13 entries, has 12"},
         BundleCase{"negative focal length", "100 0 0", "-100 0 0", "line 3: ", "the focal length must be positive"},
         BundleCase{"focal length too large", "100 0 0", "1e300 0 0", "line 3: ", "larger than"},
         BundleCase{"term too large", "100 0 0", "100 1e300 0", "line 3: ", "larger than"},
@@ -319,7 +358,7 @@ INSTANTIATE_TEST_SUITE_P(
         BundleCase{"point too far away", "1 2 -5", "1 1e300 -5", "line 18: ", "larger than"},
         BundleCase{"views beyond memory", "3 0 7", "4000000000000000000 0 7", "line 20: ", "views do not fit"},
         BundleCase{"negative views", "3 0 7", "-1 0 7", "line 20: ", "the number of views must not be negative"},
-        BundleCase{"one view too many", "3 0 7", "4 0 7", "line 20: ", "the file ends before point 1 of 1 is complete"},
+        BundleCase{"one view too many", "3 0 7", "4 0 7", "line 20: ", "needs 17 entries, has 13"},
         BundleCase{"seen by nobody", "3 0 7", "3 3 7", "line 20: ", "there is no camera 3, there are 3"},
         BundleCase{"seen by less than nobody", "3 0 7", "3 -1 7", "line 20: ", "there is no camera -1"},
         BundleCase{"measurement too far away", "0.5 -0.25", "0.5 1e30", "line 20: ", "larger than"},
@@ -373,9 +412,10 @@ TEST(Bundler, EveryBeginningOfAFileIsReadOrRefused) {
   for (std::size_t n = 0; n < text.size(); ++n) {
     const fs::path file = folder.write("cut.out", text.substr(0, n));
     try {
-      reader->read(file, {});
+      const Capture capture = reader->read(file, {});
+      EXPECT_FALSE(capture.views.empty()) << n;
       // The last number alone can be cut and still be one.
-      EXPECT_GE(n, text.rfind('-')) << n;
+      if (n < text.rfind('-')) EXPECT_THAT(capture.warnings, Contains(HasSubstr("left out"))) << n;
     } catch (const InputError& e) {
       EXPECT_EQ(e.file(), file.string()) << n;
     }

@@ -11,6 +11,7 @@
 namespace glint::colmap_damage_tests {
 namespace {
 using namespace testing_support;
+using testing::AllOf;
 using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -65,12 +66,42 @@ INSTANTIATE_TEST_SUITE_P(
         ColmapBadTextRow{"a number twice", "cameras.txt", "7 PIN", "7 PINHOLE 1 1 1 1 1 1\n7 PIN", "",
                          "two cameras have the number 7"}));
 
+INSTANTIATE_TEST_SUITE_P(Images, ColmapBadText,
+                         testing::Values(ColmapBadTextRow{"a number twice", "images.txt", "4 1 0 0 0", "41 1 0 0 0", "",
+                                                          "two images have the number 41"}));
+
+/// One bad line costs its image, its 2D points or its point, with a warning.
+class ColmapBadLine : public testing::TestWithParam<ColmapBadTextRow> {};
+
+TEST_P(ColmapBadLine, IsAWarningAndTheRestIsRead) {
+  const ColmapBadTextRow& bad = GetParam();
+  const TemporaryFolder folder;
+  writeColmap(folder);
+  const std::string text = contentOf(folder / bad.file);
+  folder.write(bad.file, with(text, bad.from, bad.to));
+  const Capture capture = kColmapReader->read(folder / "cameras.txt", {});
+  EXPECT_THAT(capture.warnings, Contains(AllOf(HasSubstr(std::string(bad.file) + ": " + bad.place), HasSubstr(bad.reason),
+                                               HasSubstr("; it is left out"))))
+      << bad.name;
+  // The other one of the two images or points is as it was.
+  const std::vector<CaptureTrack> tracks = kColmapReader->tracks(capture, {});
+  const bool image = std::string(bad.file) == "images.txt", whole = !image || std::string(bad.place) == "line 3: ";
+  ASSERT_EQ(capture.views.size(), whole ? 2u : 1u) << bad.name;
+  ASSERT_EQ(tracks.size(), image ? 2u : 1u) << bad.name;
+  EXPECT_EQ(tracks[0].point, Eigen::Vector3d(1, 2, 3));
+  ASSERT_EQ(tracks[0].seen.size(), image ? 1u : 2u) << bad.name;
+  const bool first = image && std::string(bad.place) == "line 4: ";  // of the file: b.jpg
+  const Pixel expected = first || !image ? Pixel(100, 50) : Pixel(320, 240);
+  EXPECT_EQ(tracks[0].seen[0].measured, expected) << bad.name;
+}
+
 INSTANTIATE_TEST_SUITE_P(
-    Images, ColmapBadText,
+    Images, ColmapBadLine,
     testing::Values(
         ColmapBadTextRow{"unknown camera", "images.txt", "30 7 b.jpg", "30 8 b.jpg",
                          "line 2: ", "'b.jpg' is of camera 8, which cameras.txt"},
-        ColmapBadTextRow{"a number twice", "images.txt", "4 1 0 0 0", "41 1 0 0 0", "", "two images have the number 41"},
+        ColmapBadTextRow{"cut", "images.txt", " 0 0 10 20 30 7 b.jpg", "", "line 2: ", "has 3 entries"},
+        ColmapBadTextRow{"overwritten", "images.txt", "41 0.7", "4l 0.7", "line 2: ", "is not a whole number"},
         ColmapBadTextRow{"no name", "images.txt", " b.jpg", "", "line 2: ", "has 9 entries"},
         ColmapBadTextRow{"control character", "images.txt", "b.jpg", "b\x1b[2J.jpg", "line 2: ", "control character"},
         ColmapBadTextRow{"zero quaternion", "images.txt", "4 1 0 0 0 ", "4 0 0 0 0 ", "line 4: ", "must not be zero"},
@@ -82,7 +113,7 @@ INSTANTIATE_TEST_SUITE_P(
         ColmapBadTextRow{"a comment for 2D points", "images.txt", "11.5 22.5", "# 11.5 22.5", "line 3: ", "has 7 entries"}));
 
 INSTANTIATE_TEST_SUITE_P(
-    Points, ColmapBadText,
+    Points, ColmapBadLine,
     testing::Values(
         ColmapBadTextRow{"short", "points3D.txt", "900 -4 5 6 10 20 30 0.5 4 1", "900 -4 5 6 10 20", "line 3: ", "has 6 entries"},
         ColmapBadTextRow{"half an entry", "points3D.txt", "0.5 4 1", "0.5 4", "line 3: ", "has 9 entries"},
@@ -90,6 +121,34 @@ INSTANTIATE_TEST_SUITE_P(
         ColmapBadTextRow{"not a number", "points3D.txt", "900 -4 5", "900 -4 -nan", "line 3: ", "'-nan' is not a number"},
         ColmapBadTextRow{"far away", "points3D.txt", "900 -4 5", "900 -4 5e15", "line 3: ", "larger than"},
         ColmapBadTextRow{"negative index", "points3D.txt", "0.5 4 1", "0.5 4 -1", "line 3: ", "'-1' is not a whole number"}));
+
+TEST(ColmapDamage, ABadCameraCostsItsImages) {
+  const TemporaryFolder folder;
+  const std::string cameras = std::string(kColmapCameras) + "8 PINHOLE 640 480 500 51";
+  writeColmap(folder, "", cameras, with(kColmapImages, "30 7 b.jpg", "30 8 b.jpg"));
+  const Capture capture = kColmapReader->read(folder / "cameras.txt", {});
+  ASSERT_EQ(capture.views.size(), 1u);
+  EXPECT_EQ(capture.views[0].name, "a.jpg");
+  EXPECT_THAT(capture.warnings, Contains("cameras.txt: line 4: PINHOLE has 4 parameters, the line has 2; it is left out"));
+  EXPECT_THAT(capture.warnings, Contains(HasSubstr("images.txt: line 2: image 'b.jpg' is of camera 8")));
+}
+
+// What a full disk leaves: every beginning that still has an image is read.
+TEST(ColmapDamage, TextCutAnywhere) {
+  const TemporaryFolder folder;
+  writeColmap(folder);
+  const std::string whole = kColmapImages;
+  const std::size_t firstImage = whole.find("b.jpg") + 1;  // a name may end anywhere
+  for (std::size_t size = 0; size < whole.size(); ++size) {
+    folder.write("images.txt", whole.substr(0, size));
+    if (size < firstImage) {
+      EXPECT_THAT(inputErrorOf([&] { kColmapReader->read(folder / "cameras.txt", {}); }), HasSubstr("images.txt: ")) << size;
+      continue;
+    }
+    const Capture capture = kColmapReader->read(folder / "cameras.txt", {});
+    EXPECT_EQ(capture.views.size(), size > whole.find("a.jpg") ? 2u : 1u) << size;
+  }
+}
 
 // Without these lines every second image would be lost without a word.
 TEST(ColmapDamage, ImagesWithoutTheirSecondLinesAreRefused) {

@@ -266,6 +266,29 @@ TEST(ColmapProject, PhotographsMayLieBesideTheModelOrInAFolderThatIsNamed) {
 }
 
 // The undistorted images of `dense` belong to its cameras, those of the folder above do not.
+// As mip-NeRF 360 and nerfstudio keep them, where a person has only those.
+TEST(ColmapProject, SmallerCopiesStandInForAFolderThatIsMissing) {
+  const TemporaryFolder folder;
+  writeColmap(folder, "sparse/0/", kColmapCameras, with(kColmapImages, "b.jpg", "left/b.jpg"));
+  folder.write("images_4/a.jpg", "x");
+  folder.write("images_4/left/B.JPG", "x");
+  const auto imageOf = [&](std::size_t view) { return readColmap(folder.path()).views.at(view).image; };
+  EXPECT_EQ(imageOf(0), folder / "images_4/a.jpg");
+  EXPECT_EQ(imageOf(1), folder / "images_4/left/B.JPG");
+  EXPECT_THAT(readColmap(folder.path()).warnings,
+              Contains("the photographs are those of the folder images_4: there are none in images"));
+  fs::create_directories(folder / "images");
+  EXPECT_EQ(imageOf(0), folder / "images_4/a.jpg");
+  folder.write("images_2/a.jpg", "x");  // the larger one
+  EXPECT_EQ(imageOf(0), folder / "images_2/a.jpg");
+  folder.write("images/a.jpg", "x");
+  EXPECT_EQ(imageOf(0), folder / "images/a.jpg");
+  EXPECT_EQ(imageOf(1), folder / "images/left/b.jpg");  // missing: sizes are not mixed
+  CaptureOptions options;
+  options.photographs = {folder / "images_4"};
+  EXPECT_EQ(readColmap(folder.path(), options).views.at(0).image, folder / "images_4/a.jpg");
+}
+
 TEST(ColmapProject, DenseIsAProjectOfItsOwn) {
   const TemporaryFolder folder;
   writeColmap(folder, "dense/sparse/");
