@@ -53,6 +53,15 @@ direction where the lobe explains its highlight and agrees with the mirrored ray
 Three balls or more tell which of their highlights is not the lamp's. Two that contradict each other, by more than four standard deviations and 2 % of the radius, do not: another bright place
 on one of them may agree; else the lamp has no answer.
 
+### How well an outline is known
+Edges refine a given outline where they tell it to 1 % of the radius, or better than `--outline-sigma` says of it; else it stays as it is, with a warning. The standard deviation has three parts: what leaving out each
+twelfth of the outline shows; what twice the blur shows, for a step beside light that rises or falls up to the rim, as in what a mirror shows, seems to lie aside; and the rounding of grey levels. Where the
+outline found lies inside of the given one all around, it may be the edge of a reflection within a rim that does not stand out, which no photograph tells from a rim: the radius then is uncertain by half of the distance to the given
+outline, and a warning says so. A given outline that is itself wrong does not help there.
+
+The tests draw balls by a ray tracer that shares no code with the program: plain, small, large, noisy, as JPEG, faint, blurred, hidden in part, with a bright circle inside of the rim. In each of these groups at least 95 % of the true centres
+and radii lie within three standard deviations; where there is a circle inside, the given outline is the true one (`test_core_lamps --gtest_filter='BallOutlineSigma.*'` prints the figures).
+
 ### Two chrome balls of which no truth is known
 Twelve lamps, one in each photograph (psbox: a public set of real photographs). Size, focal length and lamps are not known, so the two balls check each other. In degrees: how far apart the directions from the
 two balls are, along the line between the balls (parallax: a near lamp makes some) and across it (nothing but errors does), each as a mean. `left out`: how far the highlight on one ball is from where the other

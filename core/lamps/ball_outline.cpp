@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/median.h"
 #include "core/base/number_text.h"
 #include "core/lamps/ball_edges.h"
 
@@ -35,7 +36,13 @@ constexpr int kWidestGap = kOutlineSectors * 5 / 9;  // 200 degrees: less than t
 constexpr double kCounts = 0.05;                     // weight from which an edge is one that was used
 constexpr double kLeastRcond = 1e-9;                 // of the normal matrix: below it a direction of the fit is free
 constexpr double kLeastTriangle = 1e-6;              // px^2, twice the area: three points on a line
-constexpr int kLeftOut = 12;                         // parts of the outline, each left out once
+constexpr double kLeastGain = 0.1;   // of squared heights at twice the blur: a lens's blur is then five times ours
+constexpr double kLevelShare = 0.5;  // of a grey level: rounding
+constexpr double kShiftShare = 0.8,
+                 kAside = 0.25;       // of the shift, along it and across: 95 % of the errors within three of it (tests)
+constexpr double kRoughShare = 0.01;  // of the radius: what a person who draws a circle gets right on a large ball
+constexpr double kCovered = 2;        // standard deviations to a given outline around the edges
+constexpr int kLeftOut = 12;          // parts of the outline, each left out once
 
 /// One place of the outline in one sector.
 struct SectorEdge {
@@ -199,6 +206,32 @@ RefinedOutline assessOutline(const OutlineModel& model, const std::vector<Sector
   return result;
 }
 
+/// The median height of the edges on the outline, grey levels per px.
+double heightOn(const OutlineModel& model, const std::vector<BallEdge>& edges, double within) {
+  std::vector<double> steps;
+  for (const BallEdge& e : edges)
+    if (std::abs(model.distance(e.place)) < within) steps.push_back(std::abs(e.step));
+  return steps.empty() ? 0.0 : upperMedian(steps);
+}
+
+/// What all edges have wrong together. A step beside light that rises or falls up to the rim, as in what a ball mirrors, seems to lie
+/// slope / step sigma^2 aside, sigma the whole blur: with twice the blur of ours by how much more, and the heights tell sigma. Grey levels are
+/// whole numbers: a faint edge is known to the width of one level.
+Eigen::Matrix3d commonErrors(const OutlineModel& model, const std::vector<Image>& linear, const std::vector<BallEdge>& edges,
+                             double blur) {
+  const double twice = 2 * blur, fine = heightOn(model, edges, kOuter * blur);
+  const double level = fine > 0 ? kLevelShare / fine : 0;
+  Eigen::Matrix3d result = level * level * Eigen::Matrix3d::Identity();
+  OutlineModel wider = model;
+  const std::vector<BallEdge> again = ballEdges(linear, model, kFineReach * blur, twice, kTogether * twice);
+  if (again.empty() || !settle(wider, again, twice, kCloseWidth)) return result;
+  const double coarse = heightOn(wider, again, kOuter * twice);
+  if (!(coarse > 0)) return result;
+  const Eigen::Vector3d shift = (wider.x - model.x) / std::clamp(fine * fine / (coarse * coarse) - 1, kLeastGain, 3.0);
+  return result + kShiftShare * kShiftShare *
+                      (shift * shift.transpose() + kAside * kAside * shift.squaredNorm() * Eigen::Matrix3d::Identity());
+}
+
 /// The widest run of sectors without an edge.
 int widestGap(const OutlineModel& model, const std::vector<EdgePoint>& edge) {
   std::array<bool, kOutlineSectors> has{};
@@ -282,6 +315,7 @@ Outcome<RefinedOutline> refineLinear(const std::vector<Image>& linear, const Bal
     return Failure{Reason::RankDeficient, ball + " shows its outline on one side only"};
   if (!nearStart({result.outline.centre.x(), result.outline.centre.y(), result.outline.radius}, start))
     return Failure{Reason::NotConverged, ball + ": the outline found lies more than a tenth of the radius from the one given"};
+  result.covariance += commonErrors(model, linear, edges, blur);
   if (!result.covariance.allFinite()) return Failure{Reason::NotFinite, ball + ": the outline's covariance"};
   return result;
 }
@@ -305,6 +339,18 @@ Outcome<RefinedOutline> refineBallOutline(std::span<const Image> photographs, co
   result->outline.centre += corner;
   for (EdgePoint& p : result->edge) p.place += corner;
   return result;
+}
+
+OutlineChoice chosenOutline(const Outcome<RefinedOutline>& found, const RefinedOutline& given) {
+  if (!found) return {given, found.failure().message()};
+  const auto sigma = [](const RefinedOutline& o) { return std::sqrt(o.covariance.diagonal().maxCoeff()); };
+  if (!(sigma(*found) < std::max(sigma(given), kRoughShare * given.outline.radius)))
+    return {given, formatted("its edges tell it to %.2g px only", sigma(*found))};
+  OutlineChoice choice{*found, ""};
+  const double inside = given.outline.radius - found->outline.radius - (given.outline.centre - found->outline.centre).norm();
+  if (inside > 0) choice.outline.covariance(2, 2) += inside * inside / (kCovered * kCovered);
+  if (inside > 3 * sigma(*found)) choice.withinPx = inside;
+  return choice;
 }
 
 }  // namespace glint

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <span>
+#include <string>
 
 #include "core/base/image.h"
 #include "core/base/outcome.h"
@@ -35,5 +36,18 @@ struct OutlineCamera {
 ///          NotConverged: the circle found lies beyond a tenth of the radius from `start`; NotFinite; OutsideImage: no part of `start` lies in the image.
 Outcome<RefinedOutline> refineBallOutline(std::span<const Image> photographs, const Eigen::Vector2d& corner,
                                           const BallOutline& start, const std::optional<OutlineCamera>& camera = {});
+
+/// Which of two outlines counts.
+struct OutlineChoice {
+  RefinedOutline outline;
+  std::string refused;  ///< why the one of the edges does not; empty = it does
+  double withinPx =
+      0;  ///< by how much it lies inside of the given one all around, where that is more than its standard deviation says; else 0
+};
+
+/// The outline of the edges where these tell it better than the one that is given is known. Where it lies inside of that all around, it may be a
+/// reflection's edge within a rim that does not stand out: its radius is then uncertain by as much.
+/// @param given  with its covariance
+OutlineChoice chosenOutline(const Outcome<RefinedOutline>& found, const RefinedOutline& given);
 
 }  // namespace glint

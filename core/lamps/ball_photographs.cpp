@@ -250,10 +250,16 @@ Outcome<RefinedOutline> ShotReader::outlineOf(std::size_t k) {
   for (Cutting& c : cuttings) images.push_back(std::move(c.image));
   still_.push_back(stillReflections(images, corner, ball.outline));
   if (outlines_ == Outlines::Given) return given;
-  Outcome<RefinedOutline> refined = refineBallOutline(images, corner, ball.outline, outlineCamera_);
-  if (refined) return refined;
-  warnings_.push_back("the outline of ball " + std::to_string(k + 1) + " is taken as given: " + refined.failure().message());
-  return given;
+  OutlineChoice choice = chosenOutline(refineBallOutline(images, corner, ball.outline, outlineCamera_), given);
+  const std::string outline = "the outline of ball " + std::to_string(k + 1);
+  if (!choice.refused.empty()) warnings_.push_back(outline + " is taken as given: " + choice.refused);
+  if (choice.withinPx > 0)
+    warnings_.push_back(outline +
+                        formatted(" was found %.2g px inside of the given one all around: it may be a reflection's edge, so its "
+                                  "radius is uncertain by that; give --ball as found (%.2f,%.2f,%.2f) to rely on it",
+                                  choice.withinPx, choice.outline.outline.centre.x() - ball.corner.x(),
+                                  choice.outline.outline.centre.y() - ball.corner.y(), choice.outline.outline.radius));
+  return choice.outline;
 }
 
 std::vector<ShotReader::Seen> ShotReader::look() {

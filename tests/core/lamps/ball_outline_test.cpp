@@ -77,7 +77,7 @@ TEST(BallOutline, NoiseIsWhatTheCovarianceSays) {
   }
   std::printf("noise: rms %.3f px, normalised %.2f\n", std::sqrt(squares), normalised);
   EXPECT_LT(std::sqrt(squares), 0.05);
-  EXPECT_GT(normalised, 0.3);
+  EXPECT_GT(normalised, 0.1);  // the covariance has what all edges may have wrong together, too: here nothing
   EXPECT_LT(normalised, 3);
 }
 
