@@ -53,6 +53,10 @@ direction where the lobe explains its highlight and agrees with the mirrored ray
 Three balls or more tell which of their highlights is not the lamp's. Two that contradict each other, by more than four standard deviations and 2 % of the radius, do not: another bright place
 on one of them may agree; else the lamp has no answer.
 
+What stays where it is in three of four photographs is a window or another fixed thing, and the lamp is what moves. One photograph, or several of one lamp, do not tell: the largest reflection is taken. Every other one that
+only its size speaks against (a fifth of the radius or more) then has its direction in `dropped`; there is no position, and the standard deviation is the root of the mean square of the angles between them all. A warning names them, and says how wide and of
+what shape the thing in the reflection is: a single one gets a warning where it is rectangular or elongated, or wider than 20 degrees.
+
 ### How well an outline is known
 Edges refine a given outline where they tell it to 1 % of the radius, or better than `--outline-sigma` says of it; else it stays as it is, with a warning. The standard deviation has three parts: what leaving out each
 twelfth of the outline shows; what twice the blur shows, for a step beside light that rises or falls up to the rim, as in what a mirror shows, seems to lie aside; and the rounding of grey levels. Where the

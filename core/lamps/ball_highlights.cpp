@@ -24,6 +24,7 @@ constexpr double kBright = 0.9;       // of the top, in codes: 0.79 of the light
 constexpr double kDim = 0.6;          // of the top, in codes: a third of the light; worth naming
 constexpr int kLeastArea = 4;         // px: less is a speck
 constexpr double kRival = 0.7;        // of the largest disc's radius: half of its area; then which is the lamp is not known
+constexpr double kLeastRival = 0.2;   // of that radius: less is a scratch or dust in the lamp's light
 constexpr double kWidest = 0.2;       // of the ball's radius: a lamp of 23 degrees
 constexpr double kLimb = 0.97;        // of the outline's radius: a pixel counts four times as much as in the middle
 constexpr double kOtherBallMargin =
@@ -277,6 +278,7 @@ std::optional<Failure> objection(const BallView& view, const std::vector<Candida
 /// Everything else that is bright, with the reason against it.
 std::vector<DroppedHighlight> droppedHighlights(const BallView& view, const std::vector<Candidate>& bright,
                                                 std::span<const BallOutline> balls, std::size_t which) {
+  constexpr const char* kSmaller = "smaller than the lamp's";
   int count = 0;
   const cv::Mat labels = brightParts(view.values, kDim * view.top, count);
   const auto labelOf = [&](const Candidate& c) { return labels.at<int>(c.pixel); };
@@ -285,10 +287,10 @@ std::vector<DroppedHighlight> droppedHighlights(const BallView& view, const std:
     const Eigen::Vector2d place = c.place + view.corner;
     if (atLimb(place, view.ball)) reason = "at the ball's outline";
     if (showsAnotherBall(place, balls, which)) reason = "reflection of another ball";
-    result.push_back({place, reason});
+    result.push_back({place, reason, std::string_view(reason) == kSmaller && c.radius > kLeastRival * bright[0].radius});
   };
   for (std::size_t i = 1; i < bright.size(); ++i)
-    drop(bright[i], labelOf(bright[i]) == labelOf(bright[0]) ? "streak of the lamp's reflection" : "smaller than the lamp's");
+    drop(bright[i], labelOf(bright[i]) == labelOf(bright[0]) ? "streak of the lamp's reflection" : kSmaller);
   for (const Candidate& dim : candidates(view, kDim * view.top, labels, count))
     if (std::none_of(bright.begin(), bright.end(), [&](const Candidate& c) { return labelOf(c) == dim.label; }))
       drop(dim, "dimmer than the lamp's");

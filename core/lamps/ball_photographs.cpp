@@ -143,6 +143,21 @@ Cutting around(const Image& image, const Eigen::Vector2d& corner, const BallOutl
   return {std::move(part), corner + Eigen::Vector2d(x0, y0)};
 }
 
+/// Where other reflections may be the lamp's as well, its direction is known to their spread and its distance is not.
+void widenByRivals(LampAnswer& lamp) {
+  double squares = 0;
+  auto all = static_cast<double>(lamp.sightings.size());
+  for (const DroppedSighting& d : lamp.dropped) {
+    if (!d.direction) continue;
+    const double angle = std::atan2(d.direction->cross(lamp.direction).norm(), d.direction->dot(lamp.direction));
+    squares += angle * angle, all += 1;
+  }
+  if (lamp.failure || squares == 0) return;
+  lamp.directionSigma = std::hypot(lamp.directionSigma, std::sqrt(squares / all));
+  lamp.position.reset(), lamp.covariance.reset();
+  lamp.withoutPosition = "which of the bright reflections is the lamp's is not known";
+}
+
 class ShotReader {
  public:
   ShotReader(const BallShots& shots, Outlines outlines, double givenSigmaPx, const ProgressFn& progress)
@@ -170,6 +185,10 @@ class ShotReader {
     PhotographLamps result = named(*std::move(fit), seen);
     if (s_.balls.size() == 1 && showsLobes(photographs.seen, found_.front()))
       refineByLobe(s_, size_.at(0).width, size_.at(0).height, photographs.camera, result.fit, progress_);
+    for (LampAnswer& lamp : result.fit.lamps) widenByRivals(lamp);
+    for (std::size_t k = 0; k < s_.balls.size(); ++k)
+      if (const std::string doubt = unmoved_[k] ? doubtOf(k, result.fit.lamps) : ""; !doubt.empty())
+        result.warnings.push_back(doubt);
     return result;
   }
 
@@ -186,6 +205,7 @@ class ShotReader {
   std::vector<Seen> look();
   Seen highlightsOf(const Shot& shot);
   PhotographLamps named(BallLamps fit, const std::vector<Seen>& seen);
+  std::string doubtOf(std::size_t k, const std::vector<LampAnswer>& lamps) const;
 
   const BallShots& s_;
   Outlines outlines_;
@@ -196,6 +216,7 @@ class ShotReader {
       outlineCamera_;  ///< none where a lens bends outlines: its ellipse is then found from the edge points alone
   std::vector<BallOutline> found_;
   std::vector<StillReflections> still_;  ///< of each ball
+  std::vector<bool> unmoved_;            ///< of each ball: nothing on it was seen to move, so nothing tells a lamp from a window
   std::vector<std::string> warnings_;
 };
 
@@ -249,6 +270,7 @@ Outcome<RefinedOutline> ShotReader::outlineOf(std::size_t k) {
   std::vector<Image> images;
   for (Cutting& c : cuttings) images.push_back(std::move(c.image));
   still_.push_back(stillReflections(images, corner, ball.outline));
+  unmoved_.push_back(images.size() < 2);
   if (outlines_ == Outlines::Given) return given;
   OutlineChoice choice = chosenOutline(refineBallOutline(images, corner, ball.outline, outlineCamera_), given);
   const std::string outline = "the outline of ball " + std::to_string(k + 1);
@@ -279,7 +301,7 @@ std::vector<ShotReader::Seen> ShotReader::highlights() {
     const bool moves = std::any_of(seen.begin(), seen.end(), [k](const Seen& s) {
       return std::any_of(s.observations.begin(), s.observations.end(), [k](const LampObservation& o) { return o.object == k; });
     });
-    if (!moves && !still_[k].places.empty()) still_[k] = {}, again = true;
+    if (!moves && !still_[k].places.empty()) still_[k] = {}, unmoved_[k] = again = true;
     for (const Eigen::Vector2d& place : still_[k].places)
       warnings_.push_back(
           formatted("ball %zu: the bright reflection at %.0f, %.0f does not move between photographs, so it is not "
@@ -313,11 +335,37 @@ ShotReader::Seen ShotReader::highlightsOf(const Shot& shot) {
       failed(k, found.failure());
       continue;
     }
+    for (DroppedHighlight& d : found->dropped) d.onlySmaller = d.onlySmaller && unmoved_[k];
     found->frame = shot.id;
     found->object = k;
     seen.observations.push_back(*std::move(found));
   }
   return seen;
+}
+
+/// What makes it doubtful that a reflection which was not seen to move is the lamp's; "" = nothing does.
+std::string ShotReader::doubtOf(std::size_t k, const std::vector<LampAnswer>& lamps) const {
+  constexpr double kWideDeg = 20, kShapedDeg = 5, kElongated = 1.5, kRectangular = 0.87, kCompact = 0.72;
+  const auto at = [&](const Pixel& place, const Eigen::Vector3d& towards) {
+    const Pixel p = place - s_.balls[k].corner;
+    return formatted("%.0f, %.0f (towards %.3f %.3f %.3f)", p.x(), p.y(), towards.x(), towards.y(), towards.z());
+  };
+  for (const LampAnswer& lamp : lamps)
+    for (const LampSighting& s : lamp.sightings) {
+      if (lamp.failure || s.ball != k) continue;
+      std::string others;
+      for (const DroppedSighting& d : lamp.dropped)
+        if (d.ball == k && d.direction) others += (others.empty() ? "" : ", ") + at(d.place, *d.direction);
+      const LampExtent e = s.extent.value_or(LampExtent{});  // a lamp's streaks leave its rectangle empty
+      const bool rectangular = e.filled > kRectangular, elongated = e.filled > kCompact && e.longDeg > kElongated * e.shortDeg;
+      const char* shape = rectangular ? ", rectangular" : elongated ? ", elongated" : "";
+      if (others.empty() && !(e.longDeg > (*shape ? kShapedDeg : kWideDeg))) return "";
+      std::string text = formatted("ball %zu: the reflection at ", k + 1) + at(s.peak, s.direction) +
+                         formatted(" may be a window's: it is %.2g x %.2g degrees wide%s", e.longDeg, e.shortDeg, shape);
+      if (!others.empty()) text += ", taken as the largest; the lamp's may be the one at " + others;
+      return text + ". Only motion tells: add a photograph with the lamp elsewhere";
+    }
+  return "";
 }
 
 PhotographLamps ShotReader::named(BallLamps fit, const std::vector<Seen>& seen) {

@@ -13,10 +13,17 @@ namespace glint {
 
 /// A highlight that was found and not used for a lamp.
 struct DroppedSighting {
-  std::string frame;                ///< id
-  std::optional<std::size_t> ball;  ///< index; none in a scene
-  Pixel place{0, 0};                ///< px, measured
-  std::string reason;               ///< in words
+  std::string frame;                              ///< id
+  std::optional<std::size_t> ball;                ///< index; none in a scene
+  Pixel place{0, 0};                              ///< px, measured
+  std::string reason;                             ///< in words
+  std::optional<Eigen::Vector3d> direction = {};  ///< of a lamp that it may be as well, unit; nothing where it is none
+};
+
+/// How large a reflection makes its lamp appear from the ball.
+struct LampExtent {
+  double longDeg = 0, shortDeg = 0;  ///< sides of the least rectangle around it
+  double filled = 0;                 ///< share of that: pi / 4 of an ellipse, 1 of a window
 };
 
 /// How the directions to one lamp from the two balls that are farthest apart differ, degrees: along the line between the balls a near
@@ -33,6 +40,7 @@ struct LampSighting {
   Eigen::Vector3d direction = -Eigen::Vector3d::UnitZ();  ///< along the mirrored ray, unit
   Eigen::Vector2d residualPx = Eigen::Vector2d::Zero();   ///< of the fit: seen less predicted
   bool clipped = false;
+  std::optional<LampExtent> extent;  ///< nothing without a contour on the ball
   /// From the other balls alone, outlines refined without this lamp: predicted less seen, px, and the directions' difference.
   std::optional<Eigen::Vector2d> leftOutPx;
 };

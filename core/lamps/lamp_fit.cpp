@@ -8,6 +8,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <opencv2/imgproc.hpp>
 
 #include "core/base/angle.h"
 #include "core/base/number_text.h"
@@ -127,7 +128,12 @@ void BallLampFit::gather() {
       at->frame = seen.frame;
       at->unknowns.lamp.reference = reference_;
     }
-    for (const DroppedHighlight& d : seen.dropped) at->dropped.push_back({seen.frame, seen.object, d.place, d.reason});
+    for (const DroppedHighlight& d : seen.dropped) {
+      at->dropped.push_back({seen.frame, seen.object, d.place, d.reason});
+      if (!d.onlySmaller) continue;
+      if (const Outcome<MirrorRay> ray = mirrorRay(view_, problem_->ball(seen.object), ideal(d.place)))
+        at->dropped.back().direction = ray->direction;
+    }
     const Pixel peak = ideal(seen.peak);
     const Outcome<MirrorRay> ray = peak.allFinite() && seen.covariance.allFinite()
                                        ? mirrorRay(view_, problem_->ball(seen.object), peak)
@@ -329,6 +335,24 @@ std::optional<Parallax> parallaxOf(const LampProblem& problem, const std::vector
   return Parallax{first->ball, second->ball, degrees(change.dot(along)), degrees(change.dot(side))};
 }
 
+/// Of the directions to the border of a lamp, seen around their middle.
+std::optional<LampExtent> extentOf(const std::vector<Eigen::Vector3d>& border) {
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& d : border) middle += d;
+  if (border.size() < 3 || !(middle.norm() > 0)) return std::nullopt;
+  const Eigen::Matrix<double, 3, 2> basis = tangentBasis(middle.normalized());
+  std::vector<cv::Point2f> plane;
+  for (const Eigen::Vector3d& d : border) {
+    const Eigen::Vector2d aside = basis.transpose() * d;
+    const Eigen::Vector2d p = degrees(std::atan2(aside.norm(), d.dot(middle.normalized()))) * aside.normalized();
+    plane.emplace_back(static_cast<float>(p.x()), static_cast<float>(p.y()));
+  }
+  const cv::Size2f sides = cv::minAreaRect(plane).size;
+  if (!(sides.area() > 0)) return std::nullopt;
+  return LampExtent{std::max(sides.width, sides.height), std::min(sides.width, sides.height),
+                    cv::contourArea(plane) / sides.area()};
+}
+
 void BallLampFit::addSightings(const LampInFit& lamp, LampAnswer& a) const {
   const std::optional<Eigen::VectorXd> r = problem_->residuals(lamp.unknowns);
   for (std::size_t i = 0; i < lamp.unknowns.peaks.size(); ++i) {
@@ -338,6 +362,11 @@ void BallLampFit::addSightings(const LampInFit& lamp, LampAnswer& a) const {
     s.peak = lamp.sources[i]->peak;
     s.clipped = lamp.sources[i]->clipped;
     if (const Outcome<MirrorRay> ray = mirrorRay(view_, problem_->ball(p.ball), p.peak)) s.direction = ray->direction;
+    std::vector<Eigen::Vector3d> border;
+    for (const Pixel& around : lamp.sources[i]->contour)
+      if (const Outcome<MirrorRay> ray = mirrorRay(view_, problem_->ball(p.ball), ideal(around)))
+        border.push_back(ray->direction);
+    s.extent = extentOf(border);
     if (r) s.residualPx = p.root.inverse() * r->segment<2>(2 * static_cast<Eigen::Index>(i));
     a.sightings.push_back(s);
   }

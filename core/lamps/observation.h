@@ -37,6 +37,7 @@ struct RefinedOutline {
 struct DroppedHighlight {
   Eigen::Vector2d place = Eigen::Vector2d::Zero();  ///< px
   std::string reason;                               ///< in words: "smaller than the brightest", "reflection of the other ball"
+  bool onlySmaller = false;  ///< nothing but its size speaks against it: only motion tells a lamp from a window that is larger
 };
 
 /// Where one lamp is reflected by one known object in one photograph.

@@ -41,7 +41,11 @@ Ordered ballNumber(const std::optional<std::size_t>& ball) { return ball ? Order
 Ordered droppedJson(const LampAnswer& lamp) {
   Ordered list = Ordered::array();
   for (const DroppedSighting& d : lamp.dropped)
-    list.push_back({{"frame", d.frame}, {"ball", ballNumber(d.ball)}, {"peak", lengths(d.place)}, {"reason", d.reason}});
+    list.push_back({{"frame", d.frame},
+                    {"ball", ballNumber(d.ball)},
+                    {"peak", lengths(d.place)},
+                    {"reason", d.reason},
+                    {"direction", lengthsOrNull(d.direction)}});
   return list;
 }
 

@@ -215,6 +215,44 @@ TEST_F(OneBall, LampsOfOneDirectionAreAFinding) {
   EXPECT_LT(angleDeg(Json::parse(run.out)["lights"][2]["direction"], lamps_[0]), kPhotograph);
 }
 
+TEST_F(OneBall, WhatDoesNotMoveIsNotToldFromAWindow) {
+  cv::Mat m = cv::imread((folder_ / "shot 0.png").string());
+  cv::circle(m, {120, 85}, 14, {255, 255, 255}, cv::FILLED);
+  const TemporaryFolder shots;
+  for (const char* name : {"a.png", "b.png"}) {  // one photograph, then two of one lamp
+    ASSERT_TRUE(cv::imwrite((shots / name).string(), m));
+    const ProgramRun run = runGlint("lights " + inQuotes(shots.path()) + " --ball 150,130,100 --all-warnings --json -");
+    ASSERT_EQ(run.code, 0) << run.err;
+    EXPECT_THAT(run.err, HasSubstr("Only motion tells"));
+    const Json lamp = Json::parse(run.out)["lights"][0];
+    ASSERT_EQ(lamp["dropped"].size(), 1);
+    EXPECT_LT(angleDeg(lamp["dropped"][0]["direction"], lamps_[0]), 4 * kPhotograph);  // the middle of a spot that is not fitted
+    EXPECT_GT(lamp["direction_sigma_deg"], angleDeg(lamp["direction"], lamps_[0]) / 2);
+  }
+}
+
+/// A window in a wall behind the camera, 0.3 x 0.4 at a distance of 1; the lamp of one photograph is round.
+TEST_F(OneBall, ALoneRectangleMayBeAWindow) {
+  const TemporaryFolder shots;
+  photograph(shots / "shot.png", 300, 260, {ball_}, {});
+  cv::Mat m = cv::imread((shots / "shot.png").string());
+  for (int y = 0; y < m.rows; ++y)
+    for (int x = 0; x < m.cols; ++x) {
+      const Eigen::Vector2d n = (Eigen::Vector2d(x, y) - ball_.centre) / kRadius;
+      const double z2 = 1 - n.squaredNorm();  // the mirrored ray is (2 z n, -(2 z^2 - 1)), z towards the camera
+      const Eigen::Vector2d wall = z2 > 0.5 ? Eigen::Vector2d(2 * std::sqrt(z2) / (2 * z2 - 1) * n) : Eigen::Vector2d(9, 9);
+      if (std::abs(wall.x() - 0.4) < 0.15 && std::abs(wall.y() + 0.3) < 0.2) m.at<cv::Vec3b>(y, x) = {255, 255, 255};
+    }
+  ASSERT_TRUE(cv::imwrite((shots / "shot.png").string(), m));
+  const std::string more = " --ball 150,130,100 --all-warnings";
+  const ProgramRun window = runGlint("lights " + inQuotes(shots.path()) + more);
+  ASSERT_EQ(window.code, 0) << window.err;
+  EXPECT_THAT(window.err, HasSubstr("rectangular"));
+  ASSERT_TRUE(
+      std::filesystem::copy_file(folder_ / "shot 0.png", shots / "shot.png", std::filesystem::copy_options::overwrite_existing));
+  EXPECT_THAT(runGlint("lights " + inQuotes(shots.path()) + more).err, testing::Not(HasSubstr("window")));
+}
+
 TEST_F(OneBall, WithoutAnyLampTheFilesAreWritten) {
   const TemporaryFolder shots;
   photograph(shots / "dark.png", 300, 260, {ball_}, {});

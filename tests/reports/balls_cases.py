@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Cases of run.py."""
+import json
 import math
 
 from run import lacks, near, says  # noqa: F401
@@ -23,6 +24,15 @@ def case_ball_with_window(report):
     says(done.stderr, "does not move between photographs")
     off = apart(directions(report.folder / "l.lp"), directions(report.folder / "truth.lp"))
     assert off < 1.5, f"{off} degrees from the truth"
+    one = report.folder / "one"
+    one.mkdir()
+    (one / "IMG_0001.JPG").write_bytes((report.folder / "IMG_0001.JPG").read_bytes())
+    done = report.glint("lights", "one", "--ball", "200,150,60", "--all-warnings", "--json", "one.json")
+    says(done.stderr, "may be a window's", "Only motion tells")
+    lamp = json.loads((report.folder / "one.json").read_text())["lights"][0]
+    x, y, z = directions(report.folder / "truth.lp")["IMG_0001.JPG"]
+    off = [apart({"": d}, {"": [x, -y, -z]}) for d in [lamp["direction"]] + [o["direction"] for o in lamp["dropped"] if o["direction"]]]
+    assert min(off) < 2 and off[0] < 2 * lamp["direction_sigma_deg"], (off, lamp["direction_sigma_deg"])
 
 
 def case_ball_exif_turned(report):
