@@ -119,12 +119,13 @@ class Adviser {
   }
 
   /// Runs the request with a change, for one model alone. Nothing where the program refuses that combination.
-  Results measured(const Inspection& from, const Change& change, const std::string& model, UnseenError& error) {
+  /// @param previous  what has most in common with it: only the rest is computed
+  Results measured(const Inspection& previous, const Change& change, const std::string& model, UnseenError& error) {
     const ProgressFn progress = step("try " + flagsOf(change));
-    InspectionRequest request = with(from.request, change, *r_.scene);
+    InspectionRequest request = with(r_.request, change, *r_.scene);
     request.models = {model};
     try {
-      const auto of = std::make_shared<const Inspection>(inspect(r_.given, request, progress, &from));
+      const auto of = std::make_shared<const Inspection>(inspect(r_.given, request, progress, &previous));
       error = unseenError(*of, model, progress);
       ++d_.tried;
       return of;
@@ -175,9 +176,16 @@ class Adviser {
     if (d_.now.observed() == 0 || nothingIsLeft()) return;
     const std::vector<CandidateChange> all = changesWorthATrial();
     total_ = done_ + int(all.size() + r_.request.models.size()) + 1;
+    std::vector<std::pair<Change, Results>>
+        onFrames;  // by other training frames, whatever the model: their lobe costs most of a trial
     for (const CandidateChange& c : all) {
+      const Change frames{.train = c.change.train, .exclude = c.change.exclude};
+      const auto known = std::find_if(onFrames.begin(), onFrames.end(), [&](const auto& entry) { return entry.first == frames; });
+      const Results previous = known == onFrames.end() ? results_.at(*c.change.model) : known->second;
       UnseenError error;
-      if (!measured(*results_.at(*c.change.model), c.change, *c.change.model, error)) continue;
+      const Results of = measured(*previous, c.change, *c.change.model, error);
+      if (!of) continue;
+      if (known == onFrames.end() && !isAsItIs(frames)) onFrames.emplace_back(frames, of);
       d_.measured.push_back({c.change, c.why, std::move(error)});
       tell();
     }

@@ -33,12 +33,12 @@ void shadeFrames(const Inspection& inspection, PlotData& plot) {
   shade(kExcluded, "excluded", [&](int f) { return isExcluded(inspection, f); });
 }
 
-/// "canonical: mean 0.42 % over 30 of 33 held-out highlights, 3 missed": the mean and the counts of summarise(), which tables show.
-std::string withMean(const Inspection& inspection, const std::string& model) {
+/// ": mean 0.42 % over 30 of 33 held-out highlights, 3 missed": the mean and the counts of summarise(), which tables show.
+std::string meanText(const Inspection& inspection, const std::string& model) {
   const ModelSummary s = summarise(inspection, inspection.models.at(model));
   const std::string of = inspection.train.perSurface ? "highlights" : "held-out highlights";
-  if (s.contourErrorPct.count == 0) return model + ": none of the " + of + " found";
-  return model + formatted(": mean %.3g %% over ", s.contourErrorPct.mean) + std::to_string(s.contourErrorPct.count) +
+  if (s.contourErrorPct.count == 0) return ": none of the " + of + " found";
+  return formatted(": mean %.3g %% over ", s.contourErrorPct.mean) + std::to_string(s.contourErrorPct.count) +
          (s.missed == 0 ? " " + of
                         : " of " + std::to_string(s.matched + s.missed) + " " + of + ", " + std::to_string(s.missed) + " missed");
 }
@@ -65,13 +65,12 @@ PlotData errorPlot(const Inspection& inspection, const ErrorPlotOptions& options
   std::vector<double> values;
   std::vector<std::string> silent;  // models that matched no highlight at all: their crosses would fill the plot
   for (const std::string& model : modelsInOrder(inspection, options.models)) {
-    PlotSeries series;
-    series.colour = modelColour(model);
-    series.shape = n <= 150 ? PlotShape::LineAndPoints : PlotShape::Line;
+    PlotSeries series =
+        modelSeries(model, isPoor(inspection.models.at(model)), n <= 150 ? PlotShape::LineAndPoints : PlotShape::Line);
     series.pointSize = n <= 40 ? 6 : 4;
     series.width = n <= 400 ? 1.75 : 1.25;
     const std::vector<FrameScore> scores = frameScores(inspection.models.at(model), int(n));
-    series.name = options.means ? withMean(inspection, model) : model;
+    if (options.means) series.name += meanText(inspection, model);
     bool matched = false;
     for (std::size_t f = 0; f < n; ++f) {
       const FrameScore& score = scores[f];
@@ -132,10 +131,7 @@ PlotData influencePlot(const Inspection& inspection, const Influence& influence,
   bool any = false;
   std::string why;  // the first reason for no answer
   for (std::size_t m = 0; m < models.size(); ++m) {
-    PlotSeries series;
-    series.name = models[m];
-    series.colour = modelColour(models[m]);
-    series.shape = PlotShape::Bars;
+    PlotSeries series = modelSeries(models[m], isPoor(inspection.models.at(models[m])), PlotShape::Bars);
     series.barWidth = width * 0.9;
     for (const ModelResult::Fit& fit : inspection.models.at(models[m]).fits)
       if (fit.failure() && why.empty()) why = models[m] + " has no fit: " + fit.failure()->message();

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 #include <string>
+#include <utility>
 
 #include "core/draw/plot_header.h"
 #include "core/draw/plot_notes.h"
@@ -40,6 +41,7 @@ class PlotPicture {
   void paintSamples();
   void paintNotes();
   void layOutDial(double head);
+  void paintAround(const PlotSeries& series);
   void paintDial();
   void paintMarks(const PlotMarks& marks);
   void ring(const PlotSample& sample, double r, const Colour& colour, double width);
@@ -207,6 +209,20 @@ void PlotPicture::layOutDial(double head) {
   at_.radius = std::max(px(10), 0.5 * std::min(width_, room) - px(16));
 }
 
+/// Runs from gap to gap: dashes go on from one sample to the next.
+void PlotPicture::paintAround(const PlotSeries& series) {
+  const std::vector<PlotPoint>& points = series.points;
+  const auto isGap = [](const PlotPoint& p) { return !std::isfinite(p.y); };
+  const std::size_t n = points.size(), gap = std::size_t(std::find_if(points.begin(), points.end(), isGap) - points.begin());
+  std::vector<Eigen::Vector2d> run;
+  for (std::size_t i = 0; i < n; ++i) {
+    const PlotPoint& p = points[gap == n ? i : (gap + 1 + i) % n];  // the gap itself is the last
+    if (!isGap(p)) run.push_back(at_.place(plot_, p.x, p.y));
+    if (!isGap(p) && i + 1 < n) continue;
+    painter_.stroke(std::exchange(run, {}), gap == n, series.colour, px(series.width), series.dash);
+  }
+}
+
 void PlotPicture::paintDial() {
   const double largest = plot_.y.to.value_or(1), small = px(kPlotSmallFont);
   const Eigen::Vector2d& centre = at_.centre;
@@ -223,14 +239,7 @@ void PlotPicture::paintDial() {
     for (const double v : {value, -value}) circle(v, look_.grid, 1);
   circle(0, kHalo, 3.5);
   circle(0, kObserved, 1.75);
-  for (const PlotSeries& series : plot_.series) {
-    const std::size_t n = series.points.size();
-    for (std::size_t i = 0; i < n; ++i) {
-      const PlotPoint &p = series.points[i], &q = series.points[(i + 1) % n];
-      if (std::isfinite(p.y) && std::isfinite(q.y))
-        line(at_.place(plot_, p.x, p.y), at_.place(plot_, q.x, q.y), series.colour, series.width);
-    }
-  }
+  for (const PlotSeries& series : plot_.series) paintAround(series);
   const struct {
     const char* text;
     double x, y;

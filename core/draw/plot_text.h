@@ -6,6 +6,7 @@
 
 #include "core/draw/plot_data.h"
 #include "core/inspect/inspection.h"
+#include "core/inspect/summary.h"
 #include "core/scene/frame_name.h"
 
 namespace glint::draw {
@@ -20,6 +21,18 @@ inline PlotData nothing(PlotData plot, std::string why) {
   plot.empty = std::move(why);
   return plot;
 }
+
+/// For values of a model; of a poor fit named so, pale and dashed, as everywhere.
+inline PlotSeries modelSeries(const std::string& model, bool poor, PlotShape shape) {
+  PlotSeries series;
+  series.name = poor ? model + ", poor" : model;
+  series.colour = poor ? pale(modelColour(model)) : modelColour(model);
+  series.dash = poor ? Dash::Dashed : Dash::Solid;
+  series.shape = shape;
+  return series;
+}
+
+inline bool isPoor(const ModelResult& result) { return !reasonsOf(result).poor.empty(); }  ///< a fit of it is
 
 /// Of the scene; its number where there is none.
 inline std::string frameName(const Inspection& inspection, int frame) {

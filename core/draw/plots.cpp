@@ -244,10 +244,7 @@ PlotData semiAxesPlot(const Inspection& inspection) {
   bool severalLights = false;
   for (const One& o : fits) severalLights = severalLights || o.light != fits.front().light;
   for (std::size_t i = 0; i < fits.size(); ++i) {
-    PlotSeries series;
-    series.name = fits[i].model;
-    series.colour = modelColour(fits[i].model);
-    series.shape = PlotShape::Points;
+    PlotSeries series = modelSeries(fits[i].model, !fits[i].fit->poor.empty(), PlotShape::Points);
     series.pointSize = 9;
     for (std::size_t before = 0; before < i; ++before) series.inLegend = series.inLegend && fits[before].model != fits[i].model;
     const std::optional<Eigen::Vector3d> sigma = semiAxesSigma(*fits[i].fit);
@@ -300,10 +297,11 @@ PlotData residualDial(const Inspection& inspection, int frame, int highlight) {
     for (const PolarResidual& r : residuals[m])
       if (r.observed == shown) chosen = &r;
     if (!chosen || !std::isfinite(chosen->meanAbsPx)) continue;
-    PlotSeries series;
-    series.name = model + formatted("  mean |d| %.2g px", chosen->meanAbsPx);
-    series.colour = modelColour(model);
-    series.shape = PlotShape::LineAndPoints;
+    const ModelResult& result = inspection.models.at(model);
+    const auto of = std::find_if(result.frames.begin(), result.frames.end(),
+                                 [&](const FrameComparison& c) { return c.frame == frame && c.light == chosen->light; });
+    PlotSeries series = modelSeries(model, of != result.frames.end() && !poorFit(result, *of).empty(), PlotShape::LineAndPoints);
+    series.name += formatted("  mean |d| %.2g px", chosen->meanAbsPx);
     series.pointSize = 3;
     for (const DirectionSample& s : chosen->samples) {
       PlotPoint p;
@@ -467,14 +465,10 @@ PlotData tradeoffPlot(const Tradeoff& tradeoff) {
       }
       front.points.push_back(step);
     }
-    auto series = std::find_if(models.begin(), models.end(), [&](const PlotSeries& s) { return s.name == t.model; });
-    if (series == models.end()) {
-      series = models.insert(models.end(), PlotSeries{});
-      series->name = t.model;
-      series->colour = modelColour(t.model);
-      series->shape = PlotShape::Points;
-      series->pointSize = 8;
-    }
+    PlotSeries own = modelSeries(t.model, !t.poor.empty(), PlotShape::Points);
+    own.pointSize = 8;
+    auto series = std::find_if(models.begin(), models.end(), [&](const PlotSeries& s) { return s.name == own.name; });
+    if (series == models.end()) series = models.insert(models.end(), std::move(own));
     series->points.push_back(std::move(p));
   }
   if (models.empty()) return nothing(plot, tradeoff.reason.empty() ? "No settings measured" : tradeoff.reason);

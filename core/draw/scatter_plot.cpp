@@ -145,11 +145,13 @@ ScatterPlot Maker::finish(const std::vector<HighlightRow>& rows) {
   if (!dim_.rows.empty()) take(std::move(dim_), "not brushed", kNotBrushed, true);
   for (const auto& key : order_) {
     Group& group = classes_[key];
-    const Colour colour = options_.colour == ScatterColour::Model    ? modelColour(key.second)
+    const auto model = options_.colour == ScatterColour::Model ? in_.models.find(key.second) : in_.models.end();
+    const PlotSeries ofModel = modelSeries(key.second, model != in_.models.end() && isPoor(model->second), PlotShape::Points);
+    const Colour colour = options_.colour == ScatterColour::Model    ? ofModel.colour
                           : options_.colour == ScatterColour::Role   ? colourOf(RowRole(key.first))
                           : options_.colour == ScatterColour::Status ? colourOf(RowStatus(key.first))
                                                                      : kLights[std::size_t(light++) % std::size(kLights)];
-    if (!group.rows.empty()) take(std::move(group), key.second, colour, true);
+    if (!group.rows.empty()) take(std::move(group), ofModel.name, colour, true);
   }
   if (shown_ == 0) plot.empty = "No highlight has both values";
   if (!none_.rows.empty()) take(std::move(none_), "no value", kNotBrushed, false);

@@ -143,7 +143,7 @@ Outlook lookAhead(const HighlightModel& model, std::map<std::string, Fold>& whol
   const Clock::time_point start = Clock::now();
   for (auto& [light, fold] : whole) {
     if (!report(progress, {"look ahead " + model.id(), 0, static_cast<int>(views.size())})) throw Stopped{};
-    outlook.fits.emplace(light, fitFold(fold, model, settings, poor));
+    outlook.fits.emplace(light, fitFold(fold, model, settings, poor, progress));
   }
   outlook.predictions.resize(views.size());
   outlook.spreadPct.assign(views.size(), kNoPredictionPct);

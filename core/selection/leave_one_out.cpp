@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <utility>
 
 #include "core/base/elapsed.h"
@@ -86,8 +87,9 @@ Outcome<std::shared_ptr<const Surface>> Fold::surfaceOf(int frame, const Highlig
                           model.needsLight() && light ? light->correction : none, meshPolicy(inspection->request.settings));
 }
 
-Outcome<ModelFit> fitFold(Fold& fold, const HighlightModel& model, const Settings& settings, PoorFits poor) {
-  if (!model.needsLight()) return accepted(fitModel(model, fold.others, std::nullopt, settings, fold.pixelFit), poor);
+Outcome<ModelFit> fitFold(Fold& fold, const HighlightModel& model, const Settings& settings, PoorFits poor,
+                          const ProgressFn& progress) {
+  if (!model.needsLight()) return accepted(fitModel(model, fold.others, std::nullopt, settings, fold.pixelFit, progress), poor);
   if (!fold.light) {
     fold.light = fitLight(fold.others, *fold.inspection->scene, *fold.inspection->surfaces, settings);
     if (fold.light->correction) {
@@ -98,7 +100,8 @@ Outcome<ModelFit> fitFold(Fold& fold, const HighlightModel& model, const Setting
   if (model.needsCanonicalContours() && fold.light->light && !std::exchange(fold.canonicalTried, true))
     for (TrainingView& v : fold.light->views) addCanonicalContour(v, fold.light->light->light, settings);
   return accepted(
-      fitModel(model, fold.light->views, fold.light->light, settings, fold.light->correction ? nullptr : fold.pixelFit), poor);
+      fitModel(model, fold.light->views, fold.light->light, settings, fold.light->correction ? nullptr : fold.pixelFit, progress),
+      poor);
 }
 
 PoorFits poorFitsFor(const ModelResult& result) {
@@ -107,8 +110,8 @@ PoorFits poorFitsFor(const ModelResult& result) {
   return any ? PoorFits::Take : PoorFits::Refuse;
 }
 
-Answer leaveOut(Fold& fold, const HighlightModel& model, const Settings& settings, PoorFits poor) {
-  const Outcome<ModelFit> fit = fitFold(fold, model, settings, poor);
+Answer leaveOut(Fold& fold, const HighlightModel& model, const Settings& settings, PoorFits poor, const ProgressFn& progress) {
+  const Outcome<ModelFit> fit = fitFold(fold, model, settings, poor, progress);
   if (!fit) return failed(fit.failure());
   Answer answer = predictLeft(fold, model, *fit, settings);
   answer.fit = *fit;
@@ -158,13 +161,19 @@ Candidate tryModel(const Inspection& inspection, const HighlightModel& model, st
   const Clock::time_point start = Clock::now();
   // In groups of fixed size, so that what is given up does not depend on the number of threads.
   constexpr int kGroup = 2;
-  int tried = 0;
+  const std::string stage = "leave one out " + c.model;
+  int tried = 0, shown = 0;
+  std::mutex asking;  // fits that run side by side ask as well
   while (tried < c.views && !cannotWin(answers, tried, known)) {
     const int count = std::min(kGroup, c.views - tried);
-    const ProgressFn offset = [&](const StageEvent& e) { return report(progress, {e.stage, tried + e.done, c.views}); };
+    const ProgressFn goOn = [&](const StageEvent& e) {
+      const std::scoped_lock lock(asking);
+      if (e.stage == stage) shown = tried + e.done;
+      return report(progress, {stage, shown, c.views});
+    };
     parallelFor(
-        count, [&](int i) { answers[tried + i] = leaveOut(folds[tried + i], model, inspection.request.settings, poor); }, offset,
-        "leave one out " + c.model);
+        count, [&](int i) { answers[tried + i] = leaveOut(folds[tried + i], model, inspection.request.settings, poor, goOn); },
+        goOn, stage);
     tried += count;
   }
   c.timeUs = microsecondsSince(start);

@@ -49,9 +49,11 @@ enum class LeaveOut { Frame, Place };
 std::vector<Fold> foldsOf(const Inspection& inspection, LeaveOut together);
 /// Fits the model to the fold's other views. Fills what is missing in the fold. The model's and the light's failures; NotConverged for a poor fit
 /// where those do not serve.
-Outcome<ModelFit> fitFold(Fold& fold, const HighlightModel& model, const Settings& settings, PoorFits poor = PoorFits::Refuse);
+Outcome<ModelFit> fitFold(Fold& fold, const HighlightModel& model, const Settings& settings, PoorFits poor = PoorFits::Refuse,
+                          const ProgressFn& progress = {});
 /// Fits the model to the other views, predicts the left-out one and compares. Fills what is missing in the fold.
-Answer leaveOut(Fold& fold, const HighlightModel& model, const Settings& settings, PoorFits poor = PoorFits::Refuse);
+Answer leaveOut(Fold& fold, const HighlightModel& model, const Settings& settings, PoorFits poor = PoorFits::Refuse,
+                const ProgressFn& progress = {});
 /// Poor fits serve to judge a model where one of its own fits is poor.
 PoorFits poorFitsFor(const ModelResult& result);
 /// The last step of that alone, from a fit that is there.

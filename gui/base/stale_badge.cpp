@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "gui/base/stale_badge.h"
 
+#include <QAbstractScrollArea>
 #include <QEvent>
 #include <algorithm>
 #include <utility>
@@ -21,6 +22,7 @@ StaleBadge::StaleBadge(QWidget* panel, Qt::Corner corner) : QLabel(tr("updatingâ
     mark(true);
   });
   panel->installEventFilter(this);
+  if (const auto* scrolled = qobject_cast<QAbstractScrollArea*>(panel)) scrolled->viewport()->installEventFilter(this);
   hide();
 }
 
@@ -53,9 +55,10 @@ bool StaleBadge::eventFilter(QObject* watched, QEvent* event) {
 void StaleBadge::place() {
   constexpr int kMargin = 8;
   adjustSize();
-  const QWidget* panel = parentWidget();
-  move(panel->width() - width() - kMargin,
-       corner_ == Qt::TopRightCorner ? kMargin : std::max(0, panel->height() - height() - kMargin));
+  const auto* scrolled = qobject_cast<const QAbstractScrollArea*>(parentWidget());  // whose bars would cover it
+  const QRect area = scrolled ? scrolled->viewport()->geometry() : parentWidget()->rect();
+  const int below = area.y() + std::max(0, area.height() - height() - kMargin);
+  move(area.right() + 1 - width() - kMargin, corner_ == Qt::TopRightCorner ? area.y() + kMargin : below);
 }
 
 }  // namespace glint::gui

@@ -54,6 +54,7 @@ void InputReport::take(const ReportPtr& report) {
   // What can be corrected at once stands first.
   const std::size_t first = report->corrections.empty() ? 0 : report->corrections.front().finding;
   offered_ = toQString(report->findings[first]);
+  offered_[0] = offered_[0].toUpper();  // a sentence there; in lists a word stands before it
   if (report->findings.size() > 1) offered_ += tr(" (1 of %1 findings)").arg(report->findings.size());
   bar_.queueOffer(offered_, answers);
 }

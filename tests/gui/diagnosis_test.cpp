@@ -285,6 +285,57 @@ class DiagnosisTest : public QObject {
     QCOMPARE(panel.list()->topLevelItemCount(), 0);
   }
 
+  /// From a change until its results are there: at every moment the list is of one state, whatever was asked and is selected meanwhile.
+  void causesOfTwoStatesNeverStandBesideEachOther() {
+    Document document(parseTrainSpec);
+    DiagnosisPanel panel(document);
+    panel.resize(600, 400);
+    panel.show();
+    QVERIFY(QTest::qWaitForWindowExposed(&panel));
+    open(document, faulty());
+    const auto linesOf = [](const std::shared_ptr<const Inspection>& inspection,
+                            bool asked) {  // in a panel that saw nothing else
+      Document other(parseTrainSpec);
+      DiagnosisPanel alone(other);
+      Opened opened;
+      opened.path = "exact.json";
+      opened.scene = inspection->given;
+      opened.request = inspection->request;
+      other.open(opened);
+      other.setInspection(inspection, inspection->request);
+      if (asked) {
+        alone.diagnose();
+        if (!QTest::qWaitFor([&] { return !alone.busy(); }, kLongest)) return QStringList();
+      }
+      return lines(alone);
+    };
+    const std::shared_ptr<const Inspection> before = document.inspection();
+    panel.diagnose();
+    QTRY_VERIFY_WITH_TIMEOUT(!panel.busy(), kLongest);
+    const QStringList old = linesOf(before, true);
+    QCOMPARE(lines(panel), old);
+    InspectionRequest between = document.request(), after = document.request();
+    between.excluded = {2};  // nothing is wrong then
+    after.train = "1,3-7";
+    document.setRequest(between, "between");
+    QVERIFY(document.stale());
+    QCOMPARE(lines(panel), old);
+    const auto middle = std::make_shared<const Inspection>(inspect(document.sharedScene(), between));
+    document.setRequest(after, "after");
+    document.setFrameInspection(
+        std::make_shared<const Inspection>(inspectOneFrame(document.sharedScene(), after, document.selection().frame)),
+        document.selection().frame);
+    QCOMPARE(lines(panel), old);
+    document.select({3, "limit-angle"});
+    QCOMPARE(lines(panel), old);
+    document.setInspection(middle, between);  // of a run that was overtaken
+    QVERIFY(document.stale());
+    QCOMPARE(lines(panel), linesOf(middle, false));
+    compute(document);
+    QCOMPARE(lines(panel), linesOf(document.inspection(), false));
+    QVERIFY(lines(panel) != old && lines(panel) != linesOf(middle, false));
+  }
+
   void aStopIsAcknowledgedAtOnceAndKeepsWhatWasFound() {
     Document document(parseTrainSpec);
     DiagnosisPanel panel(document);

@@ -100,6 +100,22 @@ class InputReportTest : public QObject {
     QCOMPARE(input.readAll(), QByteArray(kInverted));
   }
 
+  /// `glint info` has a word before it there.
+  void onTheBarAFindingIsASentence() {
+    const QString file = folder_->filePath("scene.json");
+    write(file, R"({"glint_scene": 1, "camera": {"width": 64, "height": 48, "fx": 80, "fy": 80, "cx": 31.5, "cy": 23.5},
+      "frames": [{"id": "right", "camera_from_world": [[0,0,1,0],[0,1,0,0],[-1,0,0,2],[0,0,0,1]]}],
+      "surfaces": {"ball": {"analytic": {"type": "sphere", "radius": 0.4}}}})");
+    MainWindow window(coreEngine());
+    window.show();
+    window.open(file);
+    auto* bar = window.findChild<MessageBar*>(QStringLiteral("messageBar"));
+    QTRY_VERIFY_WITH_TIMEOUT(window.report()->report() && window.idle(), 20000);
+    QVERIFY2(bar->text().startsWith("Only one frame: nothing can be held out"), qPrintable(bar->text()));
+    QVERIFY2(window.report()->panel()->text().contains("finding: only one frame: "),
+             qPrintable(window.report()->panel()->text()));
+  }
+
   void nothingIsOfferedWhereNothingIsWrong() {
     MainWindow window(coreEngine());
     window.show();

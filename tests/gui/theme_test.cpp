@@ -15,6 +15,7 @@
 #include <QRadioButton>
 #include <QScrollBar>
 #include <QSpinBox>
+#include <QTextBrowser>
 #include <QToolTip>
 #include <QVBoxLayout>
 #include <algorithm>
@@ -25,10 +26,12 @@
 #include "core/draw/plots.h"
 #include "gui/base/elided_label.h"
 #include "gui/base/panel_scroll.h"
+#include "gui/base/stale_badge.h"
 #include "gui/base/text.h"
+#include "gui/frame/ladder_panel.h"
 #include "gui/plots/conditioning_panel.h"
 #include "gui/window/main_window.h"
-#include "tests/gui/fixture.h"
+#include "tests/gui/window_fixture.h"
 
 namespace glint::gui {
 
@@ -62,12 +65,37 @@ QImage drawn(QWidget& widget) {
 }
 }  // namespace
 
-class ThemeTest : public QObject {
+class ThemeTest : public QObject, WindowFixture {
   Q_OBJECT
  private slots:
+  /// Texts that hold colours of the theme follow it; else they would be light on light until the next result.
+  void aChangeOfThemeReachesTextsWithColours() {
+    MainWindow window(fixture_.engine());
+    show(window);
+    openAndWait(window);
+    window.document().selectFrame(window.document().frameCount() - 1);  // whose predictions fail
+    window.actions().find("explain.start")->trigger();
+    window.applyLayout(QStringLiteral("compare"));
+    auto* text = window.findChild<QTextBrowser*>(QStringLiteral("explain.text"));
+    const auto* ladder = window.findChild<LadderPanel*>();
+    QTRY_VERIFY(window.idle() && !ladder->canvases().empty());
+    for (const Theme theme : {Theme::Light, Theme::Dark}) {
+      window.setTheme(theme);
+      const QString faded = window.palette().color(QPalette::PlaceholderText).name();
+      for (const char* name : {"frameCaptions", "errorSummary"})
+        QTRY_VERIFY2(window.findChild<QLabel*>(QLatin1String(name))->text().contains(faded), name);
+      QTRY_VERIFY(text->toHtml().contains(faded));
+      const auto warned = [&] {
+        for (const QLabel* label : ladder->findChildren<QLabel*>())
+          if (label->text().contains(warningColour().name())) return true;
+        return false;
+      };
+      QTRY_VERIFY(warned());
+    }
+  }
+
   void theThemeThatWasChosenIsThatOfTheNextStart() {
-    const Fixture fixture;
-    MainWindow window(fixture.engine());
+    MainWindow window(fixture_.engine());
     for (const Theme chosen : {keptTheme() == Theme::Dark ? Theme::Light : Theme::Dark, keptTheme()}) {
       window.setTheme(chosen == Theme::Dark ? Theme::Light : Theme::Dark);
       window.actions().find("view.theme")->trigger();
@@ -81,6 +109,23 @@ class ThemeTest : public QObject {
   }
 
   void cleanup() { applyTheme(*qApp, Theme::Dark); }
+
+  /// "updating…" says that what it covers is old; the bars of a table would hide half of it.
+  void aBadgeKeepsClearOfScrollBars() {
+    QListWidget list;
+    list.setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOn);
+    list.setVerticalScrollBarPolicy(Qt::ScrollBarAlwaysOn);
+    StaleBadge badge(&list, Qt::BottomRightCorner);
+    list.resize(300, 200);
+    list.show();
+    QVERIFY(QTest::qWaitForWindowExposed(&list));
+    badge.setStale(true);
+    QTRY_VERIFY(badge.isVisible());
+    QVERIFY(list.viewport()->geometry().contains(badge.geometry()));
+    list.resize(240, 120);
+    QTRY_VERIFY(list.viewport()->geometry().contains(badge.geometry()));
+    QVERIFY(badge.geometry().bottom() > list.viewport()->height() / 2);
+  }
 
   void aSwatchKeepsItsColourInASelectedRow() {
     const QIcon swatch = colourSwatch(QColor(0xe6, 0x9f, 0x00));

@@ -24,7 +24,6 @@
 #include <QStackedWidget>
 #include <QStatusBar>
 #include <QTableView>
-#include <QTextBrowser>
 #include <QTimer>
 #include <QToolButton>
 #include <QToolTip>
@@ -34,7 +33,6 @@
 
 #include "gui/base/panel_scroll.h"
 #include "gui/base/text.h"
-#include "gui/base/theme.h"
 #include "gui/base/vtk_canvas.h"
 #include "gui/explain/explain_panel.h"
 #include "gui/frame/frame_canvas.h"
@@ -426,32 +424,6 @@ class WindowTest : public QObject, WindowFixture {
       QVERIFY(label->text().indexOf(sentence.toHtmlEscaped()) > label->text().lastIndexOf(QStringLiteral("</table>")));
     }
     QVERIFY(reasons > 0);
-  }
-
-  /// Texts that hold colours of the theme follow it; else they would be light on light until the next result.
-  void aChangeOfThemeReachesTextsWithColours() {
-    MainWindow window(fixture_.engine());
-    show(window);
-    openAndWait(window);
-    window.document().selectFrame(window.document().frameCount() - 1);  // whose predictions fail
-    window.actions().find("explain.start")->trigger();
-    window.applyLayout(QStringLiteral("compare"));
-    auto* text = window.findChild<QTextBrowser*>(QStringLiteral("explain.text"));
-    const auto* ladder = window.findChild<LadderPanel*>();
-    QTRY_VERIFY(window.idle() && !ladder->canvases().empty());
-    for (const Theme theme : {Theme::Light, Theme::Dark}) {
-      window.setTheme(theme);
-      const QString faded = window.palette().color(QPalette::PlaceholderText).name();
-      for (const char* name : {"frameCaptions", "errorSummary"})
-        QTRY_VERIFY2(window.findChild<QLabel*>(QLatin1String(name))->text().contains(faded), name);
-      QTRY_VERIFY(text->toHtml().contains(faded));
-      const auto warned = [&] {
-        for (const QLabel* label : ladder->findChildren<QLabel*>())
-          if (label->text().contains(warningColour().name())) return true;
-        return false;
-      };
-      QTRY_VERIFY(warned());
-    }
   }
 
   /// The selected frame comes first, and whatever shows only that frame shows it then.

@@ -6,12 +6,14 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <map>
 #include <numbers>
 #include <set>
 #include <sstream>
 
 #include "core/base/atomic_file.h"
 #include "core/draw/plot_view.h"
+#include "core/draw/scatter_plot.h"
 #include "tests/viz/small_inspection.h"
 #include "viz/canvas.h"
 #include "viz/plot_export.h"
@@ -320,6 +322,37 @@ TEST(Plots, SamplesOfAFrameOnTheSphere) {
   ASSERT_EQ(samples.lobes.size(), 1u);
   EXPECT_NE(samples.lobes[0].samples.has_value(), samples.lobes[0].failure.has_value());
   EXPECT_FALSE(frameSamples(*smallInspection(folder.path()), 77, "canonical").failure.empty());
+}
+
+/// As contours in photographs, lines of the timeline and ellipsoids: what a poor fit says is pale, named so, and dashed where it is a line.
+TEST(Plots, WhatIsPoorIsPaleDashedAndNamedSo) {
+  const TemporaryFolder folder;
+  const auto inspection = smallInspection(folder.path());
+  ModelResult& result = inspection->models["canonical"];
+  const auto series = [&]() -> std::map<std::string, PlotSeries> {
+    Tradeoff tradeoff;
+    tradeoff.points.resize(1);
+    tradeoff.points[0].model = "canonical";
+    tradeoff.points[0].rankedErrorPct = tradeoff.points[0].predictUs = 1;
+    tradeoff.points[0].poor = result.fits.front().fit->poor;
+    return {{"error", errorPlot(*inspection).series.at(0)},
+            {"mean", errorPlot(*inspection, {{}, true}).series.at(0)},
+            {"dial", residualDial(*inspection, 5, -1).series.at(0)},
+            {"axes", semiAxesPlot(*inspection).series.at(0)},
+            {"scatter", scatterPlot(*inspection, highlightRows(*inspection), {}).plot.series.at(0)},
+            {"tradeoff", tradeoffPlot(tradeoff).series.back()}};
+  };
+  for (const auto& [plot, s] : series()) {
+    EXPECT_EQ(s.colour, modelColour("canonical")) << plot;
+    EXPECT_EQ(s.dash, Dash::Solid) << plot;
+    EXPECT_EQ(s.name.find("poor"), std::string::npos) << plot;
+  }
+  for (ModelResult::Fit& fit : result.fits) fit.fit->poor = "a fifth of the radius remains";
+  for (const auto& [plot, s] : series()) {
+    EXPECT_EQ(s.colour, pale(modelColour("canonical"))) << plot;
+    if (s.shape != PlotShape::Points) EXPECT_EQ(s.dash, Dash::Dashed) << plot;
+    EXPECT_EQ(s.name.rfind("canonical, poor", 0), 0u) << plot << ": " << s.name;
+  }
 }
 
 TEST(Plots, EveryKindHasAName) {

@@ -5,11 +5,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <random>
 
 #include "core/base/angle.h"
 #include "core/inspect/summary.h"
 #include "core/report/diagnosis_report.h"
+#include "core/selection/leave_one_out.h"
 #include "core/selection/selection.h"
 #include "tests/core/diagnose/eared_ball.h"
 
@@ -302,6 +304,33 @@ TEST(Diagnosis, StopsWhenAskedAndHasToldWhatItKnew) {
   ASSERT_TRUE(told);
   EXPECT_EQ(told->remedies.at(0).change.model, "limit-angle");
   EXPECT_THROW(diagnose(inspection, {}, [](const StageEvent&) { return false; }), Stopped);
+}
+
+/// The longest steps are fits without a view: a stop does not wait for the end of one. The second time that it asks is within the first fit.
+TEST(Diagnosis, AStopEndsAFitInItsMiddle) {
+  const Inspection inspection = inspected(withMovedContour(2), {"reflectance"});
+  std::vector<Fold> folds = foldsOf(inspection, LeaveOut::Place);
+  int asked = 0;
+  EXPECT_THROW(leaveOut(folds.at(0), modelByName("reflectance"), inspection.request.settings, PoorFits::Take,
+                        [&](const StageEvent&) { return ++asked < 2; }),
+               Stopped);
+  EXPECT_EQ(asked, 2);
+}
+
+/// Trials on the same frames share what does not depend on the model.
+TEST(Diagnosis, ATrialSaysWhatARunOfItsOwnSays) {
+  const Inspection inspection = inspected(withMovedContour(2), {"canonical", "limit-angle"});
+  std::map<std::string, int> trials;  // of the same frames
+  DiagnoseOptions options = quick();
+  options.mostTried = 18;  // a third of them for the other model
+  for (const Measured& m : diagnose(inspection, options).measured) {
+    if (!m.change.train && !m.change.exclude) continue;
+    SCOPED_TRACE(flagsOf(m.change));
+    ++trials[m.change.train.value_or("") + "/" + m.change.exclude.value_or("")];
+    const Inspection own = inspect(inspection.given, with(inspection.request, m.change, *inspection.scene));
+    EXPECT_EQ(unseenError(own, *m.change.model, {}).views, m.error.views);
+  }
+  EXPECT_TRUE(std::any_of(trials.begin(), trials.end(), [](const auto& t) { return t.second > 1; }));
 }
 
 TEST(Diagnosis, ItsBoundIsKept) {
