@@ -35,7 +35,6 @@ const std::vector<Reader>& readers() {
       {"bop", Form::Json, feedBop},
       {"poses", Form::Text, feedPoses},
       {"labels", Form::Json, feedLabels},
-      {"part", Form::Json, feedPart},
       {"posed_images", Form::Text, feedPosedImages},
       {"response", Form::Text, feedResponse},
       {"image_header", Form::Bytes, feedImageHeader},

@@ -50,7 +50,6 @@ bool feedBop(const std::string& bytes);
 bool feedPosedImages(const std::string& bytes);
 bool feedPoses(const std::string& bytes);  // live_fuzz.cpp
 bool feedLabels(const std::string& bytes);
-bool feedPart(const std::string& bytes);         // part_fuzz.cpp
 bool feedResponse(const std::string& bytes);     // response_fuzz.cpp
 bool feedImageHeader(const std::string& bytes);  // image_fuzz.cpp
 bool feedImage(const std::string& bytes);
