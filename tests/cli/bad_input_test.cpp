@@ -235,10 +235,9 @@ TEST_F(BadInput, OutputThatCannotBeWritten) {
   for (const std::string& place : {out("missing/x"), inQuotes("/dev/full"), inQuotes(folder_ / "radiance")})
     expectRefused(place, on("info", "--json " + place));
   const std::string place = inQuotes("/dev/full");  // the only one that is noticed at the write itself
-  for (const ProgramRun& run :
-       {on("detect", "--json " + place), on("evaluate", "--models limit-angle --csv " + place),
-        on("reconstruct", "--model limit-angle -o " + place), onSession("predict", "--json " + place),
-        on("render", "--view frame --models limit-angle --size 64x64 -o " + place)})
+  for (const ProgramRun& run : {on("detect", "--json " + place), on("evaluate", "--models limit-angle --csv " + place),
+                                on("reconstruct", "--model limit-angle -o " + place), onSession("predict", "--json " + place),
+                                on("render", "--view frame --models limit-angle --size 64x64 -o " + place)})
     expectRefused(place, run);
 }
 

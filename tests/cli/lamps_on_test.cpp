@@ -51,7 +51,7 @@ Answer answerOf(const std::string& csv) {
     if (state == "unexpected")
       ++answer.unexpected[std::stoul(frame)];
     else
-      answer.lamps[{std::stoul(frame), light}] = {state, confidence.empty() ? 0 : std::stod(confidence)};
+      answer.lamps[{std::stoul(frame), light}] = {state, confidence.empty() ? 0 : Json::parse(confidence).get<double>()};
   }
   return answer;
 }

@@ -125,7 +125,7 @@ TEST_F(Retexture, ARestBesideWhatIsFilledIsWarnedOf) {
   const std::string words = "the observed highlight reaches ";
   const std::size_t at = run.err.find(words);
   ASSERT_NE(at, std::string::npos) << run.err;
-  EXPECT_NEAR(std::atof(run.err.c_str() + at + words.size()), expected, 1.5) << run.err;
+  EXPECT_NEAR(numberAt(run.err, at + words.size()), expected, 1.5) << run.err;
 }
 
 /// A lobe so wide that next to nothing of the surface is free of it: how much is told by the pictures of mask and marks.
@@ -150,7 +150,7 @@ TEST_F(Retexture, AHighlightAllOverTheSurfaceIsWarnedOf) {
   const std::string words = "the highlight can be seen on ";
   const std::size_t at = run.err.find(words);
   ASSERT_NE(at, std::string::npos) << run.err;
-  EXPECT_NEAR(std::atof(run.err.c_str() + at + words.size()), share, 1) << run.err;
+  EXPECT_NEAR(numberAt(run.err, at + words.size()), share, 1) << run.err;
 }
 
 TEST_F(Retexture, HeldOutFramesAreTheRenderingItself) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <sstream>
 #include <string>
 
 #include "tests/core/scene/scene_fixture.h"
@@ -16,6 +17,13 @@ struct ProgramRun {
   std::string out, err;
   int errorLines() const { return static_cast<int>(std::count(err.begin(), err.end(), '\n')); }
 };
+
+/// The number that begins there, with a decimal point whatever the locale.
+inline double numberAt(const std::string& text, std::size_t at) {
+  double number = 0;
+  std::istringstream(text.substr(at)) >> number;
+  return number;
+}
 
 /// Runs `glint ARGUMENTS` through the shell, its standard error in a file (so it is no terminal). `before` is put before
 /// the program: "ulimit -f 1;". The arguments may redirect standard output.
