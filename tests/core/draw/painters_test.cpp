@@ -144,9 +144,9 @@ TEST(PlotPainter, ANotedSampleHasARingAndItsName) {
   const std::size_t at = svg.find(">balanced, exact</text>");
   ASSERT_NE(at, std::string::npos);
   const std::size_t x = svg.rfind(" x=\"", at);
-  double at = 0;
-  std::istringstream(svg.substr(x + 4)) >> at;  // whatever the locale
-  EXPECT_LT(at, places->placeOf(plot, 0, plot.series[0].points[1]).x()) << "at the right border it stands at the left";
+  double left = 0;
+  std::istringstream(svg.substr(x + 4)) >> left;  // whatever the locale
+  EXPECT_LT(left, places->placeOf(plot, 0, plot.series[0].points[1]).x()) << "at the right border it stands at the left";
 }
 
 /// Points that are near to each other: their names stay apart, and beside their points.
