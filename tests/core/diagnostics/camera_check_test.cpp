@@ -8,6 +8,7 @@
 #include <cmath>
 #include <functional>
 #include <random>
+#include <sstream>
 #include <vector>
 
 #include "tests/core/inspect/exact_scene.h"
@@ -208,7 +209,9 @@ TEST(CameraCheck, ShiftedSurface) {
     ASSERT_THAT(check.findings, ElementsAre(HasSubstr("the mesh seems to be shifted by ("))) << shift.transpose();
     const std::string& words = check.findings.front();
     Eigen::Vector3d found;
-    ASSERT_EQ(std::sscanf(words.c_str() + words.find('('), "(%lf, %lf, %lf) m", &found.x(), &found.y(), &found.z()), 3);
+    std::istringstream numbers(words.substr(words.find('(') + 1));  // with a point, whatever the locale
+    char comma = ',';
+    ASSERT_TRUE(numbers >> found.x() >> comma >> found.y() >> comma >> found.z()) << words;
     constexpr double kSize = 1.476;  // m, of the ellipsoid's box
     EXPECT_LT((found + shift).norm(), 0.01 * kSize) << words << " " << shift.transpose();
   }
