@@ -55,7 +55,7 @@ def compare(shell):
         printed = {}
         for line in shell.run(f"example/session_errors {session}").splitlines():
             model, frame, light, highlight, error = line.split()
-            printed[model, frame, light, int(highlight)] = float(error)
+            printed[model, frame, light, int(highlight)] = float(error.replace(",", "."))  # printf under a locale with a comma
         if not expected or printed != expected:
             differ = [key for key in {*printed, *expected} if printed.get(key) != expected.get(key)]
             sys.exit(f"{name}: {len(differ)} of {len(expected)} numbers differ, the first for {differ[:1]}")
