@@ -6,6 +6,7 @@
 #include <vtkPolyDataMapper.h>
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 
 #include "core/lamps/lamp_answer.h"
@@ -156,16 +157,16 @@ TEST(EstimatedLight, AFittedSphereOrTubeIsDrawnAndSaid) {
   const auto drawn = [&](const ReflectanceFit& lobe) {
     fit.family = lobe;
     inspection->models["reflectance"].fits = {{"lamp", {}, fit, {}}};
-    Eigen::Vector3d half(0, 0, 0);
+    Eigen::Vector3d reach(0, 0, 0);
     std::string text;
     for (const Drawn& d : lightLayer(input).drawn) {
       if (d.info.model != "reflectance") continue;
       text = d.info.text;
       const double* box = d.prop->GetBounds();
       for (int axis = 0; axis < 3; ++axis)
-        half[axis] = std::max({half[axis], box[2 * axis + 1] - centre[axis], centre[axis] - box[2 * axis]});
+        reach[axis] = std::max({reach[axis], box[2 * axis + 1] - centre[axis], centre[axis] - box[2 * axis]});
     }
-    return std::pair(half, text);
+    return std::pair(reach, text);
   };
   ReflectanceFit sphere, tube;
   sphere.lightRadius = kRadius;
