@@ -99,7 +99,7 @@ TEST(AddedLobe, TheAdviserTriesItAndEveryShapeOfTheLamp) {
   fit.family = sphere;
   r.models["reflectance"].fits = {{"lamp", {}, fit, {}}};
   std::set<std::string> tried;
-  for (const CandidateChange& c : candidateChanges(r, "reflectance")) tried.insert(c.change.set);
+  for (const CandidateChange& c : candidateChanges(r, "reflectance")) tried.insert(c.change.set.value_or(""));
   for (const char* other : {"fit.light_size=point", "fit.light_size=segment", "fit.lobe=torrance-sparrow", "fit.lobe=student-t"})
     EXPECT_TRUE(tried.count(other)) << other;
   for (const char* same : {"fit.light_size=sphere", "fit.lobe=ggx"}) EXPECT_FALSE(tried.count(same)) << same;
