@@ -6,6 +6,8 @@
 #include <set>
 
 #include "core/inspect/summary.h"
+#include "core/model/reflectance_settings.h"
+#include "core/reflectance/added_lobe.h"
 #include "core/scene/frame_spec.h"
 
 namespace glint {
@@ -99,12 +101,25 @@ class Candidates {
     for (const char* solver : {"refined", "anchored", "linear"}) set("fit.solver", solver, "another solver of the ellipsoid");
   }
 
+  /// Shapes of the lamp and lobes that no fit of this model has already.
   void lobes() {
     if (!mayHaveLobe()) return;
-    set("fit.light_size", "sphere", "a lamp with a size");
-    set("fit.light_size", "point", "a lamp without a size");
+    std::set<std::string> found;
+    if (const auto result = r_.models.find(model_.id()); result != r_.models.end())
+      for (const ModelResult::Fit& f : result->second.fits)
+        if (const ReflectanceFit* lobe = f.fit ? f.fit->as<ReflectanceFit>() : nullptr)
+          found.insert({lampChoiceOf(*lobe), nameOf(lobe->lobe)});
+    const auto setOther = [&](const std::string& key, const std::string& value, const std::string& why) {
+      if (!found.count(value)) set(key, value, why);
+    };
+    setOther("fit.light_size", "sphere", "a lamp with a size");
+    setOther("fit.light_size", "segment", "a lamp with a length");
+    setOther("fit.light_size", "point", "a lamp without a size");
     set("fit.evidence", "contours", "a lobe that the pixels do not follow");
-    for (const char* lobe : {"ggx", "torrance-sparrow"}) set("fit.lobe", lobe, "another lobe");
+    std::vector<std::string> lobes{"ggx", "torrance-sparrow"};
+    for (const Lobe lobe : allLobes())
+      if (profileOf(lobe)) lobes.emplace_back(nameOf(lobe));  // of a plugin
+    for (const std::string& lobe : lobes) setOther("fit.lobe", lobe, "another lobe");
   }
 
   /// Its fits have a lobe, or there is none to tell and it reconstructs no ellipsoid.

@@ -6,6 +6,7 @@
 #include <vtkPolyDataMapper.h>
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 
 #include "core/lamps/lamp_answer.h"
@@ -135,4 +136,48 @@ TEST(EstimatedLight, SaysThatItsDeviationIsOfNoiseAloneAndHowFarTheLampOfALobeIs
 }
 
 }  // namespace measured_lamps_tests
+
+/// A lamp with a size is more than its centre: it is drawn as large as the fit has it, and its size is said.
+TEST(EstimatedLight, AFittedSphereOrTubeIsDrawnAndSaid) {
+  const test::TemporaryFolder folder;
+  const auto inspection = test::smallInspection(folder.path());
+  LayerInput input;
+  input.inspection = inspection.get();
+  input.surfaceKey = inspection->surfaces->keyOf(0);
+  input.scale = sceneScale(*inspection, nullptr, {0, 1, 2}, 1);
+  input.models = {"reflectance"};
+  const Eigen::Vector3d centre = inspection->lights.at({"lamp"})->light.position() + Eigen::Vector3d(0.12, 0, 0.09);
+  constexpr double kRadius = 0.3;
+  const Eigen::Vector3d half(0.2, 0.1, 0);
+  ModelFit fit;
+  fit.model = "reflectance";
+  fit.light = "lamp";
+  fit.lightEstimate = Light::at(centre);
+  /// Half the sides of the box around what is drawn of the model, and its words.
+  const auto drawn = [&](const ReflectanceFit& lobe) {
+    fit.family = lobe;
+    inspection->models["reflectance"].fits = {{"lamp", {}, fit, {}}};
+    Eigen::Vector3d reach(0, 0, 0);
+    std::string text;
+    for (const Drawn& d : lightLayer(input).drawn) {
+      if (d.info.model != "reflectance") continue;
+      text = d.info.text;
+      const double* box = d.prop->GetBounds();
+      for (int axis = 0; axis < 3; ++axis)
+        reach[axis] = std::max({reach[axis], box[2 * axis + 1] - centre[axis], centre[axis] - box[2 * axis]});
+    }
+    return std::pair(reach, text);
+  };
+  ReflectanceFit sphere, tube;
+  sphere.lightRadius = kRadius;
+  tube.lightSegment = {{centre - half, centre + half}};
+  const double star = drawn({}).first.maxCoeff();
+  ASSERT_LT(star, 0.5 * half.y()) << "the size can be seen beside the star";
+  EXPECT_EQ(drawn({}).second.find("radius"), std::string::npos);
+  EXPECT_LT((drawn(sphere).first - Eigen::Vector3d::Constant(kRadius)).norm(), 0.01 * kRadius);
+  EXPECT_NE(drawn(sphere).second.find("0.3 m"), std::string::npos) << drawn(sphere).second;
+  EXPECT_LT((drawn(tube).first - Eigen::Vector3d(half.x(), half.y(), star)).norm(), 0.01 * half.norm());
+  EXPECT_NE(drawn(tube).second.find("length"), std::string::npos) << drawn(tube).second;
+}
+
 }  // namespace glint::viz

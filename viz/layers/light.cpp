@@ -25,6 +25,19 @@ void addDirection(LayerContent& content, const LayerInput& in, const Eigen::Vect
   content.extent.push_back(to);
 }
 
+/// What shines: a line between the ends of a lamp with a length, three great circles of the given radius about its middle.
+void addBody(LayerContent& content, const Eigen::Vector3d& middle, double radius,
+             const std::optional<std::pair<Eigen::Vector3d, Eigen::Vector3d>>& ends, const Colour& colour, double width,
+             const Picked& info) {
+  if (ends) content.add(segmentActor({*ends}, colour, 4), info, 4);
+  if (!(radius > 0)) return;
+  const Eigen::Matrix3d axes = radius * Eigen::Matrix3d::Identity();
+  content.add(lineActor({circle(middle, axes.col(0), axes.col(1)), circle(middle, axes.col(1), axes.col(2)),
+                         circle(middle, axes.col(2), axes.col(0))},
+                        colour, width),
+              info, width);
+}
+
 void addEstimate(LayerContent& content, const LayerInput& in, const Light& light, double size, const Colour& colour,
                  const std::string& label, Picked info) {
   const Eigen::Vector3d centre = in.scale.sceneBox.center();
@@ -51,17 +64,24 @@ void addEstimate(LayerContent& content, const LayerInput& in, const Light& light
   }
   content.add(sphereActor({p}, r, colour), info);
   const bool selected = !in.selection.light.empty() && in.selection.light == info.light && info.model.empty();
-  if (selected) {
-    const Eigen::Matrix3d axes = kRing * r * Eigen::Matrix3d::Identity();
-    content.add(
-        lineActor({circle(p, axes.col(0), axes.col(1)), circle(p, axes.col(1), axes.col(2)), circle(p, axes.col(2), axes.col(0))},
-                  in.ink(), 2),
-        info, 2);
-  }
+  if (selected) addBody(content, p, kRing * r, std::nullopt, in.ink(), 2, info);
   content.add(segmentActor(rays, colour, 1.5), info, 1.5);
   content.labels.push_back({p, label, colour, {}, (selected ? kRing : kStar) * r});
   content.glyphs.push_back(std::move(corners));
   content.extent.push_back(p);
+}
+
+/// The size of a lamp as a fitted lobe has it, drawn where the lamp is not far; its words go into `info`.
+void addFittedSize(LayerContent& content, const LayerInput& in, const ModelFit& fit, Picked& info) {
+  const ReflectanceFit* const lobe = fit.as<ReflectanceFit>();
+  if (!lobe || fit.lightEstimate->atInfinity() || !(lobe->lightRadius > 0 || lobe->lightSegment)) return;
+  if (lobe->lightRadius > 0) info.text += line("radius", lobe->lightRadius, "m");
+  if (const auto& ends = lobe->lightSegment)
+    info.text +=
+        line("length", (ends->second - ends->first).norm(), "m") + line("end", ends->first, "m") + line("end", ends->second, "m");
+  const Eigen::Vector3d middle = fit.lightEstimate->position();
+  if ((middle - in.scale.sceneBox.center()).norm() > kFarLight * in.scale.sceneSize) return;
+  addBody(content, middle, lobe->lightRadius, lobe->lightSegment, modelColour(info.model), 1.5, info);
 }
 
 /// How far the lamp is that a lobe explains: the noise of contours does not tell what one limit angle gets wrong.
@@ -113,6 +133,7 @@ LayerContent lightLayer(const LayerInput& in) {
       info.light = fit->light;
       info.text = line("light of model", model);
       if (fit->limitAngle()) info.text += line("limit angle", *fit->limitAngle() * 180 / std::numbers::pi, "deg");
+      addFittedSize(content, in, *fit, info);
       addEstimate(content, in, *fit->lightEstimate, 0.7, modelColour(model), model + " light", info);
     }
   }
@@ -145,13 +166,8 @@ LayerContent trueLightLayer(const LayerInput& in) {
                    label + ", " + distanceText(far) + " away", info);
       continue;
     }
-    if (at.size() == 2) content.add(segmentActor({{at[0], at[1]}}, kTruth, 4), info, 4);
     const double r = std::max(light.radius, 4.2 * in.scale.point);
-    const Eigen::Matrix3d axes = r * Eigen::Matrix3d::Identity();
-    content.add(lineActor({circle(middle, axes.col(0), axes.col(1)), circle(middle, axes.col(1), axes.col(2)),
-                           circle(middle, axes.col(2), axes.col(0))},
-                          kTruth, 2.5),
-                info, 2.5);
+    addBody(content, middle, r, at.size() == 2 ? std::optional(std::pair(at[0], at[1])) : std::nullopt, kTruth, 2.5, info);
     content.add(sphereActor({middle}, std::max(light.radius, 0.5 * in.scale.point), kTruth), info);
     content.labels.push_back({middle, label, kTruth, {}, r});
     content.extent.push_back(middle);

@@ -4,7 +4,9 @@
 #include <gmock/gmock.h>
 
 #include <random>
+#include <set>
 
+#include "core/diagnose/candidates.h"
 #include "core/reflectance/added_lobe.h"
 #include "core/reflectance/light_radiance.h"
 #include "core/reflectance/lobe_width.h"
@@ -80,6 +82,27 @@ TEST(AddedLobe, BoundIsAboveTheRadiance) {
       part.lightSquared = Eight::Constant(1);
       EXPECT_GE(largestLogRadiance(lobe, m, part)[0], logRadiance(lobe, m, n, l, v)->total()) << m;
     }
+}
+
+/// The adviser tries what the fit does not have yet: other shapes of the lamp, other lobes and those of plugins.
+TEST(AddedLobe, TheAdviserTriesItAndEveryShapeOfTheLamp) {
+  addLobe(std::make_unique<example::StudentLobe>());
+  Inspection r;
+  Scene scene;
+  scene.frames.resize(6);
+  r.scene = r.given = std::make_shared<const Scene>(std::move(scene));
+  r.train = parseTrainSpec("first:3", *r.scene);
+  ReflectanceFit sphere;
+  sphere.lobe = Lobe::Ggx;
+  sphere.lightRadius = 0.1;
+  ModelFit fit;
+  fit.family = sphere;
+  r.models["reflectance"].fits = {{"lamp", {}, fit, {}}};
+  std::set<std::string> tried;
+  for (const CandidateChange& c : candidateChanges(r, "reflectance")) tried.insert(c.change.set.value_or(""));
+  for (const char* other : {"fit.light_size=point", "fit.light_size=segment", "fit.lobe=torrance-sparrow", "fit.lobe=student-t"})
+    EXPECT_TRUE(tried.count(other)) << other;
+  for (const char* same : {"fit.light_size=sphere", "fit.lobe=ggx"}) EXPECT_FALSE(tried.count(same)) << same;
 }
 
 TEST(AddedShape, SuperellipsoidOfExponentTwoIsAnEllipsoid) {
