@@ -225,7 +225,7 @@ std::vector<Victim> makeMaterials(const fs::path& program, const fs::path& folde
   const std::vector<std::string> onMesh = {"info .", "evaluate . " + limit + "--json out/e.json",
                                            "reconstruct . --model canonical --train 0-2 -o out/s.glint"};
   const std::vector<std::string> onImage = {"info .", "detect . --json out/d.json --out out/d",
-                                            "lights frames --ball 40,30,20 --json out/l.json -o out/l.lp -o out/l.csv",
+                                            "lights frames --ball 42,31,31 --json out/l.json -o out/l.lp -o out/l.csv",
                                             "evaluate . " + limit + "--source image --json out/e.json --html out/e.html"};
   const std::vector<std::string> onSession = {"info run.glint",
                                               "predict run.glint --json out/p.json --out out/p --masks out/m",
