@@ -39,9 +39,8 @@ Command diagnoseCommand() {
   c.description =
       "Compares the models in the held-out frames (where none shows a highlight: in training frames that are left out), then\n"
       "measures what helps the best ones: settings, training frames, exclusions, filters. Ends in one verdict and at most three\n"
-      "remedies that beat the present state: the one model that was asked for, else the best of those. The evidence stands "
-      "below:\n"
-      "why models fail or are poor, and where --models auto would choose otherwise.\n"
+      "remedies that beat the present state: the one model that was asked for, else the best of those. The evidence stands\n"
+      "below: why models fail or are poor, and where --models auto would choose otherwise.\n"
       "Exit code 3 if no model could be fitted; --json is written all the same.";
   c.examples =
       "  glint diagnose scene.json                                which model is best, and what makes it better\n"

@@ -186,7 +186,7 @@ BundlerPoint bundlerPoint(BundlerWords& words, const std::string& what, std::siz
   return point;
 }
 
-/// Of the file that is behind its cameras. Where nothing tells where the next point begins, a bad one ends the reading.
+/// Reads the points, which follow the cameras. A bad point ends the reading where the lines do not tell where the next one begins.
 void readBundlerPoints(BundlerWords& words, std::uint64_t points, const std::string& file, BundlerModel& model) {
   capture::BadLines bad;
   for (std::uint64_t i = 0; i < points; ++i) {

@@ -55,6 +55,7 @@ class PassedOver {
   std::size_t number_ = 0;
   std::string first_;
 };
+
 /// Lines that cannot be read, each of which costs no more than its frame or point.
 class BadLines {
  public:

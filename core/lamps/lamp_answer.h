@@ -13,11 +13,12 @@ namespace glint {
 
 /// A highlight that was found and not used for a lamp.
 struct DroppedSighting {
-  std::string frame;                              ///< id
-  std::optional<std::size_t> ball;                ///< index; none in a scene
-  Pixel place{0, 0};                              ///< px, measured
-  std::string reason;                             ///< in words
-  std::optional<Eigen::Vector3d> direction = {};  ///< of a lamp that it may be as well, unit; nothing where it is none
+  std::string frame;                ///< id
+  std::optional<std::size_t> ball;  ///< index; none in a scene
+  Pixel place{0, 0};                ///< px, measured
+  std::string reason;               ///< in words
+  std::optional<Eigen::Vector3d> direction =
+      {};  ///< unit, towards the lamp if this reflection is the lamp's after all; nothing where it cannot be
 };
 
 /// How large a reflection makes its lamp appear from the ball.

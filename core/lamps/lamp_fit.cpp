@@ -335,7 +335,7 @@ std::optional<Parallax> parallaxOf(const LampProblem& problem, const std::vector
   return Parallax{first->ball, second->ball, degrees(change.dot(along)), degrees(change.dot(side))};
 }
 
-/// Of the directions to the border of a lamp, seen around their middle.
+/// How large a lamp appears whose border lies in these directions, seen around their middle.
 std::optional<LampExtent> extentOf(const std::vector<Eigen::Vector3d>& border) {
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3d& d : border) middle += d;

@@ -168,7 +168,7 @@ LayerContent trueLightLayer(const LayerInput& in) {
     }
     const double r = std::max(light.radius, 4.2 * in.scale.point);
     addBody(content, middle, r, at.size() == 2 ? std::optional(std::pair(at[0], at[1])) : std::nullopt, kTruth, 2.5, info);
-    content.add(sphereActor({middle}, std::max(light.radius, 0.5 * in.scale.point), kTruth), info);
+    content.add(sphereActor({middle}, 0.5 * in.scale.point, kTruth), info);  // its middle: a full ball would hide the fits in it
     content.labels.push_back({middle, label, kTruth, {}, r});
     content.extent.push_back(middle);
   }
