@@ -38,7 +38,7 @@ const ModelFit& fitOf(const std::string& model) {
     // The contours above are those of a limit angle; a prediction asks only for a lobe.
     for (const auto& [name, radius] : {std::pair("reflectance", 0.0), std::pair("reflectance-disc", 0.15)}) {
       fits[name].lightEstimate = test::lightOf(scene().light);
-      fits[name].family = ReflectanceFit{Lobe::TorranceSparrow, 0.1, 0.5, radius};
+      fits[name].family = ReflectanceFit{Lobe::TorranceSparrow, 0.1, 0.5, sphereLamp(*fits[name].lightEstimate, radius).shape};
     }
   }
   if (!fits.count(model)) {

@@ -35,9 +35,9 @@ std::string fitText(const ModelResult::Fit& entry, const std::string& model) {
     out += formatted("  limit angle       %.6g deg\n", *f.limitAngle() * 180 / M_PI);
   }
   if (const ReflectanceFit* const lobe = f.as<ReflectanceFit>()) {
-    if (lobe->lightRadius > 0) out += formatted("  light radius      %.6g m\n", lobe->lightRadius);
-    if (const auto& ends = lobe->lightSegment)
-      out += "  light ends        " + vectorText(ends->first) + " m, " + vectorText(ends->second) + " m\n";
+    for (const LampFact& fact : f.lamp() ? factsOf(*f.lamp()) : std::vector<LampFact>())
+      out += formatted("  light %-11s ", fact.name.c_str()) +
+             (fact.value.size() == 1 ? formatted("%.6g", fact.value(0)) : vectorText(fact.value)) + " m\n";
     out += formatted("  lobe              %s, m = %.6g\n", nameOf(lobe->lobe), lobe->roughness);
   }
   if (fitted && !fitted->singularValues.empty()) {

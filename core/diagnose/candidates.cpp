@@ -108,13 +108,12 @@ class Candidates {
     if (const auto result = r_.models.find(model_.id()); result != r_.models.end())
       for (const ModelResult::Fit& f : result->second.fits)
         if (const ReflectanceFit* lobe = f.fit ? f.fit->as<ReflectanceFit>() : nullptr)
-          found.insert({lampChoiceOf(*lobe), nameOf(lobe->lobe)});
+          found.insert({nameOf(lobe->shape), nameOf(lobe->lobe)});
     const auto setOther = [&](const std::string& key, const std::string& value, const std::string& why) {
       if (!found.count(value)) set(key, value, why);
     };
-    setOther("fit.light_size", "sphere", "a lamp with a size");
-    setOther("fit.light_size", "segment", "a lamp with a length");
-    setOther("fit.light_size", "point", "a lamp without a size");
+    for (const LampShape& shape : allLampShapes())
+      setOther("fit.light_size", nameOf(shape), std::visit([](const auto& s) { return s.kWords; }, shape));
     set("fit.evidence", "contours", "a lobe that the pixels do not follow");
     std::vector<std::string> lobes{"ggx", "torrance-sparrow"};
     for (const Lobe lobe : allLobes())

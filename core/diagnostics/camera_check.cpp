@@ -240,7 +240,7 @@ class Check {
     for (const double r : fitted->residualPx) result.rmsPx += r * r / double(which.size());
     result.rmsPx = std::sqrt(result.rmsPx);
     const ReflectanceFit& lobe = std::get<ReflectanceFit>(fitted->family);
-    result.kind = {nameOf(lobe.lobe), lampChoiceOf(lobe)};
+    result.kind = {nameOf(lobe.lobe), nameOf(lobe.shape)};
     result.model = std::make_shared<const ModelFit>(*fitted);
     return std::isfinite(result.rmsPx) ? std::optional<Fitted>(result) : std::nullopt;
   }

@@ -126,7 +126,7 @@ FittedBand bandOf(const HighlightModel& model, const ModelFit& fit, const FitInp
       Settings with = settings;
       with.set("fit.lobe", lobe);
       // Under a lamp of the same shape: a wrong lobe would take long to find one that makes up for it.
-      with.set("fit.light_size", lampChoiceOf(*fitted));
+      with.set("fit.light_size", std::string(nameOf(fitted->shape)));
       tryOther(model, with, "the lobe " + lobe);
     }
   } else if (fit.as<LimitAngleFit>()) {

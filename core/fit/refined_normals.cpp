@@ -51,7 +51,7 @@ class LobeAngles {
     const ReflectanceFit& lobe = *fit.as<ReflectanceFit>();
     for (const TrainingView& v : views) {
       if (!v.seen) continue;
-      auto view = std::make_shared<View>(v, lobe.lobe, lobe.roughness, lampOf(lobe, light_));
+      auto view = std::make_shared<View>(v, lobe.lobe, lobe.roughness, *fit.lamp());
       const std::vector<RadiancePeak> peaks = view->field.peaks({v.highlight.peak}, kScanStepPx);
       if (!peaks.empty()) view->top = peaks.front().logRadiance;
       view->level = std::sqrt(-std::log(v.highlight.level));

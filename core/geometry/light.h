@@ -15,6 +15,12 @@ class Light {
   static Light towards(const Eigen::Vector3d& fromScene);
   /// Any non-zero multiple; w < 0 flips the sign. std::invalid_argument if zero or not finite.
   static Light homogeneous(const Eigen::Vector4d& lw);
+  /// @param lw  of length 1 to round-off, w >= 0: kept digit by digit
+  static Light ofUnit(const Eigen::Vector4d& lw) {
+    Light light;
+    light.lw_ = lw;
+    return light;
+  }
 
   const Eigen::Vector4d& homogeneous() const { return lw_; }
   bool atInfinity() const { return lw_.w() == 0; }

@@ -20,6 +20,7 @@
 #include "core/geometry/plane.h"
 #include "core/highlight/highlight.h"
 #include "core/model/reconstruct.h"
+#include "core/reflectance/lamp.h"
 #include "core/reflectance/lobe.h"
 #include "core/surface/brightest_point.h"
 #include "core/surface/surface.h"
@@ -115,10 +116,9 @@ struct LimitAngleFit {
 /// A reflectance lobe and the shape of the lamp about ModelFit::lightEstimate.
 struct ReflectanceFit {
   Lobe lobe = Lobe::TorranceSparrow;
-  double roughness = 0;    ///< m of the lobe
-  double level = 0;        ///< fraction q of the peak at which the contour lies
-  double lightRadius = 0;  ///< m, of a spherical light; 0 for a point or a segment
-  std::optional<std::pair<Eigen::Vector3d, Eigen::Vector3d>> lightSegment{};  ///< ends of a lamp with a length, world, m
+  double roughness = 0;            ///< m of the lobe
+  double level = 0;                ///< fraction q of the peak at which the contour lies
+  LampShape shape{};               ///< of the lamp about ModelFit::lightEstimate
   std::string evidence{};          ///< what the fit saw, "contours", "levels" or "pixels"
   std::vector<double> levels{};    ///< of the contours that it saw; empty for pixels
   std::optional<double> blurPx{};  ///< standard deviation of the images' blur, where pixels show it
@@ -150,6 +150,11 @@ struct ModelFit {
   template <class Family>
   const Family* as() const {
     return std::get_if<Family>(&family);
+  }
+  /// The lamp that a lobe was fitted with; nothing for other models.
+  std::optional<Lamp> lamp() const {
+    const ReflectanceFit* const lobe = as<ReflectanceFit>();
+    return lobe && lightEstimate ? std::optional(Lamp(lightEstimate->homogeneous(), lobe->shape)) : std::nullopt;
   }
   /// Null where there is none.
   const Ellipsoid* ellipsoid() const {
@@ -213,8 +218,9 @@ namespace parameters {
 inline constexpr ParameterBlock kLight{0, 4}, kLimitAngle{4, 1}, kExtent{5, 6};
 // primal, dual, canonical: centre; S, xx yy zz xy xz yz; of canonical, whose light moves its predictions, L too.
 inline constexpr ParameterBlock kCentre{0, 3}, kShape{3, 6}, kLampOfEllipsoid{9, 4};
-// reflectance: after L the logarithm of the roughness, then of lamps with a size radius^2 or half the axis.
-inline constexpr ParameterBlock kLogRoughness{4, 1}, kRadiusSquared{5, 1}, kHalfAxis{5, 3};
+// reflectance: after L the logarithm of the roughness, then the unknowns of the lamp's shape.
+inline constexpr ParameterBlock kLogRoughness{4, 1};
+inline constexpr int kLampShape = 5;
 }  // namespace parameters
 
 /// What others must know of a model to show, check and compare it.

@@ -38,7 +38,8 @@ std::optional<Light> meanRay(const std::vector<TrainingView>& views) {
 std::optional<PixelFit> withExtent(const std::vector<TrainingView>& views, const std::vector<const PixelPatch*>& patches,
                                    const PixelFit& point, const Settings& settings, const ProgressFn& progress) {
   const LampChoices choices = lampChoicesOf(settings);
-  if ((!choices.sphere && !choices.segment) || point.model.lamp.centre.atInfinity()) return std::nullopt;
+  if (choices.none() || point.model.lamp.atInfinity()) return std::nullopt;
+  const Light centre = lightOf(point.model.lamp);
   std::vector<RadianceView> contours;
   for (const TrainingView& v : views)
     if (v.seen && v.pixels && !v.highlight.clipped)
@@ -53,33 +54,33 @@ std::optional<PixelFit> withExtent(const std::vector<TrainingView>& views, const
   };
   bool tried = false;
   if (contours.size() >= kFewestContours) {
-    const double alpha = medianContourAngle(views, point.model.lamp.centre, kWidthPoints);
+    const double alpha = medianContourAngle(views, centre, kWidthPoints);
     RadianceFitOptions asking = radianceFitOptionsOf(settings);
     asking.progress = progress;
     const Outcome<RadianceFit> said =
-        alpha > 0 ? searchRadiance(lobes, contours, point.model.lamp.centre, std::min(alpha, kWidestStart), choices, asking)
+        alpha > 0 ? searchRadiance(lobes, contours, centre, std::min(alpha, kWidestStart), choices, asking)
                   : Outcome<RadianceFit>(Failure{Reason::NoLight, ""});
-    if (said && !said->poor && !said->lamp().isPoint()) {
+    if (said && !said->poor && !said->lamp.isPoint()) {
       std::vector<Lobe> order = lobes;
       std::stable_partition(order.begin(), order.end(), [&](Lobe l) { return l == said->lobe; });
-      consider(order, said->lamp(), said->roughness);
+      consider(order, said->lamp, said->roughness);
       tried = true;
     }
   }
-  if (!tried && choices.sphere) {
+  if (!tried && admits<SphereShape<>>(choices)) {
     // Contours may hide a size that pixels show: as large as half the lobe is wide, to begin with. What has a pattern may come from a lamp
     // that is wider than the lobe: the lobe is then narrower than a point lamp makes it.
-    const double distance = point.model.lamp.centre.position().norm();
+    const double distance = centre.position().norm();
     double reach = 0;
     for (const PixelPatch* p : patches) {
       const std::size_t middle = p->size() / 2;
-      if (p->onSurface[middle]) reach = std::max(reach, (point.model.lamp.centre.position() - p->seen[middle].position).norm());
+      if (p->onSurface[middle]) reach = std::max(reach, (centre.position() - p->seen[middle].position).norm());
     }
     const double width = point.model.roughness * (reach > 0 ? reach : distance);
     PixelFitOptions same;
     same.background = point.background;
     const auto sphere = [&](double radius, double roughness) {
-      consider({point.model.lobe}, Lamp::sphere(point.model.lamp.centre, radius), roughness, same);
+      consider({point.model.lobe}, sphereLamp(centre, radius), roughness, same);
     };
     if (point.patterned) sphere(1.5 * width, 0.7 * point.model.roughness);
     if (!best) sphere(0.5 * width, point.model.roughness);
@@ -101,9 +102,7 @@ std::optional<std::string> contradiction(const std::vector<TrainingView>& views,
   RadianceFit at;
   at.lobe = fit.model.lobe;
   at.roughness = fit.model.roughness;
-  at.light = fit.model.lamp.centre;
-  at.lightRadius = fit.model.lamp.radius;
-  at.lightHalfAxis = fit.model.lamp.halfAxis;
+  at.lamp = fit.model.lamp;
   const std::vector<double> rms = rmsOfViews(at, contours, radianceFitOptionsOf(settings));
   double shares = 0, squares = 0, count = 0;
   for (std::size_t i = 0; i < rms.size(); ++i) {
@@ -183,10 +182,9 @@ Outcome<ModelFit> reflectanceFromPixels(const FitInput& input, const Settings& s
     level = v.highlight.level;
   }
   const Lamp& lamp = pixels.model.lamp;
-  fit.lightEstimate = lamp.centre;
-  if (!lamp.centre.atInfinity() && pixels.positionCovariance.allFinite()) fit.lightCovariance = pixels.positionCovariance;
-  fit.family = ReflectanceFit{pixels.model.lobe,    pixels.model.roughness, level, lamp.radius, lamp.ends(), "pixels", {},
-                              pixels.model.blurPx()};
+  fit.lightEstimate = lightOf(lamp);
+  if (!lamp.atInfinity() && pixels.positionCovariance.allFinite()) fit.lightCovariance = pixels.positionCovariance;
+  fit.family = ReflectanceFit{pixels.model.lobe, pixels.model.roughness, level, lamp.shape, "pixels", {}, pixels.model.blurPx()};
   fit.residualPx = pixels.residualPx;
   fit.uncertainty = pixels.uncertainty;
   fit.solver = "pixels";

@@ -13,11 +13,6 @@ namespace {
 
 constexpr double kSamePeakPx = 0.05;  // as RadianceField::peaks
 
-/// How far the points of an extended light lie from its centre, m.
-double reachOf(const ReflectanceFit& fit) {
-  return fit.lightSegment ? 0.5 * (fit.lightSegment->second - fit.lightSegment->first).norm() : fit.lightRadius;
-}
-
 }  // namespace
 
 Outcome<std::vector<PredictedHighlight>> radianceStars(const RadianceField& radiance, const ReflectanceFit& fit,
@@ -30,7 +25,7 @@ Outcome<std::vector<PredictedHighlight>> radianceStars(const RadianceField& radi
                     const std::optional<double> log = radiance.at(at, std::numeric_limits<double>::infinity());
                     return log ? -*log : std::nan("");
                   },
-                  light, reachOf(fit) * light.homogeneous().w(),
+                  light, reachOf(fit.shape) * light.homogeneous().w(),
                   [&](const PartBounds& parts, double highest) {
                     return Eight(largestLogRadiance(fit.lobe, fit.roughness, parts) + float(highest));
                   }};

@@ -76,13 +76,10 @@ std::function<std::optional<double>(const SurfacePoint&)> valueOf(const Radiance
 std::optional<RadianceFit> radianceFitOf(const ModelFit& fit) {
   const ReflectanceFit* const fitted = fit.as<ReflectanceFit>();
   if (!fit.lightEstimate || !fitted) return std::nullopt;
-  const Lamp lamp = lampOf(*fitted, *fit.lightEstimate);
   RadianceFit result;
   result.lobe = fitted->lobe;
   result.roughness = fitted->roughness;
-  result.light = lamp.centre;
-  result.lightRadius = lamp.radius;
-  result.lightHalfAxis = lamp.halfAxis;
+  result.lamp = *fit.lamp();
   return result;
 }
 
@@ -142,12 +139,11 @@ class Reflectance final : public HighlightModel {
     const Outcome<RadianceFit> best = lampOfContours(input, views, settings);
     if (!best) return best.failure();
     if (best->poor) fit.poor = formatted("no light and roughness explain the contours: %.3g px remain", best->rmsPx);
-    if (const std::optional<Failure> behind = lightBehind(input.views, best->light)) return *behind;
-    fit.lightEstimate = best->light;
-    if (!best->light.atInfinity() && best->positionCovariance.allFinite()) fit.lightCovariance = best->positionCovariance;
+    if (const std::optional<Failure> behind = lightBehind(input.views, best->light())) return *behind;
+    fit.lightEstimate = best->light();
+    if (!best->lamp.atInfinity() && best->positionCovariance.allFinite()) fit.lightCovariance = best->positionCovariance;
     const char* const seen = views.size() > fit.frames.size() ? "levels" : "contours";
-    fit.family =
-        ReflectanceFit{best->lobe, best->roughness, level, best->lightRadius, best->lamp().ends(), seen, levelsOf(views)};
+    fit.family = ReflectanceFit{best->lobe, best->roughness, level, best->lamp.shape, seen, levelsOf(views)};
     fit.residualPx = perView(best->residualPx, owner, fit.frames.size());
     fit.uncertainty = best->uncertainty;
     fit.solver = "contours";
@@ -176,7 +172,7 @@ class Reflectance final : public HighlightModel {
                                const Surface* surface, const Settings&) const override {
     const ReflectanceFit* const fitted = fit.as<ReflectanceFit>();
     if (!surface || !fit.uncertainty || !fit.lightEstimate || !fitted) return {};
-    const Lamp lamp = lampOf(*fitted, *fit.lightEstimate);
+    const Lamp lamp = *fit.lamp();
     const RadianceField radiance(*surface, camera, fitted->lobe, fitted->roughness, lamp);
     const std::vector<RadiancePeak> peaks = radiance.peaks({highlight.brightest.pixel}, kScanStepPx);
     if (peaks.empty()) return {};
@@ -189,12 +185,12 @@ class Reflectance final : public HighlightModel {
     // log I(peak) - log I(point) with the parameters moved. The peak stays: its value does not change with its place, to first
     // order.
     const auto moved = [&](const SurfacePoint& at, const Eigen::VectorXd& by) -> double {
-      lobe::LampIn<double> other = lobe::inWorld(lamp);
-      other.light += parameters::kLight.of(by);
-      if (other.shape == lobe::LampShape::Sphere && parameters::kRadiusSquared.isIn(by))
-        other.radiusSquared = std::max(0.0, other.radiusSquared + by(parameters::kRadiusSquared.first));
-      if (other.shape == lobe::LampShape::Segment && parameters::kHalfAxis.isIn(by))
-        other.halfAxis += parameters::kHalfAxis.of(by);
+      Lamp other = lamp;
+      other.centre += parameters::kLight.of(by);
+      std::span<double> own = unknownsOf(other.shape);
+      for (std::size_t k = 0; k < own.size() && by.size() > parameters::kLampShape; ++k)
+        own[k] += by(parameters::kLampShape + static_cast<Eigen::Index>(k));
+      if (auto* const sphere = std::get_if<SphereShape<>>(&other.shape)) sphere->squaredRadius = std::max(0.0, sphere->squaredRadius);
       const auto log = [&](const SurfacePoint& p) {
         const double roughness = fitted->roughness * std::exp(by(parameters::kLogRoughness.first));
         return lobe::logOfLamp<double>(fitted->lobe, roughness, p.position, p.normal, (eye - p.position).normalized(), other,
@@ -217,7 +213,7 @@ class Reflectance final : public HighlightModel {
     const ReflectanceFit* const fitted = fit.as<ReflectanceFit>();
     if (!surface || !fit.lightEstimate || !fitted) return Failure{surface ? Reason::NoLight : Reason::NoSurface, ""};
     const Light& light = *fit.lightEstimate;
-    const RadianceField radiance(*surface, camera, fitted->lobe, fitted->roughness, lampOf(*fitted, light));
+    const RadianceField radiance(*surface, camera, fitted->lobe, fitted->roughness, *fit.lamp());
     const auto mirrorPoints = brightestPointsFor(*surface, camera, light, settings);
     if (mirrorPoints && settings.text("predict.contour") == "star")
       if (Outcome<std::vector<PredictedHighlight>> found =

@@ -24,21 +24,7 @@ inline std::vector<Lobe> lobesOf(const Settings& settings) {
 }
 
 /// The shapes of a lamp, beside a point, that `fit.light_size` admits.
-inline LampChoices lampChoicesOf(const Settings& settings) {
-  const std::string& lamps = settings.text("fit.light_size");
-  return {lamps == "auto" || lamps == "sphere", lamps == "auto" || lamps == "segment"};
-}
-
-/// The value of `fit.light_size` under which a lamp like that of a fit is searched.
-inline std::string lampChoiceOf(const ReflectanceFit& fit) {
-  return fit.lightSegment ? "segment" : fit.lightRadius > 0 ? "sphere" : "point";
-}
-
-/// The lamp that a fit of a lobe describes. @param centre  of a lamp that is no segment, ModelFit::lightEstimate.
-inline Lamp lampOf(const ReflectanceFit& fit, const Light& centre) {
-  const auto& ends = fit.lightSegment;
-  return ends ? Lamp::segment(ends->first, ends->second) : Lamp::sphere(centre, fit.lightRadius);
-}
+inline LampChoices lampChoicesOf(const Settings& settings) { return lampChoices(settings.text("fit.light_size")); }
 
 /// The levels of `fit.levels`: numbers between commas.
 inline std::vector<double> listedLevels(const Settings& settings) {

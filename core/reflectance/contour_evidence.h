@@ -41,7 +41,7 @@ struct Evidence {
 /// log I with its derivatives by the unknowns of a fit: L (4), log m, then those of the lamp's shape.
 struct LogAndSlopes {
   double value = 0;
-  Eigen::Matrix<double, 8, 1> slopes = Eigen::Matrix<double, 8, 1>::Zero();
+  Eigen::Matrix<double, 5 + kMostShapeUnknowns, 1> slopes = Eigen::Matrix<double, 5 + kMostShapeUnknowns, 1>::Zero();
 };
 
 /// A frame's maximum under the light of the moment.

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kDoubtShare = 0.02;        // of the radius: a right lobe leaves less
 constexpr double kSphereGain = 0.2;         // of the sum of squares, before a size is believed
-constexpr double kNoRadiusSquared = 1e-10;  // normalised: where a radius ends that is none
+constexpr double kProbe = 0.4;       // of the lobe's width, as angles of the light: a size that would show little
 // Other starts are judged by a short fit to few points; the most promising are then fitted in full.
 constexpr int kScreenPoints = 16, kScreenIterations = 15;
 constexpr std::size_t kPromising = 3;
@@ -26,7 +26,6 @@ constexpr int kTiltedDirections = 6;
 using lobe::Attempt;
 using lobe::ContourEvidence;
 using lobe::kPoorShare;
-using lobe::LampShape;
 using lobe::RadianceProblem;
 using lobe::State;
 
@@ -39,6 +38,15 @@ RadianceFit described(RadianceProblem& problem, const Attempt& a, std::size_t vi
   return fit;
 }
 
+/// By how much the sum of squares, px^2, would fall to first order if a point became a sphere of some size; 0 where it would rise.
+double gainBySize(RadianceProblem& problem, const State& point) {
+  if (point.atInfinity()) return 0;  // there a size has no meaning, only an angle
+  State grown = point;
+  grown.lamp.shape = SphereShape<>::of(point.lengthOf(kProbe));
+  const RadianceProblem::Probe found = problem.probe(point, {{grown, point}});
+  return found.extra(0) > 0 ? found.gain : 0;
+}
+
 Failure noMinimum(const RadianceProblem& problem, const Attempt& best, int iterations) {
   if (std::isfinite(best.cost)) return {Reason::NotConverged, "after " + std::to_string(iterations) + " iterations"};
   if (problem.lit() == 0) return {Reason::NoBrightestPoint, "no frame has a lit maximum"};
@@ -46,13 +54,6 @@ Failure noMinimum(const RadianceProblem& problem, const Attempt& best, int itera
 }
 
 }  // namespace
-
-Lamp RadianceFit::lamp() const {
-  Lamp lamp(light);
-  lamp.radius = lightRadius;
-  lamp.halfAxis = lightHalfAxis;
-  return lamp;
-}
 
 bool RadianceStart::promises() const { return excess <= lobe::kHopeless; }
 bool RadianceStart::isNear(const RadianceStart& other) const {
@@ -67,17 +68,17 @@ std::vector<RadianceStart> screenStarts(Lobe lobe, const std::vector<RadianceVie
   Outcome<ContourEvidence> gathered = lobe::gatherEvidence(views, quick.pointsPerView);
   if (!gathered) return {};
   RadianceProblem problem(lobe, views, *std::move(gathered), quick);
-  const Eigen::Vector3d towards = problem.start(light, roughness).at.head<3>().normalized();
+  const Eigen::Vector3d towards = problem.start(light, roughness).lamp.centre.head<3>().normalized();
   std::vector<RadianceStart> starts;
   const auto tryFrom = [&](const Eigen::Vector3d& direction, double distance, double width) {
     State from;
-    from.at.head<4>() << (distance > 0 ? Eigen::Vector3d(distance * direction) : direction), (distance > 0 ? 1.0 : 0.0);
-    from.at.head<4>().normalize();
-    from.at(lobe::kLogRoughness) = std::log(std::min(width, 1.0));
+    from.lamp.centre << (distance > 0 ? Eigen::Vector3d(distance * direction) : direction), (distance > 0 ? 1.0 : 0.0);
+    from.lamp.centre.normalize();
+    from.logRoughness = std::log(std::min(width, 1.0));
     const Attempt a = problem.solve(from);
-    if (!std::isfinite(a.cost) || !a.state.at.allFinite() || RadianceProblem::tooWide(a.state)) return;
-    starts.push_back({lobe, problem.inWorld(a.state).centre, a.state.roughness(), a.cost / double(problem.points()),
-                      problem.excess(a, kPoorShare), a.state.at.head<5>()});
+    if (!std::isfinite(a.cost) || !a.state.isFinite() || RadianceProblem::tooWide(a.state)) return;
+    starts.push_back({lobe, lightOf(problem.inWorld(a.state)), a.state.roughness(), a.cost / double(problem.points()),
+                      problem.excess(a, kPoorShare), a.state.place()});
   };
   if (grid == StartGrid::Distances) {
     for (const double distance : {0.5, 1.0, 2.0, 5.0, 0.0})
@@ -117,19 +118,17 @@ Outcome<RadianceFit> fitRadiance(Lobe lobe, const std::vector<RadianceView>& vie
   }
   if (!std::isfinite(best.cost) || !best.converged) return noMinimum(problem, best, iterations);
   // A size that the contours do not show would only take up noise: it must promise, and then keep, a clear gain.
-  if (options.lightSize && good(best) && problem.gainBySize(best) > kSphereGain * best.cost) {
+  if (options.lightSize && good(best) && gainBySize(problem, best.state) > kSphereGain * best.cost) {
     // The width seen is that of light and lobe together: from a light that is narrower, and from one that is wider than the lobe.
     const Attempt point = best;
     for (const auto& [radius, width] : {std::pair{1.0, 0.9}, std::pair{1.6, 0.5}}) {
       State start = point.state;
-      start.shape = LampShape::Sphere;
-      start.at(lobe::kRadiusSquared) =
-          std::pow(radius * point.state.roughness() * point.state.at.head<3>().norm() / point.state.at(3), 2);
-      start.at(lobe::kLogRoughness) += std::log(width);
+      start.lamp.shape = SphereShape<>::of(point.state.lengthOf(radius));
+      start.logRoughness += std::log(width);
       const Attempt sized = problem.solve(start);
       iterations += sized.iterations;
       if (sized.converged && sized.cost < (1 - kSphereGain) * point.cost && sized.cost < best.cost &&
-          sized.state.at(lobe::kRadiusSquared) > 2 * kNoRadiusSquared)
+          std::get<SphereShape<>>(sized.state.lamp.shape).squaredRadius > 2 * SphereShape<>::kLeast)
         best = sized;
       if (problem.leavesNoiseOnly(best)) break;
     }
@@ -154,7 +153,7 @@ std::vector<double> rmsOfViews(const RadianceFit& fit, const std::vector<Radianc
   Outcome<ContourEvidence> gathered = lobe::gatherEvidence(views, options.pointsPerView);
   if (!gathered) return std::vector<double>(views.size(), std::numeric_limits<double>::quiet_NaN());
   RadianceProblem problem(fit.lobe, views, *std::move(gathered), options);
-  return problem.rmsOfViews(problem.start(fit.lamp(), fit.roughness), views.size());
+  return problem.rmsOfViews(problem.start(fit.lamp, fit.roughness), views.size());
 }
 
 }  // namespace glint

@@ -39,7 +39,7 @@ struct RadianceStart {
   double roughness = 0;
   double cost = 0;    ///< mean robust square per point after a short fit, px^2: starts of all lobes are compared by it
   double excess = 0;  ///< what remains over what a fit may leave that is not poor; far above 1: not worth trying
-  Eigen::Matrix<double, 5, 1> place = Eigen::Matrix<double, 5, 1>::Zero();  ///< normalised: L with |L| = 1, log m
+  Eigen::VectorXd place;  ///< normalised: L with |L| = 1, log m
 
   bool promises() const;
   /// Both lead to the same minimum.
@@ -56,11 +56,8 @@ std::vector<RadianceStart> screenStarts(Lobe lobe, const std::vector<RadianceVie
 struct RadianceFit {
   Lobe lobe = Lobe::TorranceSparrow;
   double roughness = 0;  ///< m
-  Light light;
-  double lightRadius = 0;                  ///< m; 0 where the contours do not show a size
-  Eigen::Vector3d lightHalfAxis{0, 0, 0};  ///< m, from the light to one end of a segment; 0 for another lamp
-  /// Of (L homogeneous with |L| = 1 (4), log m (1)), then of a sphere's squared radius (1, m^2) or a segment's half axis (3, m); none
-  /// where a direction is free.
+  Lamp lamp;             ///< a point where the contours show no size
+  /// Of (L homogeneous with |L| = 1 (4), log m (1)), then of the unknowns of the lamp's shape (m, or m^2); none where a direction is free.
   std::optional<ParameterUncertainty> uncertainty;
   Eigen::Matrix3d positionCovariance;  ///< m^2; not finite for a light at infinity
   double rmsPx = 0;
@@ -71,7 +68,7 @@ struct RadianceFit {
   bool noiseOnly = false;          ///< nothing that neighbours on a contour share remains
   int points = 0, iterations = 0;
 
-  Lamp lamp() const;
+  Light light() const { return lightOf(lamp); }
 };
 
 /// Light and roughness of one lobe from contours alone (method.md section 7, `reflectance`): minimises over L = (l, w) on the

@@ -89,7 +89,7 @@ class PointSearch {
   /// From the best fit so far: once, it would lead to the same place again.
   bool follow(Lobe lobe) {
     if (!followed_.insert(lobe).second) return false;
-    const Light light = fit().light;
+    const Light light = fit().light();
     const double width = widthOf(fit().lobe, fit().roughness, level());
     const bool better = tryFrom(lobe, light, roughnessFor(lobe, width));
     followed_.insert(lobe);  // also where this lobe is the new best: it need not follow itself
@@ -129,11 +129,11 @@ RadianceFit withSphere(const std::vector<Lobe>& lobes, const std::vector<Radianc
   options.otherStarts = false;
   RadianceFit best = point;
   const auto tryLobe = [&](Lobe lobe) {
-    const Outcome<RadianceFit> f = fitRadiance(lobe, views, point.light, point.roughness, options);
+    const Outcome<RadianceFit> f = fitRadiance(lobe, views, point.light(), point.roughness, options);
     if (f && f->cost < best.cost) best = *f;
   };
   tryLobe(point.lobe);
-  if (best.lightRadius > 0)
+  if (radiusOf(best.lamp) > 0)
     for (const Lobe lobe : lobes)
       if (lobe != point.lobe) tryLobe(lobe);
   return best;
@@ -151,12 +151,12 @@ Outcome<RadianceFit> searchRadiance(const std::vector<Lobe>& lobes, const std::v
     const Outcome<RadianceFit> guide = PointSearch({other}, views, options).run(light, widthRad);
     if (guide && !guide->poor) {
       const double width = widthOf(other, guide->roughness, views.front().level);
-      if (Outcome<RadianceFit> again = PointSearch(lobes, views, options).run(guide->light, width); again && !again->poor)
+      if (Outcome<RadianceFit> again = PointSearch(lobes, views, options).run(guide->light(), width); again && !again->poor)
         best = std::move(again);
     }
   }
-  if (best && !best->poor && lamps.sphere) best = withSphere(lobes, views, *best, options);
-  if (lamps.segment)
+  if (best && !best->poor && admits<SphereShape<>>(lamps)) best = withSphere(lobes, views, *best, options);
+  if (admits<SegmentShape<>>(lamps))
     if (const std::optional<RadianceFit> segment = fitSegment(lobes, views, best ? &*best : nullptr, light, widthRad, options))
       best = *segment;
   return best;
@@ -170,14 +170,14 @@ Outcome<RadianceFit> fitNear(const std::vector<Lobe>& lobes, const std::vector<R
   Failure failure{Reason::NotConverged, ""};
   for (const Lobe lobe : lobes) {
     Outcome<RadianceFit> f =
-        fitLamp(lobe, views, near.lamp(), lobe == near.lobe ? near.roughness : clampedRoughness(lobe, width, level), options);
+        fitLamp(lobe, views, near.lamp, lobe == near.lobe ? near.roughness : clampedRoughness(lobe, width, level), options);
     if (f)
       found.insert_or_assign(lobe, *std::move(f));
     else
       failure = f.failure();
   }
   if (found.empty()) return failure;
-  if (near.lamp().isPoint()) return preferred(found);
+  if (near.lamp.isPoint()) return preferred(found);
   // As searchRadiance, which takes the smallest residual where the lamp has a size.
   const auto best =
       std::min_element(found.begin(), found.end(), [](const auto& a, const auto& b) { return isBetter(a.second, b.second); });

@@ -7,11 +7,6 @@
 
 namespace glint {
 
-/// Shapes beside the point that a search may take where the contours show them.
-struct LampChoices {
-  bool sphere = true, segment = true;
-};
-
 /// Lobe, lamp and roughness that explain the contours best: the lobe of the smallest residual. Every lobe is fitted; once the best is
 /// known, every other one starts again from its light with the same width, until none gains. Where none explains the contours well, the
 /// most promising starts of all lobes are tried. Where the residuals do not tell, a microfacet lobe is taken: surfaces are rather

@@ -78,14 +78,20 @@ class RadianceSum {
   T top_{0.0}, sum_{0.0};
 };
 
-/// The same for a spherical light of radius sqrt(radiusSquared), seen as a disc that faces the point. Points of the disc below
-/// the horizon give nothing.
+/// log I of one lobe under a lamp of this shape about L = (l, w), up to a constant of the lamp; parts of it below the horizon give nothing.
 template <class T>
-std::optional<T> logOfSphereLight(Lobe lobe, const T& roughness, const Eigen::Vector3d& position, const Eigen::Vector3d& n,
-                                  const Eigen::Vector3d& toCamera, const Eigen::Matrix<T, 4, 1>& light, const T& radiusSquared,
-                                  const DiscRule& rule) {
+std::optional<T> logOfShape(const PointShape<T>&, Lobe lobe, const T& roughness, const Eigen::Vector3d& position, const Eigen::Vector3d& n,
+                            const Eigen::Vector3d& toCamera, const Eigen::Matrix<T, 4, 1>& light, const LampRule&) {
+  return logOfPointLight<T>(lobe, roughness, position, n, toCamera, light);
+}
+
+/// A sphere is seen as a disc that faces the point.
+template <class T>
+std::optional<T> logOfShape(const SphereShape<T>& sphere, Lobe lobe, const T& roughness, const Eigen::Vector3d& position,
+                            const Eigen::Vector3d& n, const Eigen::Vector3d& toCamera, const Eigen::Matrix<T, 4, 1>& light,
+                            const LampRule& rule) {
   using std::sqrt;
-  if (!(radiusSquared > T(0.0))) return logOfPointLight<T>(lobe, roughness, position, n, toCamera, light);
+  if (!(sphere.squaredRadius > T(0.0))) return logOfPointLight<T>(lobe, roughness, position, n, toCamera, light);
   const Eigen::Matrix<T, 3, 1> offset = light.template head<3>() - light(3) * position.cast<T>();
   // Around the axis, from another axis that is far from it: continuous in the light, so that its derivatives are those of the
   // disc.
@@ -100,27 +106,26 @@ std::optional<T> logOfSphereLight(Lobe lobe, const T& roughness, const Eigen::Ve
   const Eigen::Matrix<T, 3, 1> u = across / sqrt(across.squaredNorm());
   const Eigen::Matrix<T, 3, 1> upwards = offset.cross(u);
   const Eigen::Matrix<T, 3, 1> v = upwards / sqrt(upwards.squaredNorm());
-  const T radius = sqrt(radiusSquared) * light(3);
+  const T radius = sqrt(sphere.squaredRadius) * light(3);
   RadianceSum<T> sum(lobe, roughness, n, toCamera);
-  for (const DiscRule::Node& node : rule.nodes) sum.add(node.weight, offset + radius * (T(node.x) * u + T(node.y) * v), 2);
+  for (const DiscRule::Node& node : *rule.nodes) sum.add(node.weight, offset + radius * (T(node.x) * u + T(node.y) * v), 2);
   return sum.log();
 }
 
-/// The same for a thin tube of uniform radiance with the ends l / w -+ halfAxis: the mean along it of a point light's radiance times
-/// the sine of the angle between the axis and the direction to the point (method.md section 15). Points of the tube below the horizon
-/// give nothing; a tube seen end on gives nothing at all.
+/// A thin tube with the ends l / w -+ halfAxis: the mean along it of a point light's radiance times the sine of the angle between the axis and
+/// the direction to the point (method.md section 15). Seen end on it gives nothing at all.
 template <class T>
-std::optional<T> logOfSegmentLight(Lobe lobe, const T& roughness, const Eigen::Vector3d& position, const Eigen::Vector3d& n,
-                                   const Eigen::Vector3d& toCamera, const Eigen::Matrix<T, 4, 1>& light,
-                                   const Eigen::Matrix<T, 3, 1>& halfAxis, const std::vector<QuadratureNode>& along) {
+std::optional<T> logOfShape(const SegmentShape<T>& segment, Lobe lobe, const T& roughness, const Eigen::Vector3d& position,
+                            const Eigen::Vector3d& n, const Eigen::Vector3d& toCamera, const Eigen::Matrix<T, 4, 1>& light,
+                            const LampRule& rule) {
   using std::log;
   const Eigen::Matrix<T, 3, 1> offset = light.template head<3>() - light(3) * position.cast<T>();
   // sine = |axis x offset| / (|axis| |offset|), and the cross product is the same all along the tube.
-  const T across = halfAxis.cross(offset).squaredNorm() / halfAxis.squaredNorm();
+  const T across = segment.halfAxis.cross(offset).squaredNorm() / segment.halfAxis.squaredNorm();
   if (!(across > T(0.0))) return std::nullopt;
-  const Eigen::Matrix<T, 3, 1> half = light(3) * halfAxis;
+  const Eigen::Matrix<T, 3, 1> half = light(3) * segment.halfAxis;
   RadianceSum<T> sum(lobe, roughness, n, toCamera);
-  for (const QuadratureNode& node : along) sum.add(0.5 * node.weight, offset + T(node.x) * half, 3);
+  for (const DiscRule::Node& node : *rule.nodes) sum.add(node.weight, offset + T(node.x) * half, 3);
   const std::optional<T> total = sum.log();
   return total ? std::optional<T>(*total + T(0.5) * log(across)) : std::nullopt;
 }
@@ -131,15 +136,9 @@ std::optional<T> logOfSegmentLight(Lobe lobe, const T& roughness, const Eigen::V
 /// @return nothing where no part of the lamp lights the point, or where the camera is below the horizon.
 template <class T>
 std::optional<T> logOfLamp(Lobe lobe, const T& roughness, const Eigen::Vector3d& position, const Eigen::Vector3d& n,
-                           const Eigen::Vector3d& toCamera, const LampIn<T>& lamp, const LampRule& rule) {
-  switch (lamp.shape) {
-    case LampShape::Point: return logOfPointLight<T>(lobe, roughness, position, n, toCamera, lamp.light);
-    case LampShape::Sphere:
-      return logOfSphereLight<T>(lobe, roughness, position, n, toCamera, lamp.light, lamp.radiusSquared, *rule.disc);
-    case LampShape::Segment:
-      return logOfSegmentLight<T>(lobe, roughness, position, n, toCamera, lamp.light, lamp.halfAxis, *rule.along);
-  }
-  return std::nullopt;
+                           const Eigen::Vector3d& toCamera, const LampOf<T>& lamp, const LampRule& rule) {
+  return std::visit([&](const auto& shape) { return logOfShape(shape, lobe, roughness, position, n, toCamera, lamp.centre, rule); },
+                    lamp.shape);
 }
 
 }  // namespace glint::lobe

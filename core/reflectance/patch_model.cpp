@@ -62,7 +62,7 @@ int fillBasis(const PixelPatch& p, const FramePatches& frame, std::size_t i, Bac
     }
     case BackgroundKind::Cosine:
     case BackgroundKind::SlopedCosine: {
-      const Eigen::Vector3d towards = at.light.head<3>() - at.light.w() * p.seen[i].position;
+      const Eigen::Vector3d towards = at.lamp.centre.head<3>() - at.lamp.centre.w() * p.seen[i].position;
       const double distance = towards.norm();
       // Up to the lamp's strength N.L / r^2, which is |w|^2 / distance^3 here; at infinity the distance is one.
       const double lit = distance > 0 ? std::max(0.0, p.seen[i].normal.dot(towards)) / (distance * distance * distance) : 0;
@@ -127,13 +127,6 @@ Normalised normalised(const std::vector<const PixelPatch*>& patches) {
   return n;
 }
 
-Eigen::Vector4d normalisedLight(const Light& light, const Normalised& in) {
-  Eigen::Vector4d l;
-  l << (light.homogeneous().head<3>() - light.homogeneous().w() * in.origin) / in.scale, light.homogeneous().w();
-  require(l.norm() > 0, "fitPixels: no light");
-  return l.normalized();
-}
-
 PixelPatch coarsened(const PixelPatch& fine) {
   PixelPatch p;
   p.frame = fine.frame;
@@ -173,13 +166,12 @@ LobeImage sharpImage(Lobe lobe, const FramePatches& frame, const State& at, cons
   LobeImage image;
   image.logTop = -std::numeric_limits<double>::infinity();
   const double roughness = at.roughness();
-  const lobe::LampIn<double> lamp = at.lamp();
   for (const PixelPatch& p : frame.patches) {
     std::vector<double>& values = image.value.emplace_back(p.size(), -std::numeric_limits<double>::infinity());
     for (std::size_t i = 0; i < p.size(); ++i) {
       if (!p.onSurface[i]) continue;
       const PixelPatch::Seen& s = p.seen[i];
-      const std::optional<double> log = lobe::logOfLamp<double>(lobe, roughness, s.position, s.normal, s.toCamera, lamp, rule);
+      const std::optional<double> log = lobe::logOfLamp<double>(lobe, roughness, s.position, s.normal, s.toCamera, at.lamp, rule);
       if (!log || !std::isfinite(*log)) continue;
       values[i] = *log;
       if (!p.used[i]) continue;

@@ -10,18 +10,10 @@
 namespace glint::patch {
 
 /// The unknowns of a lobe and its lamp, in normalised coordinates (x - origin) / scale.
-struct State {
-  lobe::LampShape shape = lobe::LampShape::Point;
-  Eigen::Vector4d light{0, 0, 1, 0};  ///< |L| = 1
-  double logRoughness = 0;
-  double radiusSquared = 0;           ///< of a sphere
-  Eigen::Vector3d halfAxis{0, 0, 0};  ///< of a segment
-  double blurVariance = 0;            ///< px^2
+struct State : lobe::State {
+  double blurVariance = 0;  ///< px^2
 
-  double roughness() const { return std::exp(logRoughness); }
-  bool atInfinity() const { return light.w() == 0; }
   bool operator==(const State&) const = default;
-  lobe::LampIn<double> lamp() const { return {shape, light, radiusSquared, halfAxis}; }
 };
 
 /// The patches of one frame with positions in normalised coordinates.
@@ -39,7 +31,6 @@ struct Normalised {
   double radiusPx = 0;    ///< of the contours, mean
 };
 Normalised normalised(const std::vector<const PixelPatch*>& patches);
-Eigen::Vector4d normalisedLight(const Light& light, const Normalised& in);
 
 /// Two by two cells become one: four times fewer, for the search.
 PixelPatch coarsened(const PixelPatch& patch);

@@ -25,9 +25,9 @@ constexpr double kProbe = 0.3;  // extent whose effect is probed, in lobe widths
 /// By which share the cost would fall to first order if the point became a sphere or a segment: least squares of the residuals over
 /// the point's columns and those of the extents.
 double gainByExtent(PixelProblem& problem, const State& point, const std::vector<double>& residuals, const Rows& jacobian) {
-  const Eigen::Vector3d towards = point.light.head<3>().normalized();
+  const Eigen::Vector3d towards = point.lamp.centre.head<3>().normalized();
   const Eigen::Vector3d u = towards.unitOrthogonal(), v = towards.cross(u);
-  const double length = kProbe * point.roughness() * point.light.head<3>().norm() / point.light.w();
+  const double length = point.lengthOf(kProbe);
   const Eigen::Map<const Eigen::VectorXd> r(residuals.data(), static_cast<Eigen::Index>(residuals.size()));
   const auto left = [&](const Rows& columns) {
     const Eigen::VectorXd x = Eigen::HouseholderQR<Eigen::MatrixXd>(columns).solve(r);
@@ -39,8 +39,7 @@ double gainByExtent(PixelProblem& problem, const State& point, const std::vector
   // the sine of the angle to its axis, however short it is: what its length changes is the difference to a short one.
   PixelProblem segment(problem.evidence(), problem.lobe(), problem.kind());
   State longest = point;
-  longest.shape = lobe::LampShape::Segment;
-  longest.halfAxis = length * u;
+  longest.lamp.shape = SegmentShape<>{length * u, 0};
   segment.chooseRule(longest);
   Rows with(jacobian.rows(), jacobian.cols() + 3);
   with.leftCols(jacobian.cols()) = jacobian;
@@ -48,8 +47,8 @@ double gainByExtent(PixelProblem& problem, const State& point, const std::vector
   int column = static_cast<int>(jacobian.cols());
   for (const Eigen::Vector3d& axis : {u, v, Eigen::Vector3d((u + v).normalized())}) {
     State grown = longest, plainTube = longest;
-    grown.halfAxis = length * axis;
-    plainTube.halfAxis = 1e-3 * length * axis;  // as good as a point
+    grown.lamp.shape = SegmentShape<>{length * axis, 0};
+    plainTube.lamp.shape = SegmentShape<>{1e-3 * length * axis, 0};  // as good as a point
     if (!segment.residualsAt(plainTube, shorter.data())) return 0;
     segment.differences(grown, 1, with.data() + column, static_cast<int>(with.cols()));
     ++column;
@@ -127,7 +126,7 @@ void describeUncertainty(PixelProblem& pixels, const State& at, bool blur, Pixel
   for (Eigen::Index k = 0; k < unknowns; ++k)
     pixels.differences(moved[static_cast<std::size_t>(k)].state, moved[static_cast<std::size_t>(k)].step, jacobian.data() + k,
                        static_cast<int>(unknowns));
-  if (at.shape == lobe::LampShape::Point && !at.atInfinity()) fit.gainByExtent = gainByExtent(pixels, at, residuals, jacobian);
+  if (at.lamp.isPoint() && !at.atInfinity()) fit.gainByExtent = gainByExtent(pixels, at, residuals, jacobian);
   std::vector<int> views;
   for (std::size_t f = 0; f < pixels.evidence().frames.size(); ++f)
     views.insert(views.end(), pixels.evidence().frames[f].used, static_cast<int>(f));
@@ -140,12 +139,12 @@ void describeUncertainty(PixelProblem& pixels, const State& at, bool blur, Pixel
   if (!(svd.singularValues()(unknowns - 1) > 1e-12 * svd.singularValues()(0))) return;  // a free direction
   const Eigen::MatrixXd all =
       std::sqrt(spread.factor * inflation) * svd.matrixV() * svd.singularValues().cwiseInverse().asDiagonal();
-  const Eigen::Matrix<double, 4, 3> basis = across(at.light);
+  const Eigen::Matrix<double, 4, 3> basis = across(at.lamp.centre);
   const Normalised& n = pixels.evidence();
-  if (at.light.w() != 0) {
-    const double w = at.light.w();
+  if (!at.atInfinity()) {
+    const double w = at.lamp.centre.w();
     Eigen::Matrix<double, 3, 4> position;  // d(l / w)
-    position << Eigen::Matrix3d::Identity() / w, -at.light.head<3>() / (w * w);
+    position << Eigen::Matrix3d::Identity() / w, -at.lamp.centre.head<3>() / (w * w);
     const Eigen::MatrixXd half = n.scale * position * basis * all.topRows<3>();
     const Eigen::Matrix3d covariance = half * half.transpose();
     if (covariance.allFinite()) fit.positionCovariance = covariance;
@@ -154,7 +153,7 @@ void describeUncertainty(PixelProblem& pixels, const State& at, bool blur, Pixel
   Eigen::Matrix4d toWorld = Eigen::Matrix4d::Identity();
   toWorld.topLeftCorner<3, 3>() *= n.scale;
   toWorld.topRightCorner<3, 1>() = n.origin;
-  const Eigen::Vector4d y = toWorld * at.light;
+  const Eigen::Vector4d y = toWorld * at.lamp.centre;
   const Eigen::MatrixXd dy = toWorld * basis * all.topRows<3>();
   if (auto known = uncertaintyOfUnit(y, dy, all.row(3), fit.rmsPx, fit.independentCells)) fit.uncertainty = std::move(known);
 }

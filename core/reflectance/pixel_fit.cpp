@@ -65,27 +65,10 @@ double criterion(const Attempt& a, const patch::Normalised& evidence, Background
   return n * std::log(a.cost / n + 1e-14) + unknowns * std::log(n);
 }
 
-Lamp inWorld(const State& at, const patch::Normalised& n) {
-  Eigen::Vector4d world;
-  world << n.scale * at.light.head<3>() + at.light.w() * n.origin, at.light.w();
-  const Light centre = Light::homogeneous(world);
-  if (at.shape == lobe::LampShape::Sphere) return Lamp::sphere(centre, n.scale * std::sqrt(std::max(0.0, at.radiusSquared)));
-  if (at.shape == lobe::LampShape::Segment) {
-    const Eigen::Vector3d half = n.scale * at.halfAxis;
-    return Lamp::segment(centre.position() - half, centre.position() + half);
-  }
-  return centre;
-}
+Lamp inWorld(const State& at, const patch::Normalised& n) { return fromNormalised(at.lamp, n.origin, n.scale); }
 
 State stateOf(const LobeModel& model, const patch::Normalised& n) {
-  State s;
-  s.shape = lobe::inWorld(model.lamp).shape;
-  s.light = patch::normalisedLight(model.lamp.centre, n);
-  s.logRoughness = std::log(model.roughness);
-  s.radiusSquared = std::pow(model.lamp.radius / n.scale, 2);
-  s.halfAxis = model.lamp.halfAxis / n.scale;
-  s.blurVariance = model.blurVariance;
-  return s;
+  return {{normalised(model.lamp, n.origin, n.scale), std::log(model.roughness)}, model.blurVariance};
 }
 
 /// Of the lobe in one look at all cells.
@@ -117,14 +100,14 @@ class Search {
            {BackgroundKind::None, BackgroundKind::Cosine, BackgroundKind::SlopedCosine, BackgroundKind::Quadratic})
         // A lamp with an extent takes long: the first lobe tells which backgrounds compete.
         if ((!options_.background || kind == *options_.background) &&
-            (!best || start.shape == lobe::LampShape::Point || kind == best->kind))
+            (!best || start.lamp.isPoint() || kind == best->kind))
           tryOut(lobe, kind, from);
     }
     const Candidate* best = least([](const Candidate&) { return true; });
     if (!best) return std::nullopt;
     const Candidate leader = *best;  // the list grows
     for (const Lobe lobe : lobes)
-      if (lobe != leader.lobe && start.shape == lobe::LampShape::Point) tryOut(lobe, leader.kind, leader.attempt.at);
+      if (lobe != leader.lobe && start.lamp.isPoint()) tryOut(lobe, leader.kind, leader.attempt.at);
     best = least([](const Candidate&) { return true; });
     const Candidate* microfacet = least([](const Candidate& c) { return isMicrofacet(c.lobe); });
     if (microfacet && microfacet->attempt.cost <= (1 + kMicrofacetMargin) * best->attempt.cost) best = microfacet;
@@ -137,7 +120,7 @@ class Search {
     PixelProblem problem(evidence_, lobe, kind);
     patch::SolveOptions solving{false, options_.maxIterations, kSearchTolerance, kSearchTolerance};
     solving.progress = options_.progress;
-    if (from.shape != lobe::LampShape::Point) {
+    if (!from.lamp.isPoint()) {
       solving.mostEvaluations = kMostEvaluations;
       solving.work = kExtentWork;
     }

@@ -19,49 +19,62 @@ constexpr double kStep = 1e-6;               // of the differences by L and log 
 constexpr double kBlurStep = 1e-3;           // px^2
 constexpr double kMirrorRoughness = 1e-5;    // roughness of a mirror: no pixel shows its lobe
 constexpr double kNoHighlightRoughness = 3;  // roughness beyond which there is no highlight
-constexpr double kLeastSizeSquared = 1e-12;  // of the lamp's radius, normalised: keeps differences finite
 constexpr double kLargestBlurPx = 12;        // beyond it an image shows no contour that could be compared
 constexpr int kFinerRules = 3;               // times that a lamp may outgrow its quadrature
 
-/// Steps of the differences by the squared radius and by the half axis: a small share of them.
-/// The second order stays below 1e-4.
-double sizeStep(const State& at) { return std::max(kLeastSizeSquared, 1e-4 * at.radiusSquared); }
-double axisStep(const State& at) { return std::max(1e-7, 1e-4 * at.halfAxis.norm()); }  // likewise
+/// Parameter blocks of a state: L (4), log m, the blur's variance, and what the shape has of its own.
+std::vector<double*> blocksOf(State& s) {
+  std::vector<double*> blocks{s.lamp.centre.data(), &s.logRoughness, &s.blurVariance};
+  if (unknownCount(s.lamp.shape) > 0) blocks.push_back(unknownsOf(s.lamp.shape).data());
+  return blocks;
+}
 
-State stateOf(double const* const* parameters, lobe::LampShape shape) {
+/// Step of the differences by the unknowns of a shape: a small share of them. The second order stays below 1e-4.
+double shapeStep(LampShape shape) {
+  const std::span<const double> own = unknownsOf(shape);
+  const double least = std::visit([](const auto& s) { return s.kLeastStep; }, shape);
+  return std::max(least, 1e-4 * Eigen::Map<const Eigen::VectorXd>(own.data(), static_cast<Eigen::Index>(own.size())).norm());
+}
+State alongShape(const State& at, int k, double step) {
+  State moved = at;
+  unknownsOf(moved.lamp.shape)[std::size_t(k)] += step;
+  return moved;
+}
+
+State stateOf(double const* const* parameters, const LampShape& shape) {
   State s;
-  s.shape = shape;
-  s.light = Eigen::Map<const Eigen::Vector4d>(parameters[0]).normalized();
+  s.lamp = {Eigen::Map<const Eigen::Vector4d>(parameters[0]).normalized(), shape};
   s.logRoughness = *parameters[1];
-  s.radiusSquared = *parameters[2];
-  s.halfAxis = Eigen::Map<const Eigen::Vector3d>(parameters[3]);
-  s.blurVariance = *parameters[4];
+  s.blurVariance = *parameters[2];
+  const std::span<double> own = unknownsOf(s.lamp.shape);
+  if (!own.empty()) std::copy_n(parameters[3], own.size(), own.begin());
   return s;
 }
 
 State alongLight(const State& at, const Eigen::Vector4d& direction) {
   State moved = at;
-  moved.light = (at.light + kStep * direction).normalized();
+  moved.lamp.centre = (at.lamp.centre + kStep * direction).normalized();
   return moved;
 }
 
-/// Robust residuals of all cells over L (4), log m, a sphere's squared radius, a segment's half axis (3) and the blur's variance.
+/// Robust residuals of all cells over blocksOf().
 class PixelCost final : public ceres::CostFunction {
  public:
-  PixelCost(PixelProblem& problem, lobe::LampShape shape, const ProgressFn& progress)
+  PixelCost(PixelProblem& problem, const LampShape& shape, const ProgressFn& progress)
       : problem_(problem), shape_(shape), progress_(progress) {
     set_num_residuals(problem.residuals());
-    for (const int size : {4, 1, 1, 3, 1}) mutable_parameter_block_sizes()->push_back(size);
+    *mutable_parameter_block_sizes() = {4, 1, 1};
+    if (const int own = unknownCount(shape); own > 0) mutable_parameter_block_sizes()->push_back(own);
   }
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
     const State at = stateOf(parameters, shape_);
     if (!(at.logRoughness < std::log(kNoHighlightRoughness)) || !(at.logRoughness > std::log(kMirrorRoughness))) return false;
-    if (shape_ == lobe::LampShape::Segment && !(at.halfAxis.norm() > 0)) return false;
+    if (!std::visit([](const auto& s) { return s.kMayVanish || s.reach() > 0; }, at.lamp.shape)) return false;
     if (!goesOn()) return nothingLeft(residuals, jacobians);
     if (!problem_.residualsAt(at, residuals)) return false;
     if (!jacobians) return true;
     if (jacobians[0]) {
-      const Eigen::Matrix<double, 4, 3> basis = across(at.light);
+      const Eigen::Matrix<double, 4, 3> basis = across(at.lamp.centre);
       Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor> tangent(problem_.residuals(), 3);
       for (int k = 0; k < 3 && goesOn(); ++k) problem_.differences(alongLight(at, basis.col(k)), kStep, tangent.data() + k, 3);
       Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor>>(jacobians[0], problem_.residuals(), 4) =
@@ -74,14 +87,10 @@ class PixelCost final : public ceres::CostFunction {
       problem_.differences(moved, step, jacobians[block], 1);
     };
     scalar(1, &State::logRoughness, kStep);
-    scalar(2, &State::radiusSquared, sizeStep(at));
-    scalar(4, &State::blurVariance, kBlurStep);
-    if (jacobians[3])
-      for (int k = 0; k < 3 && goesOn(); ++k) {
-        State moved = at;
-        moved.halfAxis(k) += axisStep(at);
-        problem_.differences(moved, axisStep(at), jacobians[3] + k, 3);
-      }
+    scalar(2, &State::blurVariance, kBlurStep);
+    const int own = unknownCount(at.lamp.shape);
+    for (int k = 0; k < own && jacobians[3] && goesOn(); ++k)
+      problem_.differences(alongShape(at, k, shapeStep(at.lamp.shape)), shapeStep(at.lamp.shape), jacobians[3] + k, own);
     return stopped_ ? nothingLeft(residuals, jacobians) : true;
   }
   bool stopped() const { return stopped_; }
@@ -100,29 +109,27 @@ class PixelCost final : public ceres::CostFunction {
   }
 
   PixelProblem& problem_;
-  lobe::LampShape shape_;
+  LampShape shape_;
   const ProgressFn& progress_;
   mutable bool stopped_ = false;  // the solver knows functions without a state only
 };
 
 /// One run of the solver with the quadrature of the moment.
 bool run(PixelProblem& problem, Attempt& a, const SolveOptions& options, bool atInfinity) {
-  PixelCost cost(problem, a.at.shape, options.progress);
+  PixelCost cost(problem, a.at.lamp.shape, options.progress);
   ceres::Problem::Options ownership;
   ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   ceres::Problem ceres(ownership);
   State& s = a.at;
-  ceres.AddResidualBlock(&cost, nullptr, s.light.data(), &s.logRoughness, &s.radiusSquared, s.halfAxis.data(), &s.blurVariance);
+  const std::vector<double*> blocks = blocksOf(s);
+  ceres.AddResidualBlock(&cost, nullptr, blocks);
   if (atInfinity)
-    ceres.SetManifold(s.light.data(), new ceres::ProductManifold<ceres::SphereManifold<3>, ceres::SubsetManifold>(
+    ceres.SetManifold(blocks[0], new ceres::ProductManifold<ceres::SphereManifold<3>, ceres::SubsetManifold>(
                                           ceres::SphereManifold<3>(), ceres::SubsetManifold(1, {0})));
   else
-    ceres.SetManifold(s.light.data(), new ceres::SphereManifold<4>());
-  if (s.shape == lobe::LampShape::Sphere)
-    ceres.SetParameterLowerBound(&s.radiusSquared, 0, kLeastSizeSquared);
-  else
-    ceres.SetParameterBlockConstant(&s.radiusSquared);
-  if (s.shape != lobe::LampShape::Segment) ceres.SetParameterBlockConstant(s.halfAxis.data());
+    ceres.SetManifold(blocks[0], new ceres::SphereManifold<4>());
+  if (blocks.size() > 3 && std::visit([](const auto& shape) { return shape.kMayVanish; }, s.lamp.shape))
+    ceres.SetParameterLowerBound(blocks[3], 0, std::visit([](const auto& shape) { return shape.kLeastStep; }, s.lamp.shape));
   if (options.blur) {
     ceres.SetParameterLowerBound(&s.blurVariance, 0, -kPixelVariance);
     ceres.SetParameterUpperBound(&s.blurVariance, 0, kLargestBlurPx * kLargestBlurPx);
@@ -133,7 +140,7 @@ bool run(PixelProblem& problem, Attempt& a, const SolveOptions& options, bool at
   // No exception through the solver, which is not written for it.
   if (cost.stopped()) throw Stopped{};
   a.iterations += solution.iterations;
-  if (!solution.usable || !s.light.allFinite() || !std::isfinite(s.logRoughness) || !s.halfAxis.allFinite()) return false;
+  if (!solution.usable || !s.isFinite()) return false;
   a.cost = 2 * solution.cost;
   a.converged = solution.converged;
   return true;
@@ -148,16 +155,15 @@ Eigen::Matrix<double, 4, 3> across(const Eigen::Vector4d& light) {
 
 std::vector<Moved> movedStates(const State& at, bool blur) {
   std::vector<Moved> moved;
-  const Eigen::Matrix<double, 4, 3> basis = across(at.light);
+  const Eigen::Matrix<double, 4, 3> basis = across(at.lamp.centre);
   for (int k = 0; k < 3; ++k) moved.push_back({alongLight(at, basis.col(k)), kStep});
   const auto add = [&](double step, const auto& change) {
     moved.push_back({at, step});
     change(moved.back().state);
   };
   add(kStep, [](State& s) { s.logRoughness += kStep; });
-  if (at.shape == lobe::LampShape::Sphere) add(sizeStep(at), [&](State& s) { s.radiusSquared += sizeStep(at); });
-  if (at.shape == lobe::LampShape::Segment)
-    for (int k = 0; k < 3; ++k) add(axisStep(at), [&](State& s) { s.halfAxis(k) += axisStep(at); });
+  const double step = shapeStep(at.lamp.shape);
+  for (int k = 0; k < unknownCount(at.lamp.shape); ++k) moved.push_back({alongShape(at, k, step), step});
   if (blur) add(kBlurStep, [](State& s) { s.blurVariance += kBlurStep; });
   return moved;
 }
@@ -241,34 +247,31 @@ LinearFit PixelProblem::fitFixed(std::size_t f, const State& at) const {
   const LobeImage image =
       blurredImage(fresh_ && withBlurOfHere == here_ ? sharp_[f] : sharpImage(lobe_, frame, at, rule_), frame, at);
   if (!image.lit) return solved_[f];
-  const bool sameBasis = fresh_ && (!dependsOnLight(kind_) || at.light == here_.light);
+  const bool sameBasis = fresh_ && (!dependsOnLight(kind_) || at.lamp.centre == here_.lamp.centre);
   LinearFit fit = linearFit(frame, image, sameBasis ? bases_[f] : backgroundBasis(frame, kind_, at), weights_[f]);
   return fit.solved ? fit : solved_[f];
 }
 
 bool PixelProblem::chooseRule(const State& at) {
-  if (at.shape == lobe::LampShape::Point) return false;
+  if (at.lamp.isPoint()) return false;
   double largest = 0;
   for (const FramePatches& frame : evidence_.frames)
     for (const PixelPatch& p : frame.patches) {
       const std::size_t middle = static_cast<std::size_t>(p.rows / 2) * p.columns + p.columns / 2;
       if (p.onSurface[middle])
-        largest = std::max(largest, lobe::lampRatio(at.roughness(), p.seen[middle].position, p.seen[middle].toCamera, at.lamp()));
+        largest = std::max(largest, lobe::lampRatio(at.roughness(), p.seen[middle].position, p.seen[middle].toCamera, at.lamp));
     }
-  const bool first = !rule_.disc && !rule_.along;
+  const bool first = !rule_.nodes;
   if (!first && largest <= largestRatio_) return false;
   // Some reserve: the lamp may grow a little while it is sought.
   largestRatio_ = 1.3 * largest;
   const lobe::LampRule before = rule_;
-  rule_ = lobe::lampRuleFor(at.shape, largestRatio_);
+  rule_ = lobe::lampRuleFor(at.lamp.shape, largestRatio_);
   fresh_ = false;
-  return first || rule_.disc != before.disc || rule_.along != before.along;
+  return first || rule_ != before;
 }
 
-double PixelProblem::evaluations() const {
-  const double nodes = rule_.disc ? double(rule_.disc->nodes.size()) : rule_.along ? double(rule_.along->size()) : 1;
-  return nodes * double(evidence_.cells);
-}
+double PixelProblem::evaluations() const { return rule_.count() * double(evidence_.cells); }
 
 Eigen::Vector4d PixelProblem::worldOf(const Eigen::Vector4d& light) const {
   Eigen::Vector4d world;
@@ -282,7 +285,7 @@ Attempt solveFrom(PixelProblem& problem, const State& start, const SolveOptions&
   Attempt a;
   a.at = start;
   const bool atInfinity = start.atInfinity();
-  if (atInfinity) a.at.light.normalize();
+  if (atInfinity) a.at.lamp.centre.normalize();
   problem.chooseRule(a.at);
   for (int round = 0; round < kFinerRules; ++round) {
     if (problem.evaluations() > options.mostEvaluations) {
@@ -299,13 +302,13 @@ Attempt solveFrom(PixelProblem& problem, const State& start, const SolveOptions&
     if (!a.converged && std::isfinite(options.work)) break;
   }
   // Beyond infinity the rays towards the lamp converge behind the scene: it is at infinity, as far as the pixels tell.
-  if (std::isfinite(a.cost) && a.at.light.w() < 0 && !atInfinity) {
-    if (a.at.shape != lobe::LampShape::Point) {
+  if (std::isfinite(a.cost) && a.at.lamp.centre.w() < 0 && !atInfinity) {
+    if (!a.at.lamp.isPoint()) {
       a.cost = std::numeric_limits<double>::infinity();  // where an extent has no meaning
       return a;
     }
     State there = a.at;
-    there.light.w() = 0;
+    there.lamp.centre.w() = 0;
     Attempt far = solve(problem, there, options);
     far.iterations += a.iterations;
     return far;
@@ -316,14 +319,14 @@ Attempt solveFrom(PixelProblem& problem, const State& start, const SolveOptions&
 }  // namespace
 
 Attempt solve(PixelProblem& problem, const State& start, const SolveOptions& options) {
-  TracedRun run(options.blur ? "lamp, lobe and blur from pixels" : "lamp and lobe from pixels", problem.worldOf(start.light),
+  TracedRun run(options.blur ? "lamp, lobe and blur from pixels" : "lamp and lobe from pixels", problem.worldOf(start.lamp.centre),
                 "squares of relative radiance");
   const Attempt a = solveFrom(problem, start, options);
   run.end(a.converged,
           !std::isfinite(a.cost) ? "no usable step"
           : a.converged          ? "at a minimum"
                                  : "out of iterations",
-          problem.worldOf(a.at.light));
+          problem.worldOf(a.at.lamp.centre));
   return a;
 }
 

@@ -40,7 +40,7 @@ Eigen::AlignedBox2d centresSeen(const Camera& camera) {
 
 RadianceField::RadianceField(const Surface& surface, const Camera& camera, Lobe lobe, double roughness, const Lamp& lamp)
     : RadianceField(surface, camera, lobe, roughness, lamp, lobe::LampRule{}) {
-  rule_ = lobe::lampRuleFor(in_.shape, lamp.isPoint() ? 0 : largestSizeRatio());
+  rule_ = lobe::lampRuleFor(lamp_.shape, lamp.isPoint() ? 0 : largestSizeRatio());
 }
 
 RadianceField::RadianceField(const Surface& surface, const Camera& camera, Lobe lobe, double roughness, const Lamp& lamp,
@@ -52,7 +52,6 @@ RadianceField::RadianceField(const Surface& surface, const Camera& camera, Lobe 
       lobe_(lobe),
       roughness_(roughness),
       lamp_(lamp),
-      in_(lobe::inWorld(lamp)),
       rule_(rule) {
   require(roughness > 0 && std::isfinite(roughness), "RadianceField: roughness must be positive");
 }
@@ -70,7 +69,7 @@ double RadianceField::largestSizeRatio() const {
       if (!p) continue;
       const double fall = fallOfLobe(*p);
       if (!std::isfinite(fall)) continue;
-      const double ratio = lobe::lampRatio(roughness_, p->position, (eye_ - p->position).normalized(), in_);
+      const double ratio = lobe::lampRatio(roughness_, p->position, (eye_ - p->position).normalized(), lamp_);
       if (fall < kFoot) largest = std::max(largest, ratio);
       if (fall < leastFall) leastFall = fall, nearest = ratio;
     }
@@ -81,7 +80,7 @@ std::optional<double> RadianceField::at(const SurfacePoint& p, double floor) con
   const double seen = (eye_ - p.position).norm();
   if (!(seen > 0)) return std::nullopt;
   const std::optional<double> log =
-      lobe::logOfLamp<double>(lobe_, roughness_, p.position, p.normal, (eye_ - p.position) / seen, in_, rule_);
+      lobe::logOfLamp<double>(lobe_, roughness_, p.position, p.normal, (eye_ - p.position) / seen, lamp_, rule_);
   if (!log || !std::isfinite(*log)) return std::nullopt;
   const double total = *log;
   if (total < floor) return total;
@@ -89,9 +88,9 @@ std::optional<double> RadianceField::at(const SurfacePoint& p, double floor) con
 }
 
 bool RadianceField::hidden(const SurfacePoint& p, double seen) const {
-  if (!surface_.occluded(p, occlusionTarget(surface_, p.position, lamp_.centre, seen))) return false;
-  const auto ends = lamp_.ends();
-  return !ends || (surface_.occluded(p, ends->first) && surface_.occluded(p, ends->second));
+  if (!surface_.occluded(p, occlusionTarget(surface_, p.position, lightOf(lamp_), seen))) return false;
+  const std::vector<Eigen::Vector3d> extremes = extremesOf(lamp_);
+  return std::all_of(extremes.begin(), extremes.end(), [&](const Eigen::Vector3d& e) { return surface_.occluded(p, e); });
 }
 
 std::optional<SurfacePoint> RadianceField::visible(const Pixel& p) const {
@@ -187,16 +186,8 @@ std::optional<RadiancePeak> RadianceField::climb(Pixel p, double marginPx) const
 double RadianceField::fallOfLobe(const SurfacePoint& p) const {
   const Eigen::Vector3d toCamera = (eye_ - p.position).normalized();
   const Eigen::Vector3d mirrored = reflect(toCamera, p.normal);
-  Eigen::Vector3d offset = in_.light.head<3>() - in_.light.w() * p.position;
-  if (lamp_.isSegment()) {
-    // The segment's point nearest to the mirrored ray.
-    const Eigen::Vector3d axis = in_.light.w() * lamp_.halfAxis;
-    const Eigen::Vector3d acrossAxis = axis - axis.dot(mirrored) * mirrored, across = offset - offset.dot(mirrored) * mirrored;
-    const double squared = acrossAxis.squaredNorm();
-    offset += (squared > 0 ? std::clamp(-across.dot(acrossAxis) / squared, -1.0, 1.0) : 0.0) * axis;
-  }
+  const auto [offset, extent] = lobe::nearestTo(lamp_, p.position, mirrored);
   const double apart = std::atan2(offset.cross(mirrored).norm(), offset.dot(mirrored));
-  const double extent = std::atan2(lamp_.radius * std::abs(in_.light.w()), offset.norm());
   if (!(apart > extent)) return 0;
   // The light's point nearest to the mirror direction.
   const Eigen::Vector3d turn = offset.cross(mirrored).normalized();

@@ -77,7 +77,6 @@ class RadianceField {
   Lobe lobe_;
   double roughness_;
   Lamp lamp_;
-  lobe::LampIn<double> in_;  ///< the same for evaluation
   lobe::LampRule rule_;
 };
 

@@ -31,14 +31,7 @@ constexpr double kSagittaPx = 0.02;            // of contours as polylines
 constexpr double kExactPx = 1e-7;              // residuals of round-off, of which no step can be told better than another
 constexpr double kNearlySettled = 1e-6;        // change by which a round may end that was cut off: far below what noise does
 constexpr double kSettled = 1e-9;              // change of the unit vector L and of log m between reweightings
-constexpr double kProbeRadius = 0.4;           // of the lobe's width, as angles of the light: one that would show little
-constexpr double kLeastRadiusSquared = 1e-10;  // normalised: keeps the square root's derivative finite
-// In lobe widths: beyond it contours show the lamp and hardly the lobe, and sums over a disc take minutes.
-constexpr double kLargestSphere = 2.5, kLongestSegment = 12;
-constexpr int kSphereIterations = 25;      // a size that is there is found in a dozen; a wrong lobe creeps along a valley
-constexpr int kSegmentIterations = 60;     // three unknowns more, from starts that are far off
 constexpr int kFirstRoundIterations = 30;  // fits that explain their contours need 3, at most 20; others creep along a valley
-constexpr double kRatioReserve = 1.3;      // a segment may grow within a round
 
 /// The maxima follow the light before every evaluation.
 class PeaksFollow : public ceres::EvaluationCallback {
@@ -67,29 +60,12 @@ RadianceProblem::RadianceProblem(Lobe lobe, const std::vector<RadianceView>& vie
       options_(options) {}
 
 State RadianceProblem::start(const Lamp& lamp, double roughness) const {
-  State s;
-  const LampIn<double> in = lobe::inWorld(lamp);
-  s.shape = in.shape;
-  Eigen::Vector4d l;
-  l << (in.light.head<3>() - in.light.w() * origin_) / scale_, in.light.w();
-  require(l.norm() > 0, "fitRadiance: no light");
-  s.at.head<4>() = l.normalized();
-  s.at(kLogRoughness) = std::log(roughness);
-  s.at(kRadiusSquared) = in.radiusSquared / (scale_ * scale_);
-  s.at.tail<3>() = in.halfAxis / scale_;
-  return s;
+  return {normalised(lamp, origin_, scale_), std::log(roughness)};
 }
 
-Lamp RadianceProblem::inWorld(const State& state) const {
-  Eigen::Vector4d world;
-  world << scale_ * state.at.head<3>() + state.at(3) * origin_, state.at(3);
-  Lamp lamp(Light::homogeneous(world));
-  if (state.shape == LampShape::Sphere) lamp.radius = scale_ * std::sqrt(std::max(0.0, state.at(kRadiusSquared)));
-  if (state.shape == LampShape::Segment) lamp.halfAxis = scale_ * state.at.tail<3>();
-  return lamp;
-}
+Lamp RadianceProblem::inWorld(const State& state) const { return fromNormalised(state.lamp, origin_, scale_); }
 
-bool RadianceProblem::tooWide(const State& state) { return !(state.at(kLogRoughness) < std::log(kWidestRoughness)); }
+bool RadianceProblem::tooWide(const State& state) { return !(state.logRoughness < std::log(kWidestRoughness)); }
 
 double RadianceProblem::robust(double r) const {
   return r <= options_.robustPx ? r * r : options_.robustPx * (2 * r - options_.robustPx);
@@ -118,7 +94,7 @@ void RadianceProblem::updateLogs(const State& state) {
 
 void RadianceProblem::updatePeaks(const State& state, bool scan) {
   const double roughness = state.roughness();
-  if (!std::isfinite(roughness) || !(roughness > 0) || !state.at.allFinite()) return;
+  if (!std::isfinite(roughness) || !(roughness > 0) || !state.isFinite()) return;
   const Lamp lamp = inWorld(state);
   for (FramePeak& f : frames_) {
     const RadianceField field(*f.surface, f.camera, lobe_, roughness, lamp, rule_);
@@ -148,7 +124,7 @@ void RadianceProblem::updatePeaks(const State& state, bool scan) {
 /// g at a point, under the state of the last updatePeaks(); NaN where it is undefined.
 double RadianceProblem::root(const Evidence& e, const Seen& s, const State& state) const {
   const std::optional<LogAndSlopes>& peak = frame(e.frame).log;
-  const auto here = logOfLamp<double>(lobe_, state.roughness(), s.position, s.normal, s.toCamera, state.lamp(), rule_);
+  const auto here = logOfLamp<double>(lobe_, state.roughness(), s.position, s.normal, s.toCamera, state.lamp, rule_);
   return here && peak ? rootOf(peak->value - *here, e.level) : std::numeric_limits<double>::quiet_NaN();
 }
 
@@ -243,19 +219,19 @@ double RadianceProblem::noiseOf(const State& state) const {
 
 void RadianceProblem::chooseRule(const State& state) {
   largestRatio_ = 0;
-  const LampIn<double> lamp = state.lamp();
-  if (lamp.shape != LampShape::Point)
+  if (!state.lamp.isPoint())
     for (const Evidence& e : points_)
-      largestRatio_ = std::max(largestRatio_, lampRatio(state.roughness(), e.foot.at.position, e.foot.at.toCamera, lamp));
-  rule_ = lampRuleFor(lamp.shape, lamp.shape == LampShape::Segment ? kRatioReserve * largestRatio_ : largestRatio_);
+      largestRatio_ = std::max(largestRatio_, lampRatio(state.roughness(), e.foot.at.position, e.foot.at.toCamera, state.lamp));
+  const double reserve = std::visit([](const auto& shape) { return shape.kRatioReserve; }, state.lamp.shape);
+  rule_ = lampRuleFor(state.lamp.shape, reserve * largestRatio_);
 }
 
 bool RadianceProblem::tooLarge(const State& state) const {
-  return (state.shape == LampShape::Sphere && largestRatio_ > kLargestSphere) ||
-         (state.shape == LampShape::Segment && (largestRatio_ > kLongestSegment || !(state.at.tail<3>().squaredNorm() > 0)));
+  return std::visit(
+      [&](const auto& shape) { return largestRatio_ > shape.kLargestRatio || (!shape.kMayVanish && !(shape.reach() > 0)); },
+      state.lamp.shape);
 }
 
-/// Rule, maxima, feet and weights of a state.
 void RadianceProblem::settle(const State& state) {
   chooseRule(state);
   updatePeaks(state, true);
@@ -265,7 +241,7 @@ void RadianceProblem::settle(const State& state) {
 Attempt RadianceProblem::solve(const State& start) {
   const auto light = [&](const State& s) {
     Eigen::Vector4d world;
-    world << scale_ * s.at.head<3>() + s.at(3) * origin_, s.at(3);
+    world << scale_ * s.lamp.centre.head<3>() + s.lamp.centre.w() * origin_, s.lamp.centre.w();
     return world;
   };
   TracedRun run("lamp and lobe from contours", light(start));
@@ -281,10 +257,8 @@ Attempt RadianceProblem::solve(const State& start) {
 Attempt RadianceProblem::solveFrom(const State& start) {
   Attempt a;
   a.state = start;
-  Parameters& at = a.state.at;
-  const LampShape shape = start.shape;
-  const int limit = shape == LampShape::Sphere ? kSphereIterations : kSegmentIterations;
-  const int most = shape == LampShape::Point ? options_.maxIterations : std::min(limit, options_.maxIterations);
+  const LampShape& shape = a.state.lamp.shape;
+  const int most = std::min(std::visit([](const auto& s) { return s.kMostSteps; }, shape), options_.maxIterations);
   for (int round = 0; round < kMaxReweightings && a.iterations < most; ++round) {
     // The weights are held while the light moves: a residual whose own weight moves gains by lights under which the field is
     // steep.
@@ -293,7 +267,7 @@ Attempt RadianceProblem::solveFrom(const State& start) {
     updatePeaks(a.state, true);
     if (lit() == 0) return a;
     relinearise(a.state, round > 0);
-    const Parameters before = at;
+    const Eigen::VectorXd before = a.state.place();
     PeaksFollow follow(*this, a.state);
     ceres::Problem::Options ownership;
     ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
@@ -306,26 +280,29 @@ Attempt RadianceProblem::solveFrom(const State& start) {
     DenseSolution solution;
     {
       ceres::Problem problem(ownership);
-      std::vector<double*> blocks{at.data(), at.data() + kLogRoughness};
-      if (shape != LampShape::Point) blocks.push_back(at.data() + shapeStart(shape));
+      const Blocks all(a.state);
+      const std::vector<double*> blocks(all.at, all.at + (unknownCount(shape) > 0 ? 3 : 2));
       for (const Evidence& e : points_)
         problem.AddResidualBlock(costs.emplace_back(rootCost(shape, *this, e)).get(), &loss, blocks);
       if (a.state.atInfinity())
-        problem.SetManifold(at.data(), new ceres::ProductManifold<ceres::SphereManifold<3>, ceres::SubsetManifold>(
+        problem.SetManifold(blocks[0], new ceres::ProductManifold<ceres::SphereManifold<3>, ceres::SubsetManifold>(
                                            ceres::SphereManifold<3>(), ceres::SubsetManifold(1, {0})));
       else
-        problem.SetManifold(at.data(), new ceres::SphereManifold<4>());
-      if (shape == LampShape::Sphere) problem.SetParameterLowerBound(at.data() + kRadiusSquared, 0, kLeastRadiusSquared);
+        problem.SetManifold(blocks[0], new ceres::SphereManifold<4>());
+      // Keeps the derivative of a square root finite.
+      const double least = std::visit([](const auto& s) { return s.kLeast; }, shape);
+      if (least > 0) problem.SetParameterLowerBound(blocks[2], 0, least);
       // The frame's maximum is searched again at every step: no unknown settles below the 1e-11 or so to which it is found. The cost: of a sum
       // of squares over hundreds of points, thousandths of a standard deviation.
       solution = solveDense(problem, round == 0 ? std::min(most, kFirstRoundIterations) : most - a.iterations, 1e-11, 1e-10,
                             options_.progress);
     }
     a.iterations += solution.iterations;
-    if (!solution.usable || !at.allFinite()) return a;
+    if (!solution.usable || !a.state.isFinite()) return a;
+    const double change = (a.state.place() - before).norm();
     a.converged = solution.converged || solution.cost <= kExactPx * kExactPx * double(points_.size()) ||
-                  (at - before).norm() < kNearlySettled;
-    if (a.converged && (at - before).norm() < kSettled) break;
+                  change < kNearlySettled;
+    if (a.converged && change < kSettled) break;
     if (round == 0 && !a.converged && a.iterations == kFirstRoundIterations) {
       if (!judge(a)) return Attempt{};
       if (excess(a, kPoorShare) > kHopeless) return a;
@@ -345,17 +322,17 @@ bool RadianceProblem::judge(Attempt& a) {
   return true;
 }
 
-RadianceProblem::Probe RadianceProblem::probe(const State& state, const std::vector<ProbeColumn>& columns) {
+RadianceProblem::Probe RadianceProblem::probe(State state, const std::vector<ProbeColumn>& columns) {
   Eigen::Matrix<double, 4, 3, Eigen::RowMajor> chart;
-  ceres::SphereManifold<4>().PlusJacobian(state.at.data(), chart.data());
+  ceres::SphereManifold<4>().PlusJacobian(state.lamp.centre.data(), chart.data());
   const Eigen::Index n = points(), extra = static_cast<Eigen::Index>(columns.size());
   Eigen::MatrixXd jacobian(n, 4 + extra);
   Eigen::VectorXd residuals(n);
-  const auto values = [&](const State& s) {
+  const auto values = [&](State s) {
     updateLogs(s);
     const Blocks blocks(s);
     Eigen::VectorXd v(n);
-    for (Eigen::Index i = 0; i < n; ++i) (void)rootCost(s.shape, *this, points_[i])->Evaluate(blocks.at, &v(i), nullptr);
+    for (Eigen::Index i = 0; i < n; ++i) (void)rootCost(s.lamp.shape, *this, points_[i])->Evaluate(blocks.at, &v(i), nullptr);
     return v;
   };
   for (Eigen::Index k = 0; k < extra; ++k) {
@@ -368,47 +345,11 @@ RadianceProblem::Probe RadianceProblem::probe(const State& state, const std::vec
     double byRoughness = 0;
     Eigen::RowVector4d byLight;
     double* slopes[] = {byLight.data(), &byRoughness, nullptr};
-    (void)rootCost(LampShape::Point, *this, points_[i])->Evaluate(blocks.at, &residuals(i), slopes);
+    (void)rootCost(PointShape<>{}, *this, points_[i])->Evaluate(blocks.at, &residuals(i), slopes);
     jacobian.row(i).head<4>() << byLight * chart, byRoughness;
   }
   const Eigen::VectorXd step = jacobian.colPivHouseholderQr().solve(-residuals);
   return {residuals.squaredNorm() - (residuals + jacobian * step).squaredNorm(), step.tail(extra)};
-}
-
-double RadianceProblem::gainBySize(const Attempt& a) {
-  if (a.state.atInfinity()) return 0;  // there a size has no meaning, only an angle
-  State grown = a.state;
-  grown.shape = LampShape::Sphere;
-  grown.at(kRadiusSquared) = std::pow(kProbeRadius * a.state.roughness() * a.state.at.head<3>().norm() / a.state.at(3), 2);
-  const Probe found = probe(a.state, {{grown, a.state}});
-  return found.extra(0) > 0 ? found.gain : 0;
-}
-
-RadianceProblem::SegmentGain RadianceProblem::gainByLength(const State& point) {
-  SegmentGain none;
-  if (point.atInfinity()) return none;
-  settle(point);
-  // Second moments across the mean direction to the light; a length along it would hardly be seen.
-  const Eigen::Vector3d towards = point.at.head<3>().normalized();
-  const Eigen::Vector3d u = towards.unitOrthogonal(), v = towards.cross(u);
-  const double length = kProbeRadius * point.roughness() * point.at.head<3>().norm() / point.at(3);
-  std::vector<ProbeColumn> columns;
-  for (const Eigen::Vector3d& axis : {u, v, Eigen::Vector3d((u + v) / std::sqrt(2.0))}) {
-    // Against a segment too short to be seen: the sine of the angle to the axis is there for any length.
-    ProbeColumn c{point, point};
-    c.grown.shape = c.plain.shape = LampShape::Segment;
-    c.grown.at.tail<3>() = length * axis;
-    c.plain.at.tail<3>() = 1e-3 * length * axis;  // as good as a point
-    columns.push_back(c);
-  }
-  const Probe found = probe(point, columns);
-  Eigen::Matrix2d moment;  // of the lamp, over the probe's
-  moment << found.extra(0) + 0.5 * found.extra(2), 0.5 * found.extra(2), 0.5 * found.extra(2),
-      found.extra(1) + 0.5 * found.extra(2);
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(moment);
-  if (!moment.allFinite() || !(eigen.eigenvalues()(1) > 0)) return none;
-  const Eigen::Vector2d main = eigen.eigenvectors().col(1);
-  return {found.gain, (main(0) * u + main(1) * v).normalized() * length * std::sqrt(eigen.eigenvalues()(1))};
 }
 
 std::vector<double> RadianceProblem::rmsOfViews(const State& state, std::size_t views) {

@@ -20,25 +20,6 @@ inline constexpr double kPoorShare = 0.1;
 /// 48 px wide 1.2 to 1.8.
 inline constexpr double kHopeless = 1.5;
 
-/// Entries of Parameters.
-inline constexpr int kLogRoughness = 4, kRadiusSquared = 5, kHalfAxis = 6;
-/// L = (l, w), |L| = 1; log m; the squared radius of a sphere; the half axis of a segment. In normalised coordinates.
-using Parameters = Eigen::Matrix<double, 9, 1>;
-
-/// Where a search is: a lamp of some shape and a roughness. Entries that the shape does not have are 0.
-struct State {
-  Parameters at = Parameters::Zero();
-  LampShape shape = LampShape::Point;
-
-  double roughness() const { return std::exp(at(kLogRoughness)); }
-  bool atInfinity() const { return at(3) == 0; }
-  LampIn<double> lamp() const { return {shape, at.head<4>(), at(kRadiusSquared), at.tail<3>()}; }
-};
-
-/// First entry in Parameters and number of the unknowns that only this shape has.
-constexpr int shapeStart(LampShape shape) { return shape == LampShape::Segment ? kHalfAxis : kRadiusSquared; }
-constexpr int shapeSize(LampShape shape) { return shape == LampShape::Segment ? 3 : shape == LampShape::Sphere ? 1 : 0; }
-
 struct Attempt {
   State state;
   double cost = std::numeric_limits<double>::infinity();
@@ -68,14 +49,17 @@ class RadianceProblem {
   /// Plausible as a lobe: one that falls to half at 70 degrees and more is no highlight.
   static bool tooWide(const State& state);
 
-  /// By how much the sum of squares would fall to first order if a point became a sphere of some size; 0 where it would rise.
-  double gainBySize(const Attempt& a);
-  /// The same if it became a segment across the direction to it.
-  struct SegmentGain {
-    double gain = 0;                    ///< px^2
-    Eigen::Vector3d halfAxis{0, 0, 0};  ///< normalised coordinates: what promises most
+  /// The least squares step from a point lamp over L, log m and further columns: what `grown` changes against `plain`.
+  struct ProbeColumn {
+    State grown, plain;
   };
-  SegmentGain gainByLength(const State& point);
+  struct Probe {
+    double gain = 0;        ///< of the sum of squares, px^2, to first order
+    Eigen::VectorXd extra;  ///< multiples of the further columns
+  };
+  Probe probe(State point, const std::vector<ProbeColumn>& columns);
+  /// Rule, maxima, feet and weights of a state.
+  void settle(const State& state);
 
   RadianceFit describe(const Attempt& a, std::size_t views);
   /// RMS residual of every view at a state, px, of contours that need not have been fitted. Not finite where a frame has no peak.
@@ -100,23 +84,13 @@ class RadianceProblem {
   bool tooLarge(const State& state) const;
   bool judge(Attempt& a);
   Attempt solveFrom(const State& start);
-  void settle(const State& state);
   void relinearise(const State& state, bool moveFeet);
   void unbias(const State& state);
   void toFoot(Evidence& e, const State& state) const;
   double robust(double r) const;
   double robustCost(const State& state) const;
   double noiseOf(const State& state) const;
-  /// The least squares step from a point lamp over L, log m and further columns: what `grown` changes against `plain`.
-  struct ProbeColumn {
-    State grown, plain;
-  };
-  struct Probe {
-    double gain = 0;        ///< of the sum of squares, px^2
-    Eigen::VectorXd extra;  ///< multiples of the further columns
-  };
-  Probe probe(const State& state, const std::vector<ProbeColumn>& columns);
-  void setUncertainty(const State& state, RadianceFit& fit) const;
+  void setUncertainty(State state, RadianceFit& fit) const;
 
   Lobe lobe_;
   LampRule rule_;

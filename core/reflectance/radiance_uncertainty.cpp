@@ -17,10 +17,7 @@ RadianceFit RadianceProblem::describe(const Attempt& a, std::size_t views) {
   RadianceFit fit;
   fit.lobe = lobe_;
   fit.roughness = a.state.roughness();
-  const Lamp lamp = inWorld(a.state);
-  fit.light = lamp.centre;
-  fit.lightRadius = lamp.radius;
-  fit.lightHalfAxis = lamp.halfAxis;
+  fit.lamp = inWorld(a.state);
   fit.cost = a.cost;
   fit.points = points();
   fit.iterations = a.iterations;
@@ -30,10 +27,10 @@ RadianceFit RadianceProblem::describe(const Attempt& a, std::size_t views) {
 }
 
 /// Residuals, and what the Jacobian at the solution makes of their spread.
-void RadianceProblem::setUncertainty(const State& state, RadianceFit& fit) const {
-  const Eigen::Index own = shapeSize(state.shape), parameters = 4 + own;
+void RadianceProblem::setUncertainty(State state, RadianceFit& fit) const {
+  const Eigen::Index own = unknownCount(state.lamp.shape), parameters = 4 + own;
   Eigen::Matrix<double, 4, 3, Eigen::RowMajor> chart;  // ambient from tangent coordinates of L
-  ceres::SphereManifold<4>().PlusJacobian(state.at.data(), chart.data());
+  ceres::SphereManifold<4>().PlusJacobian(state.lamp.centre.data(), chart.data());
   Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(std::max<Eigen::Index>(points(), parameters), parameters);
   std::vector<double> residuals;
   std::vector<int> views;
@@ -43,9 +40,9 @@ void RadianceProblem::setUncertainty(const State& state, RadianceFit& fit) const
     const Evidence& e = points_[i];
     double residual = 0, byRoughness = 0;
     Eigen::RowVector4d byLight;
-    Eigen::RowVector3d byShape = Eigen::RowVector3d::Zero();
+    Eigen::Matrix<double, 1, kMostShapeUnknowns> byShape = Eigen::Matrix<double, 1, kMostShapeUnknowns>::Zero();
     double* slopes[] = {byLight.data(), &byRoughness, byShape.data()};
-    (void)rootCost(state.shape, *this, e)->Evaluate(Blocks(state).at, &residual, slopes);
+    (void)rootCost(state.lamp.shape, *this, e)->Evaluate(Blocks(state).at, &residual, slopes);
     jacobian.row(i).head<4>() << byLight * chart, byRoughness;
     jacobian.row(i).tail(own) = byShape.head(own);
     residuals.push_back(residual);
@@ -65,9 +62,9 @@ void RadianceProblem::setUncertainty(const State& state, RadianceFit& fit) const
   const Eigen::MatrixXd root =
       std::sqrt(spread.factor) * svd.matrixV() * svd.singularValues().cwiseInverse().asDiagonal().toDenseMatrix();
   if (!state.atInfinity()) {
-    const double w = state.at(3);
+    const double w = state.lamp.centre.w();
     Eigen::Matrix<double, 3, 4> position;  // d(l / w)
-    position << Eigen::Matrix3d::Identity() / w, -state.at.head<3>() / (w * w);
+    position << Eigen::Matrix3d::Identity() / w, -state.lamp.centre.head<3>() / (w * w);
     const Eigen::MatrixXd half = scale_ * position * chart * root.topRows<3>();
     const Eigen::Matrix3d covariance = half * half.transpose();
     if (covariance.allFinite()) fit.positionCovariance = covariance;
@@ -76,10 +73,11 @@ void RadianceProblem::setUncertainty(const State& state, RadianceFit& fit) const
   Eigen::Matrix4d toWorld = Eigen::Matrix4d::Identity();
   toWorld.topLeftCorner<3, 3>() *= scale_;
   toWorld.topRightCorner<3, 1>() = origin_;
-  const Eigen::Vector4d y = toWorld * state.at.head<4>();
+  const Eigen::Vector4d y = toWorld * state.lamp.centre;
   const Eigen::MatrixXd dy = toWorld * chart * root.topRows<3>();
   Eigen::MatrixXd others = root.bottomRows(1 + own);
-  others.bottomRows(own) *= state.shape == LampShape::Sphere ? scale_ * scale_ : scale_;
+  const int length = std::visit([](const auto& shape) { return shape.kLength; }, state.lamp.shape);
+  others.bottomRows(own) *= length == 2 ? scale_ * scale_ : scale_;
   if (auto known = uncertaintyOfUnit(y, dy, others, spread.noisePx, spread.degreesOfFreedom)) fit.uncertainty = std::move(known);
 }
 

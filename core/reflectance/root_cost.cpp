@@ -20,8 +20,9 @@
 namespace glint::lobe {
 namespace {
 
-template <LampShape kShape>
-using DualOf = ceres::Jet<double, 5 + shapeSize(kShape)>;
+/// @tparam Shape  of lamp.h
+template <template <class> class Shape>
+using DualOf = ceres::Jet<double, 5 + Shape<double>::kUnknowns>;
 
 double valueOf(double x) { return x; }
 template <class T, int kSize>
@@ -36,7 +37,7 @@ bool isFinite(const ceres::Jet<T, kSize>& x) {
 
 /// log I at a point, with its derivatives where the scalar carries them. @param parameters  L (4), log m (1), then the shape's
 /// own.
-template <LampShape kShape, class T>
+template <template <class> class Shape, class T>
 GLINT_FLATTEN std::optional<T> logOf(const RadianceProblem& problem, const Seen& s, double const* const* parameters) {
   using std::exp;
   const auto unknown = [&](double value, int i) {
@@ -45,25 +46,23 @@ GLINT_FLATTEN std::optional<T> logOf(const RadianceProblem& problem, const Seen&
     else
       return T(value, i);
   };
-  LampIn<T> lamp;
-  lamp.shape = kShape;
-  for (int i = 0; i < 4; ++i) lamp.light(i) = unknown(parameters[0][i], i);
+  Eigen::Matrix<T, 4, 1> light;
+  for (int i = 0; i < 4; ++i) light(i) = unknown(parameters[0][i], i);
   const T roughness = exp(unknown(parameters[1][0], 4));
   if (!(valueOf(roughness) > 0) || !std::isfinite(valueOf(roughness))) return std::nullopt;
-  if constexpr (kShape == LampShape::Sphere) lamp.radiusSquared = unknown(parameters[2][0], 5);
-  if constexpr (kShape == LampShape::Segment)
-    for (int i = 0; i < 3; ++i) lamp.halfAxis(i) = unknown(parameters[2][i], 5 + i);
-  return logOfLamp<T>(problem.lobe(), roughness, s.position, s.normal, s.toCamera, lamp, problem.rule());
+  Shape<T> shape;
+  for (int i = 0; i < shape.kUnknowns; ++i) shape.unknowns()[i] = unknown(parameters[2][i], 5 + i);
+  return logOfShape(shape, problem.lobe(), roughness, s.position, s.normal, s.toCamera, light, problem.rule());
 }
 
 /// (g - sqrt(-log q)) in pixels, with its derivatives by dual numbers; g at the frame's peak is the problem's, of the same parameters.
 /// Parameter blocks: L (4), log m (1), then the shape's own.
-template <LampShape kShape>
+template <template <class> class Shape>
 class RootCost final : public ceres::CostFunction {
  public:
-  static constexpr int kOwn = shapeSize(kShape);
+  static constexpr int kOwn = Shape<double>::kUnknowns;
   static constexpr int kBlocks = kOwn > 0 ? 3 : 2;
-  using Dual = DualOf<kShape>;
+  using Dual = DualOf<Shape>;
 
   RootCost(const RadianceProblem& problem, const Evidence& evidence) : problem_(problem), e_(evidence) {
     set_num_residuals(1);
@@ -92,7 +91,7 @@ class RootCost final : public ceres::CostFunction {
   std::optional<T> residualOf(double const* const* parameters, const Top& topOf) const {
     const std::optional<LogAndSlopes>& peak = problem_.frame(e_.frame).log;
     if (!peak) return std::nullopt;
-    const std::optional<T> here = logOf<kShape, T>(problem_, e_.foot.at, parameters);
+    const std::optional<T> here = logOf<Shape, T>(problem_, e_.foot.at, parameters);
     if (!here) return std::nullopt;
     const T top = topOf(*peak);
     const T residual = (rootOf<T>(top - *here, e_.level) - T(e_.level)) * T(e_.pixelsPerUnit) + T(e_.offsetPx - e_.biasPx);
@@ -103,35 +102,30 @@ class RootCost final : public ceres::CostFunction {
   const Evidence& e_;
 };
 
-template <LampShape kShape>
+template <template <class> class Shape>
 std::optional<LogAndSlopes> logAndSlopesOf(const RadianceProblem& problem, const Seen& s, double const* const* parameters) {
-  const auto log = logOf<kShape, DualOf<kShape>>(problem, s, parameters);
+  const auto log = logOf<Shape, DualOf<Shape>>(problem, s, parameters);
   if (!log || !isFinite(*log)) return std::nullopt;
   LogAndSlopes result;
   result.value = log->a;
-  result.slopes.template head<5 + shapeSize(kShape)>() = log->v;
+  result.slopes.template head<5 + Shape<double>::kUnknowns>() = log->v;
   return result;
 }
 
 }  // namespace
 
-std::unique_ptr<ceres::CostFunction> rootCost(LampShape shape, const RadianceProblem& problem, const Evidence& evidence) {
-  switch (shape) {
-    case LampShape::Point: return std::make_unique<RootCost<LampShape::Point>>(problem, evidence);
-    case LampShape::Sphere: return std::make_unique<RootCost<LampShape::Sphere>>(problem, evidence);
-    case LampShape::Segment: return std::make_unique<RootCost<LampShape::Segment>>(problem, evidence);
-  }
-  return nullptr;
+std::unique_ptr<ceres::CostFunction> rootCost(const LampShape& shape, const RadianceProblem& problem, const Evidence& evidence) {
+  return std::visit(
+      [&]<template <class> class Shape>(const Shape<double>&) -> std::unique_ptr<ceres::CostFunction> {
+        return std::make_unique<RootCost<Shape>>(problem, evidence);
+      },
+      shape);
 }
 
-std::optional<LogAndSlopes> logAndSlopes(const RadianceProblem& problem, const Seen& s, const State& state) {
-  const Blocks blocks(state);
-  switch (state.shape) {
-    case LampShape::Point: return logAndSlopesOf<LampShape::Point>(problem, s, blocks.at);
-    case LampShape::Sphere: return logAndSlopesOf<LampShape::Sphere>(problem, s, blocks.at);
-    case LampShape::Segment: return logAndSlopesOf<LampShape::Segment>(problem, s, blocks.at);
-  }
-  return std::nullopt;
+std::optional<LogAndSlopes> logAndSlopes(const RadianceProblem& problem, const Seen& s, State state) {
+  return std::visit(
+      [&]<template <class> class Shape>(const Shape<double>&) { return logAndSlopesOf<Shape>(problem, s, Blocks(state).at); },
+      state.lamp.shape);
 }
 
 }  // namespace glint::lobe

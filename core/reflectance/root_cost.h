@@ -17,15 +17,15 @@ inline constexpr double kUnlitPx = 100;  // residual of a point that the light d
 
 /// Parameter blocks of a state as the cost functions take them: L (4), log m (1), then the shape's own (not read for a point).
 struct Blocks {
-  explicit Blocks(const State& s) : at{s.at.data(), s.at.data() + kLogRoughness, s.at.data() + shapeStart(s.shape)} {}
-  const double* at[3];
+  explicit Blocks(State& s) : at{s.lamp.centre.data(), &s.logRoughness, unknownsOf(s.lamp.shape).data()} {}
+  double* at[3];
 };
 
 /// (g - sqrt(-log q)) of one contour point in pixels, with its derivatives by dual numbers; log I at the frame's peak is the problem's, of
 /// the same parameters. A point that the light does not reach has a large residual without derivatives.
-std::unique_ptr<ceres::CostFunction> rootCost(LampShape shape, const RadianceProblem& problem, const Evidence& evidence);
+std::unique_ptr<ceres::CostFunction> rootCost(const LampShape& shape, const RadianceProblem& problem, const Evidence& evidence);
 
 /// log I at a point with its derivatives by the blocks' entries; nothing where it is undefined.
-std::optional<LogAndSlopes> logAndSlopes(const RadianceProblem& problem, const Seen& s, const State& state);
+std::optional<LogAndSlopes> logAndSlopes(const RadianceProblem& problem, const Seen& s, State state);
 
 }  // namespace glint::lobe

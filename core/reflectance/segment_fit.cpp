@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/reflectance/segment_fit.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -20,6 +21,7 @@ constexpr std::size_t kPromisingAxes = 3;
 constexpr int kLeftOutPoints = 24;  // a view: enough to compare two models
 constexpr double kSamePlace =
     1e-2;  // of a unit vector L, log m and the half axis over the distance: far less than a basin is wide
+constexpr double kProbe = 0.4;  // of the lobe's width, as angles of the light: a length that would show little
 constexpr double kStartLength = 0.1;  // half the lamp's length over its distance
 // Where a lamp's length takes a part of the width that is seen, the lobe is narrower than the contours; both are tried.
 constexpr std::array<double, 2> kStartWidths{0.7, 0.35};
@@ -28,15 +30,46 @@ struct Start {
   Lamp lamp;
   double roughness = 0;
   double cost = 0;         ///< mean robust square per point after a short fit, px^2
-  lobe::Parameters place;  ///< normalised
+  lobe::State place;       ///< normalised
 
   /// Both lead to the same minimum; a half axis has no sense.
   bool isNear(const Start& other) const {
-    lobe::Parameters turned = other.place;
-    turned.tail<3>() *= -1;
-    return std::min((place - other.place).norm(), (place - turned).norm()) < kSamePlace;
+    lobe::State turned = other.place;
+    std::get<SegmentShape<>>(turned.lamp.shape).halfAxis *= -1;
+    const Eigen::VectorXd at = place.place();
+    return std::min((at - other.place.place()).norm(), (at - turned.place()).norm()) < kSamePlace;
   }
 };
+
+/// What a length across the direction to a point lamp promises.
+struct Promise {
+  double gain = 0;                    ///< of the sum of squares, px^2, to first order
+  Eigen::Vector3d halfAxis{0, 0, 0};  ///< normalised: what promises most
+};
+
+Promise gainByLength(lobe::RadianceProblem& problem, const lobe::State& point) {
+  if (point.atInfinity()) return {};
+  problem.settle(point);
+  // Second moments across the mean direction to the light; a length along it would hardly be seen.
+  const Eigen::Vector3d towards = point.lamp.centre.head<3>().normalized();
+  const Eigen::Vector3d u = towards.unitOrthogonal(), v = towards.cross(u);
+  const double length = point.lengthOf(kProbe);
+  std::vector<lobe::RadianceProblem::ProbeColumn> columns;
+  for (const Eigen::Vector3d& axis : {u, v, Eigen::Vector3d((u + v) / std::sqrt(2.0))}) {
+    // Against a segment too short to be seen: the sine of the angle to the axis is there for any length.
+    columns.push_back({point, point});
+    columns.back().grown.lamp.shape = SegmentShape<>{length * axis, 0};
+    columns.back().plain.lamp.shape = SegmentShape<>{1e-3 * length * axis, 0};  // as good as a point
+  }
+  const lobe::RadianceProblem::Probe found = problem.probe(point, columns);
+  Eigen::Matrix2d moment;  // of the lamp, over the probe's
+  moment << found.extra(0) + 0.5 * found.extra(2), 0.5 * found.extra(2), 0.5 * found.extra(2),
+      found.extra(1) + 0.5 * found.extra(2);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(moment);
+  if (!moment.allFinite() || !(eigen.eigenvalues()(1) > 0)) return {};
+  const Eigen::Vector2d main = eigen.eigenvectors().col(1);
+  return {found.gain, (main(0) * u + main(1) * v).normalized() * length * std::sqrt(eigen.eigenvalues()(1))};
+}
 
 /// Five axes across the direction to the lamp and towards it, and the one that the point's residuals promise; after short fits,
 /// best first, each minimum once. None that leads nowhere.
@@ -48,12 +81,11 @@ std::vector<Start> screened(Lobe lobe, const std::vector<RadianceView>& views, c
   if (!gathered) return {};
   lobe::RadianceProblem problem(lobe, views, *std::move(gathered), options);
   lobe::State from = problem.start(light, 1);
-  from.shape = lobe::LampShape::Segment;
-  if (!(from.at(3) > 0))
-    from.at(3) = 0.3 * from.at.head<3>().norm();  // at infinity a length has no meaning: some camera distances away
-  from.at.head<4>().normalize();
-  const Eigen::Vector3d towards = from.at.head<3>().normalized();
-  const double distance = from.at.head<3>().norm() / from.at(3);
+  Eigen::Vector4d& centre = from.lamp.centre;
+  if (!(centre.w() > 0)) centre.w() = 0.3 * centre.head<3>().norm();  // at infinity a length has no meaning: some camera distances away
+  centre.normalize();
+  const Eigen::Vector3d towards = centre.head<3>().normalized();
+  const double distance = centre.head<3>().norm() / centre.w();
   const Eigen::Vector3d u = towards.unitOrthogonal(), v = towards.cross(u);
   std::vector<Eigen::Vector3d> halfAxes;
   if (promised) halfAxes.push_back(*promised);
@@ -63,12 +95,12 @@ std::vector<Start> screened(Lobe lobe, const std::vector<RadianceView>& views, c
   std::vector<Start> starts;
   for (const Eigen::Vector3d& halfAxis : halfAxes)
     for (const double share : kStartWidths) {
-      from.at(lobe::kLogRoughness) = std::log(roughnessOf(lobe, share * widthRad, views.front().level));
-      from.at.tail<3>() = halfAxis;
+      from.logRoughness = std::log(roughnessOf(lobe, share * widthRad, views.front().level));
+      from.lamp.shape = SegmentShape<>{halfAxis, 0};
       const lobe::Attempt a = problem.solve(from);
-      if (!std::isfinite(a.cost) || !a.state.at.allFinite() || lobe::RadianceProblem::tooWide(a.state)) continue;
+      if (!std::isfinite(a.cost) || !a.state.isFinite() || lobe::RadianceProblem::tooWide(a.state)) continue;
       if (problem.excess(a, lobe::kPoorShare) > lobe::kHopeless) continue;
-      starts.push_back({problem.inWorld(a.state), a.state.roughness(), a.cost / problem.points(), a.state.at});
+      starts.push_back({problem.inWorld(a.state), a.state.roughness(), a.cost / problem.points(), a.state});
     }
   std::stable_sort(starts.begin(), starts.end(), [](const Start& a, const Start& b) { return a.cost < b.cost; });
   if (starts.size() > kPromisingAxes) starts.resize(kPromisingAxes);
@@ -86,7 +118,7 @@ std::vector<double> leftOutErrors(const RadianceFit& fit, const std::vector<Radi
   for (int place = 0; place < countOf(places); ++place) {
     std::vector<RadianceView> others, left;
     for (std::size_t v = 0; v < views.size(); ++v) (places[v] == place ? left : others).push_back(views[v]);
-    const Outcome<RadianceFit> without = fitLamp(fit.lobe, others, fit.lamp(), fit.roughness, options);
+    const Outcome<RadianceFit> without = fitLamp(fit.lobe, others, fit.lamp, fit.roughness, options);
     if (!without) return {};
     double sum = 0;
     for (const double rms : rmsOfViews(*without, left, options)) sum += rms * rms / double(left.size());
@@ -112,10 +144,10 @@ std::optional<RadianceFit> fitSegment(const std::vector<Lobe>& lobes, const std:
     Outcome<lobe::ContourEvidence> gathered = lobe::gatherEvidence(views, options.pointsPerView);
     if (!gathered) return std::nullopt;
     lobe::RadianceProblem problem(plain->lobe, views, *std::move(gathered), options);
-    const lobe::RadianceProblem::SegmentGain gain = problem.gainByLength(problem.start(plain->light, plain->roughness));
-    if (!(gain.gain > kSegmentGain * plain->cost)) return std::nullopt;
-    promised = gain.halfAxis;
-    from = plain->light;
+    const Promise promise = gainByLength(problem, problem.start(plain->light(), plain->roughness));
+    if (!(promise.gain > kSegmentGain * plain->cost)) return std::nullopt;
+    promised = promise.halfAxis;
+    from = plain->light();
     width = widthOf(plain->lobe, plain->roughness, views.front().level);
     std::stable_partition(order.begin(), order.end(), [&](Lobe l) { return l == plain->lobe; });
   }
@@ -131,7 +163,7 @@ std::optional<RadianceFit> fitSegment(const std::vector<Lobe>& lobes, const std:
   const RadianceFit first = *best;
   for (std::size_t k = 1; k < order.size(); ++k) {
     const double w = widthOf(first.lobe, first.roughness, views.front().level);
-    consider(fitLamp(order[k], views, first.lamp(), roughnessOf(order[k], w, views.front().level), options));
+    consider(fitLamp(order[k], views, first.lamp, roughnessOf(order[k], w, views.front().level), options));
   }
   if (best->poor) return std::nullopt;
   if (!plain || plain->poor) return best->doubtful ? std::nullopt : best;

@@ -131,9 +131,15 @@ Json fitJson(const Inspection& inspection, const ModelResult::Fit& entry) {
   if (contours && contours->extent) j["light_extent"] = rows(*contours->extent);
   if (lobe) {
     j["lobe"] = nameOf(lobe->lobe);
-    j["light_radius"] = numberOrNull(lobe->lightRadius);
-    const auto& ends = lobe->lightSegment;
-    j["light_segment"] = ends ? Json{list(ends->first), list(ends->second)} : Json(nullptr);
+    j["light_radius"] = 0.0;
+    for (const PlacedShape& shape : placedShapes()) j["light_" + shape.name] = nullptr;
+    if (const std::optional<Lamp> lamp = f.lamp())
+      for (const LampField& field : fieldsOf(*lamp)) {
+        if (field.value.size() == 1)
+          j["light_" + field.name] = numberOrNull(field.value(0));
+        else if (field.value.rows() > 1)
+          j["light_" + field.name] = rows(field.value);
+      }
   }
   const bool isSolved = quadric && !quadric->singularValues.empty();
   j["gap_ratio"] = isSolved ? numberOrNull(quadric->gapRatio) : Json(nullptr);

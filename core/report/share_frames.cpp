@@ -193,10 +193,13 @@ std::string lightsJson(const Inspection& inspection) {
 
 std::string trueLightsJson(const Inspection& inspection) {
   return array(inspection.scene->lights, [](const TrueLight& light) {
-    std::string json = "{\"id\":" + quoted(light.id) + ",\"radius\":" + exactly(light.radius);
-    if (light.position) json += ",\"position\":" + vectorJson(*light.position);
-    if (light.direction) json += ",\"direction\":" + vectorJson(*light.direction);
-    if (light.segment) json += ",\"segment\":[" + vectorJson((*light.segment)[0]) + "," + vectorJson((*light.segment)[1]) + "]";
+    std::string json = "{\"id\":" + quoted(light.id) + ",\"radius\":" + exactly(radiusOf(light.lamp));
+    for (const LampField& f : fieldsOf(light.lamp)) {
+      if (f.value.size() == 1) continue;
+      std::string points;
+      for (const auto& point : f.value.rowwise()) points += (points.empty() ? "" : ",") + vectorJson(point.transpose());
+      json += ",\"" + f.name + "\":" + (f.value.rows() == 1 ? points : "[" + points + "]");
+    }
     return json + "}";
   });
 }

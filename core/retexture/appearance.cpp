@@ -274,7 +274,7 @@ Outcome<Eigen::Vector3d> lobeStrength(const Inspection& in, const std::vector<co
 
 Outcome<HighlightAppearance> learnLobe(const Inspection& in, const ModelFit& fit, const ReflectanceFit& fitted, const FitKey& key,
                                        const std::map<int, std::vector<const TrainingView*>>& views) {
-  LobeModel model{fitted.lobe, fitted.roughness, lampOf(fitted, *fit.lightEstimate), 0};
+  LobeModel model{fitted.lobe, fitted.roughness, *fit.lamp(), 0};
   if (fitted.blurPx) model.blurVariance = *fitted.blurPx * *fitted.blurPx;
   const auto pixelFit = in.pixelFits.find(key);
   const BackgroundKind background =

@@ -87,7 +87,7 @@ std::optional<Failure> addLight(const Inspection& in, int frame, const FrameComp
   if (a.kind != HighlightAppearance::Kind::Contour && !surface) return surface.failure();
   if (a.kind == HighlightAppearance::Kind::Lobe) {
     const ReflectanceFit& lobe = *fit.as<ReflectanceFit>();
-    const RadianceField field(**surface, camera, lobe.lobe, lobe.roughness, lampOf(lobe, *fit.lightEstimate));
+    const RadianceField field(**surface, camera, lobe.lobe, lobe.roughness, *fit.lamp());
     const ShareAt share = [&](const Pixel& ideal) -> Share {
       const Outcome<SurfacePoint> hit = (*surface)->firstHit(camera.ray(ideal));
       if (!hit) return {};

@@ -176,13 +176,7 @@ void applySimilarity(Scene& scene, std::string_view fix) {
       refuse("frame " + f.id + " has a depth map in floating point, in the unit of the cameras");
     moveIntoMeshFrame(f, s);
   }
-  for (TrueLight& light : scene.lights) {
-    if (light.position) light.position = back * *light.position;
-    if (light.direction) light.direction = s.rotation.transpose() * *light.direction;
-    if (light.segment)
-      for (Eigen::Vector3d& end : *light.segment) end = back * end;
-    light.radius /= s.scale;
-  }
+  for (TrueLight& light : scene.lights) light.lamp = transformed(light.lamp, back.scale, back.rotation, back.translation);
 }
 
 }  // namespace

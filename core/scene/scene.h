@@ -17,6 +17,7 @@
 #include "core/capture/video.h"
 #include "core/geometry/camera.h"
 #include "core/highlight/highlight.h"
+#include "core/reflectance/lamp.h"
 #include "core/scene/camera_response.h"
 #include "core/scene/input_choices.h"
 #include "core/surface/analytic.h"
@@ -65,9 +66,7 @@ struct FilesFolder {
 /// Truth for evaluation and display only; never read by reconstruction or prediction.
 struct TrueLight {
   std::string id;
-  std::optional<Eigen::Vector3d> position, direction;     ///< direction: from the scene to a light at infinity
-  std::optional<std::array<Eigen::Vector3d, 2>> segment;  ///< tube
-  double radius = 0;
+  Lamp lamp;
 };
 
 /// Everything a scene file says, checked. Images and surfaces are loaded on demand.

@@ -141,25 +141,38 @@ AnalyticSpec readAnalyticJson(const JsonNode& node) {
   return spec;
 }
 
+namespace {
+std::string placeKeys() {
+  std::string keys = "position, direction";
+  for (const PlacedShape& shape : placedShapes()) keys += ", " + shape.name;
+  return keys;
+}
+}  // namespace
+
 TrueLight readLightJson(const JsonNode& node) {
   TrueLight light;
   light.id = readIdJson(node.at("id"));
-  if (const auto n = node.find("position")) light.position = lengths3(*n);
+  int places = 0;
+  if (const auto n = node.find("position")) light.lamp = lampAt(lengths3(*n)), ++places;
   if (const auto n = node.find("direction")) {
     const Eigen::Vector3d d = lengths3(*n);
     if (!(d.norm() > 0)) n->fail("must not be zero");
-    light.direction = d.normalized();
+    light.lamp = lampTowards(d), ++places;
   }
-  if (const auto n = node.find("segment")) {
-    if (n->size() != 2) n->fail("must have two ends");
-    light.segment = {lengths3(n->at(std::size_t(0))), lengths3(n->at(std::size_t(1)))};
-    if ((*light.segment)[0] == (*light.segment)[1]) n->fail("the two ends must differ");
+  for (const PlacedShape& shape : placedShapes()) {
+    const auto n = node.find(shape.name);
+    if (!n) continue;
+    if (n->size() != std::size_t(shape.points)) n->fail(shape.wrongSize);
+    std::vector<Eigen::Vector3d> points;
+    for (std::size_t i = 0; i < n->size(); ++i) points.push_back(lengths3(n->at(i)));
+    if (const std::string fault = shape.faultOf(points); !fault.empty()) n->fail(fault);
+    light.lamp = shape.make(points), ++places;
   }
-  if (int(light.position.has_value()) + int(light.direction.has_value()) + int(light.segment.has_value()) != 1)
-    node.fail("needs exactly one of position, direction, segment");
+  if (places != 1) node.fail("needs exactly one of " + placeKeys());
   if (const auto n = node.find("radius")) {
-    light.radius = bounded(*n, kFarthest);
-    if (light.radius < 0) n->fail("must not be negative");
+    const double radius = bounded(*n, kFarthest);
+    if (radius < 0) n->fail("must not be negative");
+    light.lamp = withRadius(light.lamp, radius);
   }
   return light;
 }

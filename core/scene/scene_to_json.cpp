@@ -96,11 +96,14 @@ Json toJson(const Highlight& h, const Camera& camera) {
 
 Json toJson(const TrueLight& light) {
   Json j = {{"id", light.id}};
-  if (light.position) j["position"] = toJson(Eigen::VectorXd(*light.position));
-  if (light.direction) j["direction"] = toJson(Eigen::VectorXd(*light.direction));
-  if (light.segment)
-    j["segment"] = Json::array({toJson(Eigen::VectorXd((*light.segment)[0])), toJson(Eigen::VectorXd((*light.segment)[1]))});
-  if (light.radius > 0) j["radius"] = light.radius;
+  for (const LampField& f : fieldsOf(light.lamp)) {
+    if (f.value.size() == 1)
+      j[f.name] = f.value(0);
+    else if (f.value.rows() == 1)
+      j[f.name] = toJson(Eigen::VectorXd(f.value.row(0)));
+    else
+      for (const auto& point : f.value.rowwise()) j[f.name].push_back(toJson(Eigen::VectorXd(point)));
+  }
   return j;
 }
 

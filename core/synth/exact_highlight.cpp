@@ -15,13 +15,6 @@
 namespace glint {
 namespace {
 
-/// A point that stands for the light where one direction is needed (seeds, limit angles).
-Light centreOf(const TrueLight& light) {
-  if (light.direction) return Light::towards(*light.direction);
-  if (light.segment) return Light::at(0.5 * ((*light.segment)[0] + (*light.segment)[1]));
-  return Light::at(*light.position);
-}
-
 /// Maximum of a smooth field near a start: Newton's method on fourth-order differences, with halved steps while the field does
 /// not rise. Nothing when the field ends within the stencil or the Hessian is not negative definite there.
 std::optional<Pixel> polishedMaximum(const std::function<std::optional<double>(const Pixel&)>& field, Pixel at) {
@@ -69,8 +62,8 @@ struct Candidate {
 Outcome<std::vector<Highlight>> exactHighlights(const Surface& surface, const Camera& camera, const TrueLight& light,
                                                 const Material& material, const ExactOptions& options) {
   const bool limit = options.kind == ContourKind::LimitAngle;
-  if (limit && (light.segment || light.radius > 0)) return Failure{Reason::NotSupported, "a limit angle needs a point light"};
-  const Light centre = centreOf(light);
+  if (limit && !light.lamp.isPoint()) return Failure{Reason::NotSupported, "a limit angle needs a point light"};
+  const Light centre = lightOf(light.lamp);  // stands for the lamp where one direction is needed (seeds, limit angles)
 
   // The larger, the brighter: log I, or -alpha.
   const auto brightness = [&](const Pixel& pixel) -> std::optional<double> {

@@ -41,8 +41,9 @@ std::vector<LightSample> sampleSphere(const Eigen::Vector3d& centre, double radi
 }
 
 /// Errors of log I below 1e-7 down to a thousandth of the peak, to three lobe widths.
-std::vector<LightSample> sampleSphere(const Eigen::Vector3d& centre, double radius, const Eigen::Vector3d& point,
-                                      double lobeWidth) {
+std::vector<LightSample> samplesOf(const SphereShape<>& sphere, const Eigen::Vector3d& centre, const Eigen::Vector3d& point,
+                                   double lobeWidth) {
+  const double radius = sphere.reach();
   const double ratio = std::atan2(radius, (centre - point).norm()) / lobeWidth;
   struct Rung {
     double ratio;  // largest that the rule serves
@@ -55,7 +56,15 @@ std::vector<LightSample> sampleSphere(const Eigen::Vector3d& centre, double radi
   return sampleSphere(centre, radius, point, rung->rings, rung->spokes);
 }
 
-std::vector<LightSample> sampleTube(const std::array<Eigen::Vector3d, 2>& ends, double radius, const Eigen::Vector3d& point) {
+std::vector<LightSample> samplesOf(const PointShape<>&, const Eigen::Vector3d& centre, const Eigen::Vector3d& point, double) {
+  const Eigen::Vector3d offset = centre - point;
+  if (!(offset.squaredNorm() > 0)) return {};
+  return {{offset.normalized(), 1 / offset.squaredNorm(), centre}};
+}
+
+std::vector<LightSample> samplesOf(const SegmentShape<>& tube, const Eigen::Vector3d& middle, const Eigen::Vector3d& point, double) {
+  const double radius = tube.radius;
+  const std::array<Eigen::Vector3d, 2> ends{middle - tube.halfAxis, middle + tube.halfAxis};
   static const std::vector<QuadratureNode> along = gaussLegendre(kAlong), across = gaussLegendre(kAcross);
   const Eigen::Vector3d axis = (ends[1] - ends[0]).normalized();
   std::vector<LightSample> samples;
@@ -94,8 +103,9 @@ std::vector<Sampled> reaching(const Surface& surface, const SurfacePoint& p, con
   std::vector<Sampled> result;
   // H turns by half of what L turns, and across the plane of incidence by more at slanted incidence.
   double lobeWidth = 2 * material.roughness;
-  if (light.position) lobeWidth *= std::max(0.05, 0.5 * ((*light.position - p.position).normalized() + toCamera).norm());
-  for (const LightSample& sample : sampleLight(light, p.position, lobeWidth)) {
+  if (!light.lamp.atInfinity())
+    lobeWidth *= std::max(0.05, 0.5 * ((light.lamp.position() - p.position).normalized() + toCamera).norm());
+  for (const LightSample& sample : sampleLight(light.lamp, p.position, lobeWidth)) {
     const double cosine = p.normal.dot(sample.direction);
     if (!(cosine > 0)) continue;
     if (surface.occluded(p, sample.target.value_or(beyondSurface(surface, p.position, sample.direction, distance)))) continue;
@@ -107,14 +117,10 @@ std::vector<Sampled> reaching(const Surface& surface, const SurfacePoint& p, con
 
 }  // namespace
 
-std::vector<LightSample> sampleLight(const TrueLight& light, const Eigen::Vector3d& point, double lobeWidth) {
-  if (light.segment) return sampleTube(*light.segment, light.radius, point);
-  if (light.direction) return {{light.direction->normalized(), 1.0, std::nullopt}};
-  require(light.position.has_value(), "sampleLight: a light needs a position, a direction or a segment");
-  if (light.radius > 0) return sampleSphere(*light.position, light.radius, point, lobeWidth);
-  const Eigen::Vector3d offset = *light.position - point;
-  if (!(offset.squaredNorm() > 0)) return {};
-  return {{offset.normalized(), 1 / offset.squaredNorm(), *light.position}};
+std::vector<LightSample> sampleLight(const Lamp& lamp, const Eigen::Vector3d& point, double lobeWidth) {
+  if (lamp.atInfinity()) return {{lamp.centre.head<3>(), 1.0, std::nullopt}};
+  const Eigen::Vector3d centre = lamp.position();
+  return std::visit([&](const auto& shape) { return samplesOf(shape, centre, point, lobeWidth); }, lamp.shape);
 }
 
 Shading shade(const Surface& surface, const SurfacePoint& point, const Eigen::Vector3d& eye, const TrueLight& light,

@@ -40,7 +40,7 @@ struct LightSample {
 /// @param lobeWidth  rad, of what the samples are weighted with, as an angle of the light's direction: a sphere wide against it takes
 ///                   more samples.
 /// @return no samples where the point lies inside the light.
-std::vector<LightSample> sampleLight(const TrueLight& light, const Eigen::Vector3d& point, double lobeWidth = 1);
+std::vector<LightSample> sampleLight(const Lamp& lamp, const Eigen::Vector3d& point, double lobeWidth = 1);
 
 /// Both parts at a surface point, seen from `eye`; the normal is turned to the camera's side; samples that the surface hides
 /// count 0.

@@ -50,7 +50,7 @@ WhatIf dragged(const WhatIf& start, Held held, int frame, const Camera& camera, 
 
 WhatIf draggedLight(const WhatIf& start, const TrueLight& light, const Eigen::Vector3d& by) {
   WhatIf w = start;
-  if (light.direction || !by.allFinite() || by.isZero(0)) return w;
+  if (light.lamp.atInfinity() || !by.allFinite() || by.isZero(0)) return w;
   w.lightsBy.try_emplace(light.id, Eigen::Vector3d::Zero()).first->second += by;
   return w;
 }

@@ -69,7 +69,7 @@ Eigen::Vector3d shiftOf(const WhatIf& w, const std::string& light) {
 
 void addLights(std::vector<WhatIfKnob>& knobs, const Scene& scene, double distance) {
   for (const TrueLight& light : scene.lights) {
-    const bool far = light.direction.has_value();  // its unit direction moves
+    const bool far = light.lamp.atInfinity();  // its unit direction moves
     const double reach = far ? 1.0 : kLightReach * distance;
     for (int axis = 0; axis < 3; ++axis)
       knobs.push_back({saysLight(light.id) ? light.id : "Light " + light.id,

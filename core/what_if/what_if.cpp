@@ -36,13 +36,6 @@ Camera moved(Camera camera, const PoseChange& change) {
   return camera;
 }
 
-TrueLight moved(TrueLight light, const Eigen::Vector3d& by) {
-  if (light.position) *light.position += by;
-  if (light.direction) *light.direction = (*light.direction + by).normalized();
-  if (light.segment)
-    for (Eigen::Vector3d& end : *light.segment) end += by;
-  return light;
-}
 }  // namespace
 
 namespace {
@@ -195,7 +188,7 @@ std::shared_ptr<const Scene> changedScene(const Scene& given, const WhatIf& what
     const auto light =
         std::find_if(scene->lights.begin(), scene->lights.end(), [&, name = id](const TrueLight& l) { return l.id == name; });
     if (light == scene->lights.end()) refuse(given, "light '" + id + "' does not exist");
-    *light = moved(*light, by);
+    light->lamp = moved(light->lamp, by);
   }
   AnalyticSurfaces surfaces;
   for (auto& [id, source] : scene->surfaces) {

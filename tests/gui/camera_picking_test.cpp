@@ -27,7 +27,7 @@ class CameraPickingTest : public QObject, SceneFixture {
     auto scene = std::make_shared<Scene>(*document_->scene());
     TrueLight lamp;
     lamp.id = "lamp";
-    lamp.position = Eigen::Vector3d(0.3, -0.6, -0.8);
+    lamp.lamp = lampAt(Eigen::Vector3d(0.3, -0.6, -0.8));
     scene->lights = {lamp};
     Opened opened = fixture_.opened();
     opened.scene = scene;
@@ -38,7 +38,7 @@ class CameraPickingTest : public QObject, SceneFixture {
     ModelFit around;
     around.model = "canonical";
     around.light = "lamp";
-    const Ellipsoid ellipsoid(Eigen::Isometry3d(Eigen::Translation3d(*lamp.position)), {0.3, 0.25, 0.2});
+    const Ellipsoid ellipsoid(Eigen::Isometry3d(Eigen::Translation3d(lamp.lamp.position())), {0.3, 0.25, 0.2});
     around.family = EllipsoidFit{ellipsoid.dual(), ellipsoid};
     inspection->models["canonical"].fits = {{"lamp", {}, around, {}}};
     document_->setInspection(inspection, document_->request());
@@ -46,7 +46,7 @@ class CameraPickingTest : public QObject, SceneFixture {
     settle();
     panel_->frameAll();
     settle();
-    const QPoint from = onScreen(*lamp.position), there = from + QPoint(-60, 35);
+    const QPoint from = onScreen(lamp.lamp.position()), there = from + QPoint(-60, 35);
     const double ratio = views().widget()->devicePixelRatioF();
     const std::optional<viz::Picked> nearest =
         panel_->view().pick(int(from.x() * ratio), int((views().widget()->height() - 1 - from.y()) * ratio));

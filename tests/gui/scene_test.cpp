@@ -478,7 +478,7 @@ class SceneTest : public QObject, SceneFixture {
     auto scene = std::make_shared<Scene>(*document_->scene());
     TrueLight lamp;
     lamp.id = "lamp";
-    lamp.position = Eigen::Vector3d(0.3, -0.6, -0.8);
+    lamp.lamp = lampAt(Eigen::Vector3d(0.3, -0.6, -0.8));
     scene->lights = {lamp};
     Opened opened = fixture_.opened();
     opened.scene = scene;
@@ -492,7 +492,7 @@ class SceneTest : public QObject, SceneFixture {
     for (const viz::Layer& layer : viz::sceneLayers())
       document_->setLayerVisible(layer.name, layer.title, layer.name == "true-light");
     show();
-    const QPoint at = onScreen(*lamp.position), to = at + QPoint(-60, 35);
+    const QPoint at = onScreen(lamp.lamp.position()), to = at + QPoint(-60, 35);
     drag(views().widget(), {at, at + QPoint(-20, 10), to});  // not synthesised: the view turns
     QVERIFY(document_->request().whatIf.none());
     WhatIf w;
@@ -500,12 +500,12 @@ class SceneTest : public QObject, SceneFixture {
     document_->setWhatIf(w, "synthesise");
     panel_->frameAll();
     show();
-    const QPoint from = onScreen(*lamp.position), there = from + QPoint(-60, 35);
+    const QPoint from = onScreen(lamp.lamp.position()), there = from + QPoint(-60, 35);
     const int steps = document_->undoStack()->count();
     drag(views().widget(), {from, from + QPoint(-20, 10), there});
     QCOMPARE(document_->undoStack()->count(), steps + 1);
     QVERIFY(document_->request().whatIf.lightsBy.count("lamp"));
-    const Eigen::Vector3d moved = *lamp.position + document_->request().whatIf.lightsBy.at("lamp");
+    const Eigen::Vector3d moved = lamp.lamp.position() + document_->request().whatIf.lightsBy.at("lamp");
     QVERIFY((onScreen(moved) - there).manhattanLength() <= 3);  // where the mouse let it go, within the pixels of both clicks
   }
 

@@ -146,7 +146,7 @@ struct Seen {
   const Inspection& in;
   const Explanation& e;
   Body body = bodyOf(id, e.frame);
-  Vec lamp = *in.scene->lights.at(0).position;
+  Vec lamp = in.scene->lights.at(0).lamp.position();
   const Camera& camera = in.scene->frames[std::size_t(e.frame)].camera;
   Eigen::Isometry3d pose{camera.camFromWorld};
   Vec eye = -(pose.linear().transpose() * pose.translation());

@@ -35,7 +35,7 @@ Eigen::Vector3d shortestWay(const Eigen::Vector3d& eye, const Eigen::Vector3d& l
 
 TEST(LessonAnswers, MovingHighlightLiesWhereTheWayIsShortestAndMovesByHalf) {
   const Inspection& in = lesson("moving-highlight").inspection;
-  const Eigen::Vector3d lamp = *in.scene->lights.at(0).position;
+  const Eigen::Vector3d lamp = in.scene->lights.at(0).lamp.position();
   std::vector<Eigen::Vector3d> at;
   std::vector<double> across, along;
   for (int frame = 0; frame < 10; ++frame) {
@@ -90,7 +90,7 @@ double onTable(const Highlight& highlight, const Camera& camera) {
 
 TEST(LessonAnswers, MirrorEveryRayPointsAtTheMirroredLampWhichGrowsItWhenRaised) {
   const Inspection& in = lesson("mirror").inspection;
-  const Eigen::Vector3d lamp = *in.scene->lights.at(0).position, mirrored(lamp.x(), lamp.y(), -lamp.z());
+  const Eigen::Vector3d lamp = in.scene->lights.at(0).lamp.position(), mirrored(lamp.x(), lamp.y(), -lamp.z());
   EXPECT_LT((mirrored - Eigen::Vector3d(0.2, 0.4, -1.4)).norm(), 1e-12) << "as the text says";
   const auto synthesised = [](double rise) {
     return changed("mirror", [rise](InspectionRequest& r) {
@@ -222,7 +222,7 @@ TEST(LessonAnswers, SphereEveryPairAndALargerSphere) {
 
 TEST(LessonAnswers, BentMirrorItsNumbersAndItsFocus) {
   const Inspection& in = lesson("bent-mirror").inspection;
-  const Eigen::Vector3d lamp = *in.scene->lights.at(0).position;
+  const Eigen::Vector3d lamp = in.scene->lights.at(0).lamp.position();
   const Explanation e = explain(in, 10, 0, "canonical");
   ASSERT_TRUE(e.view && e.view->seen);
   const Eigen::Vector3d eye = e.view->camera.centreInWorld(), at = e.view->seen->brightest.point.position;

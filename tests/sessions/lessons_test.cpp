@@ -61,7 +61,7 @@ TEST(Lessons, EachOpensInTheExplainLayoutWithItsTexts) {
 
 TEST(Lessons, MirrorTheVirtualCameraSeesTheLampAtThePeak) {
   const Inspection& in = lesson("mirror").inspection;
-  const Eigen::Vector3d lamp = *in.scene->lights.at(0).position;
+  const Eigen::Vector3d lamp = in.scene->lights.at(0).lamp.position();
   for (int frame = 0; frame < 5; ++frame) {
     const Explanation e = explain(in, frame, 0, "canonical");
     const Eigen::Vector3d eye = in.scene->frames[std::size_t(frame)].camera.centreInWorld();
@@ -109,7 +109,7 @@ TEST(Lessons, SphereEpipolarTangentsMissForRealCamerasAndNearlyMeetForVirtualOne
 TEST(Lessons, BentMirrorItsFieldOfViewFollowsTheMirrorEquation) {
   const Inspection& in = lesson("bent-mirror").inspection;
   const double curvatures[] = {-0.2, 0, 0.5, 1, 2};
-  const Eigen::Vector3d lamp = *in.scene->lights.at(0).position;
+  const Eigen::Vector3d lamp = in.scene->lights.at(0).lamp.position();
   double before = 0;
   for (int k = 0; k < 5; ++k) {
     const int frame = 3 * k + 1;  // camera and lamp in the plane x = 0, square to the bend
@@ -194,7 +194,7 @@ int mirrorPoints(const Eigen::Vector3d& eye, const Eigen::Vector3d& lamp) {
 
 TEST(Lessons, WaistTheHighlightSplitsAfterItsMirrorPoint) {
   const Inspection& in = lesson("waist").inspection;
-  const Eigen::Vector3d lamp = *in.scene->lights.at(0).position;
+  const Eigen::Vector3d lamp = in.scene->lights.at(0).lamp.position();
   const std::size_t highlights[] = {1, 1, 1, 1, 1, 1, 2, 2, 2, 2};
   std::vector<int> points;
   for (int frame = 0; frame < 10; ++frame) {

@@ -109,7 +109,7 @@ Outcome<Measured> fitCase(const RadianceScene& p, const Light& light, int copies
     y.head<3>() /= p.scale;
     return Eigen::Vector4d(y.normalized());
   };
-  const Eigen::Vector4d a = normalised(fit->light), b = normalised(light);
+  const Eigen::Vector4d a = normalised(fit->light()), b = normalised(light);
   return Measured{worstOf({std::min((a - b).norm(), (a + b).norm()), std::abs(fit->roughness / p.roughness - 1)})};
 }
 

@@ -113,7 +113,7 @@ TEST_F(HiddenObjectsTest, ALightGoesAsEstimateAndTruth) {
   };
   TrueLight truth;
   truth.id = inspection_->lights.begin()->first.light;
-  truth.position = Eigen::Vector3d(0.5, 0, 1);
+  truth.lamp = lampAt(Eigen::Vector3d(0.5, 0, 1));
   auto scene = std::make_shared<Scene>(*inspection_->scene);
   scene->lights = {truth};
   inspection_->scene = scene;

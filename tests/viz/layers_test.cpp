@@ -67,7 +67,7 @@ TEST(Framings, TheMirrorHoldsTheEllipsoidWhereItIsDrawn) {
   input.surfaceKey = inspection->surfaces->keyOf(1);
   input.surface = *inspection->surfaces->surfaceOf(1, {});
   input.scale = sceneScale(*inspection, input.surface.get(), {0, 1, 2, 3}, 1);
-  const Eigen::Vector3d end = *inspection->scene->lights[0].position + 1.1 * Eigen::Vector3d(0.25, 0, 0);  // of its longest axis
+  const Eigen::Vector3d end = inspection->scene->lights[0].lamp.position() + 1.1 * Eigen::Vector3d(0.25, 0, 0);  // of its longest axis
   for (const bool drawn : {false, true}) {
     const std::optional<Framing> framing = highlightFraming(input, 0, HighlightLook::Mirror, {false, drawn});
     ASSERT_TRUE(framing);
@@ -277,7 +277,7 @@ TEST(Layers, AFrameThatDoesNotTrainHasItsRayAndItsPlaneFromWhatWasObserved) {
   const auto holds = [](const Eigen::AlignedBox3d& box, const Eigen::Vector3d& q) { return box.exteriorDistance(q) < kDrawn; };
   EXPECT_TRUE(holds(ray, eye));
   EXPECT_TRUE(holds(ray, p));
-  EXPECT_TRUE(holds(ray, *inspection->scene->lights[0].position)) << "it goes on to the light";
+  EXPECT_TRUE(holds(ray, inspection->scene->lights[0].lamp.position())) << "it goes on to the light";
   // The plane is drawn once, in the colour of the mirror; of the models' own a ring at most.
   int sheets = 0, rings = 0;
   for (const char* model : {"", "canonical"}) {
@@ -431,7 +431,7 @@ TEST(Layers, TheSelectedFrameAloneNamesItsDirections) {
     const Eigen::Vector3d eye = inspection->scene->frames[std::size_t(frame)].camera.centreInWorld();
     EXPECT_LT((at["V"] - p.position).cross(eye - p.position).norm(), kDrawn);
     EXPECT_LT((at["N"] - p.position).cross(p.normal).norm(), kDrawn);
-    EXPECT_LT((at["L"] - p.position).cross(*inspection->scene->lights[0].position - p.position).norm(), kDrawn);
+    EXPECT_LT((at["L"] - p.position).cross(inspection->scene->lights[0].lamp.position() - p.position).norm(), kDrawn);
   }
 }
 

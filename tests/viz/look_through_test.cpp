@@ -73,7 +73,7 @@ class LookThrough : public test::PictureTest {
     for (std::size_t i = 0; i < points.size(); ++i) {
       TrueLight light;
       light.id = std::to_string(i);
-      light.position = points[i];
+      light.lamp = lampAt(points[i]);
       scene->lights.push_back(light);
     }
     inspection->scene = scene;

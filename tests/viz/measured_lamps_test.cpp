@@ -169,8 +169,8 @@ TEST(EstimatedLight, AFittedSphereOrTubeIsDrawnAndSaid) {
     return std::pair(reach, text);
   };
   ReflectanceFit sphere, tube;
-  sphere.lightRadius = kRadius;
-  tube.lightSegment = {{centre - half, centre + half}};
+  sphere.shape = SphereShape<>::of(kRadius);
+  tube.shape = SegmentShape<>{half, 0};
   const double star = drawn({}).first.maxCoeff();
   ASSERT_LT(star, 0.5 * half.y()) << "the size can be seen beside the star";
   EXPECT_EQ(drawn({}).second.find("radius"), std::string::npos);

@@ -102,8 +102,8 @@ std::shared_ptr<Inspection> smallInspection(const std::filesystem::path& folder,
   scene->surfaces["ball"].analytic = sphere;
   TrueLight truth;
   truth.id = "lamp";
-  truth.position = light;
-  truth.radius = 0.01 * scale;
+  truth.lamp = lampAt(light);
+  truth.lamp = withRadius(truth.lamp, 0.01 * scale);
   scene->lights.push_back(truth);
   for (int i = 0; i < 6; ++i) {
     const double azimuth = -1.3 + 0.42 * i;

@@ -25,17 +25,22 @@ void addDirection(LayerContent& content, const LayerInput& in, const Eigen::Vect
   content.extent.push_back(to);
 }
 
-/// What shines: a line between the ends of a lamp with a length, three great circles of the given radius about its middle.
-void addBody(LayerContent& content, const Eigen::Vector3d& middle, double radius,
-             const std::optional<std::pair<Eigen::Vector3d, Eigen::Vector3d>>& ends, const Colour& colour, double width,
-             const Picked& info) {
-  if (ends) content.add(segmentActor({*ends}, colour, 4), info, 4);
-  if (!(radius > 0)) return;
-  const Eigen::Matrix3d axes = radius * Eigen::Matrix3d::Identity();
-  content.add(lineActor({circle(middle, axes.col(0), axes.col(1)), circle(middle, axes.col(1), axes.col(2)),
-                         circle(middle, axes.col(2), axes.col(0))},
-                        colour, width),
-              info, width);
+/// Chains of a lamp's outline: an axis as a thick line, circles as thin ones.
+void addBody(LayerContent& content, const Lamp& lamp, const Colour& colour, double width, const Picked& info) {
+  std::vector<Points> circles;
+  for (const Points& chain : outlineOf(lamp))
+    if (chain.front() == chain.back())
+      circles.push_back(chain);
+    else
+      content.add(lineActor({chain}, colour, 4), info, 4);
+  if (!circles.empty()) content.add(lineActor(circles, colour, width), info, width);
+}
+
+std::string sizeText(const Lamp& lamp) {
+  std::string text;
+  for (const LampFact& fact : factsOf(lamp))
+    text += fact.value.size() == 1 ? line(fact.name.c_str(), fact.value(0), "m") : line(fact.name.c_str(), Eigen::Vector3d(fact.value), "m");
+  return text;
 }
 
 void addEstimate(LayerContent& content, const LayerInput& in, const Light& light, double size, const Colour& colour,
@@ -64,7 +69,7 @@ void addEstimate(LayerContent& content, const LayerInput& in, const Light& light
   }
   content.add(sphereActor({p}, r, colour), info);
   const bool selected = !in.selection.light.empty() && in.selection.light == info.light && info.model.empty();
-  if (selected) addBody(content, p, kRing * r, std::nullopt, in.ink(), 2, info);
+  if (selected) addBody(content, sphereLamp(light, kRing * r), in.ink(), 2, info);
   content.add(segmentActor(rays, colour, 1.5), info, 1.5);
   content.labels.push_back({p, label, colour, {}, (selected ? kRing : kStar) * r});
   content.glyphs.push_back(std::move(corners));
@@ -73,15 +78,11 @@ void addEstimate(LayerContent& content, const LayerInput& in, const Light& light
 
 /// The size of a lamp as a fitted lobe has it, drawn where the lamp is not far; its words go into `info`.
 void addFittedSize(LayerContent& content, const LayerInput& in, const ModelFit& fit, Picked& info) {
-  const ReflectanceFit* const lobe = fit.as<ReflectanceFit>();
-  if (!lobe || fit.lightEstimate->atInfinity() || !(lobe->lightRadius > 0 || lobe->lightSegment)) return;
-  if (lobe->lightRadius > 0) info.text += line("radius", lobe->lightRadius, "m");
-  if (const auto& ends = lobe->lightSegment)
-    info.text +=
-        line("length", (ends->second - ends->first).norm(), "m") + line("end", ends->first, "m") + line("end", ends->second, "m");
-  const Eigen::Vector3d middle = fit.lightEstimate->position();
-  if ((middle - in.scale.sceneBox.center()).norm() > kFarLight * in.scale.sceneSize) return;
-  addBody(content, middle, lobe->lightRadius, lobe->lightSegment, modelColour(info.model), 1.5, info);
+  const std::optional<Lamp> lamp = fit.lamp();
+  if (!lamp || lamp->atInfinity() || lamp->isPoint()) return;
+  info.text += sizeText(*lamp);
+  if ((fit.lightEstimate->position() - in.scale.sceneBox.center()).norm() > kFarLight * in.scale.sceneSize) return;
+  addBody(content, *lamp, modelColour(info.model), 1.5, info);
 }
 
 /// How far the lamp is that a lobe explains: the noise of contours does not tell what one limit angle gets wrong.
@@ -147,27 +148,24 @@ LayerContent trueLightLayer(const LayerInput& in) {
     Picked info;
     info.layer = "true-light";
     info.light = light.id;
-    info.text = line("true light (not used by the method)", light.id) + line("radius", light.radius, "m");
+    const Lamp& lamp = light.lamp;
+    info.text = line("true light (not used by the method)", light.id) + (lamp.isPoint() ? line("radius", 0.0, "m") : sizeText(lamp));
     const std::string label = "truth: " + lightName(light.id);
-    if (light.direction && light.direction->norm() > 0) {
-      info.text += line("direction", *light.direction);
-      addDirection(content, in, light.direction->normalized(), kTruth, label + ", at infinity", info);
+    if (lamp.atInfinity()) {
+      info.text += line("direction", Eigen::Vector3d(lamp.centre.head<3>()));
+      addDirection(content, in, lamp.centre.head<3>(), kTruth, label + ", at infinity", info);
       continue;
     }
-    Points at;
-    if (light.position) at = {*light.position};
-    if (light.segment) at = {(*light.segment)[0], (*light.segment)[1]};
-    if (at.empty()) continue;
-    const Eigen::Vector3d middle = at.size() == 2 ? Eigen::Vector3d(0.5 * (at[0] + at[1])) : at[0];
-    for (const Eigen::Vector3d& p : at) info.text += line(at.size() == 2 ? "end" : "position", p, "m");
+    const Eigen::Vector3d middle = lamp.position();
+    if (!endsOf(lamp)) info.text += line("position", middle, "m");
     const double far = (middle - in.scale.sceneBox.center()).norm();
     if (far > kFarLight * in.scale.sceneSize) {
       addDirection(content, in, (middle - in.scale.sceneBox.center()).normalized(), kTruth,
                    label + ", " + distanceText(far) + " away", info);
       continue;
     }
-    const double r = std::max(light.radius, 4.2 * in.scale.point);
-    addBody(content, middle, r, at.size() == 2 ? std::optional(std::pair(at[0], at[1])) : std::nullopt, kTruth, 2.5, info);
+    const double r = std::max(radiusOf(lamp), 4.2 * in.scale.point);
+    addBody(content, withRadius(lamp, r), kTruth, 2.5, info);
     content.add(sphereActor({middle}, 0.5 * in.scale.point, kTruth), info);  // its middle: a full ball would hide the fits in it
     content.labels.push_back({middle, label, kTruth, {}, r});
     content.extent.push_back(middle);

@@ -29,18 +29,16 @@ void declareLobe(py::class_<ModelFit>& fit) {
       .def_property_readonly(
           "light_radius",
           [](const ModelFit& f) {
-            const ReflectanceFit* const lobe = f.as<ReflectanceFit>();
-            return lobe ? std::optional(lobe->lightRadius) : std::nullopt;
+            return f.lamp() ? std::optional(radiusOf(*f.lamp())) : std::nullopt;
           },
           "Of a spherical lamp, world units; 0 for a point or a tube; or None of models without a lobe.")
       .def_property_readonly(
           "light_segment",
           [](const ModelFit& f) {
-            const ReflectanceFit* const lobe = f.as<ReflectanceFit>();
-            std::optional<Eigen::Matrix<double, 2, 3>> ends;
-            if (lobe && lobe->lightSegment)
-              ends.emplace() << lobe->lightSegment->first.transpose(), lobe->lightSegment->second.transpose();
-            return arrayOrNone(ends);
+            const auto ends = f.lamp() ? endsOf(*f.lamp()) : std::nullopt;
+            std::optional<Eigen::Matrix<double, 2, 3>> rows;
+            if (ends) rows.emplace() << ends->first.transpose(), ends->second.transpose();
+            return arrayOrNone(rows);
           },
           "(2, 3) ends of a lamp with a length, world, or None.");
 }

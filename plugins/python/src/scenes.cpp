@@ -85,14 +85,14 @@ SurfaceHandle surfaceOf(const SceneHandle& s, const FrameName& frame, py::handle
 py::dict lightOf(const TrueLight& light) {
   py::dict out;
   out["id"] = light.id;
-  if (light.position) out["position"] = copyOf(*light.position);
-  if (light.direction) out["direction"] = copyOf(*light.direction);
-  if (light.segment) {
-    Eigen::Matrix<double, 2, 3> ends;
-    ends << (*light.segment)[0].transpose(), (*light.segment)[1].transpose();
-    out["segment"] = copyOf(ends);
+  for (const LampField& f : fieldsOf(light.lamp)) {
+    if (f.value.size() == 1) continue;
+    if (f.value.rows() == 1)
+      out[f.name.c_str()] = copyOf(Eigen::Vector3d(f.value.row(0)));
+    else
+      out[f.name.c_str()] = copyOf(f.value);
   }
-  out["radius"] = light.radius;
+  out["radius"] = radiusOf(light.lamp);
   return out;
 }
 

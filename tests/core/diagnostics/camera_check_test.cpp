@@ -25,18 +25,18 @@ using testing::IsEmpty;
 TrueLight pointLamp() {
   TrueLight lamp;
   lamp.id = "lamp";
-  lamp.position = Eigen::Vector3d(1.2, -1.0, 2.2);
+  lamp.lamp = lampAt(Eigen::Vector3d(1.2, -1.0, 2.2));
   return lamp;
 }
 TrueLight ballLamp() {
   TrueLight lamp = pointLamp();
-  lamp.radius = 0.15;
+  lamp.lamp = withRadius(lamp.lamp, 0.15);
   return lamp;
 }
 TrueLight tubeLamp() {
   TrueLight lamp;
   lamp.id = "lamp";
-  lamp.segment = {Eigen::Vector3d(0.9, -1.2, 2.2), Eigen::Vector3d(1.5, -0.8, 2.2)};
+  lamp.lamp = segmentLamp(Eigen::Vector3d(0.9, -1.2, 2.2), Eigen::Vector3d(1.5, -0.8, 2.2));
   return lamp;
 }
 

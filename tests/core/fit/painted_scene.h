@@ -55,8 +55,8 @@ inline Image picture(const Painted& p, std::size_t frame) {
   const std::shared_ptr<const Surface> surface = makeAnalytic(p.surface);
   const Camera& camera = p.cameras[frame];
   TrueLight lamp = p.lamp;
-  if (!p.lampIn.empty()) lamp.position = p.lampIn[frame];
-  if (p.lampOnCamera) lamp.position = camera.camFromWorld.inverse() * *p.lamp.position;
+  if (!p.lampIn.empty()) lamp.lamp = lampAt(p.lampIn[frame]);
+  if (p.lampOnCamera) lamp.lamp = lampAt(camera.camFromWorld.inverse() * p.lamp.lamp.position());
   Material material;
   material.roughness = p.roughness;
   Image image = renderRadiance(*surface, camera, {lamp}, material).specular;

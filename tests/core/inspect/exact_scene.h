@@ -54,7 +54,7 @@ inline std::vector<Highlight> exactContours(const AnalyticSpec& spec, const Came
                                             double limitAngle = kLimitAngle) {
   TrueLight truth;
   truth.id = light.id;
-  truth.position = light.position;
+  truth.lamp = lampAt(light.position);
   ExactOptions options;
   options.kind = ContourKind::LimitAngle;
   options.limitAngle = limitAngle;
@@ -110,7 +110,7 @@ inline std::shared_ptr<Scene> litScene(const AnalyticSpec& surface, int frames) 
   const auto scene = exactScene(surface, frames);
   TrueLight light;
   light.id = "lamp";
-  light.position = Eigen::Vector3d(0.1, 0.2, 1.4);
+  light.lamp = lampAt(Eigen::Vector3d(0.1, 0.2, 1.4));
   scene->lights = {light};
   return scene;
 }

@@ -126,7 +126,7 @@ TEST(SynthesisedPhotograph, ScaleOfTheSceneDoesNotChangeThePicture) {
   for (Frame& f : large->frames) f.camera.camFromWorld.translation() *= kFactor;
   AnalyticSpec ball = sphere(0.5 * kFactor);
   for (auto& [id, source] : large->surfaces) source.analytic = ball;
-  large->lights[0].position = *scene->lights[0].position * kFactor;
+  large->lights[0].lamp = lampAt(scene->lights[0].lamp.position() * kFactor);
   const Outcome<Image> a = photographOf(inspect(scene, synthetic()), 1), b = photographOf(inspect(large, synthetic()), 1);
   ASSERT_TRUE(a && b);
   for (std::size_t i = 0; i < a->data.size(); i += 101) EXPECT_NEAR(a->data[i], b->data[i], 10 * kFloatShare) << i;

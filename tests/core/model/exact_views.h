@@ -28,14 +28,12 @@ struct Synthetic {
   std::optional<Material> material;  ///< when set, contours are level sets of its radiance at half of the peak instead
 };
 
-inline Light lightOf(const TrueLight& light) {
-  return light.direction ? Light::towards(*light.direction) : Light::at(*light.position);
-}
+inline Light lightOf(const TrueLight& light) { return glint::lightOf(light.lamp); }
 
 inline TrueLight lampAt(const Eigen::Vector3d& position) {
   TrueLight light;
   light.id = "lamp";
-  light.position = position;
+  light.lamp = glint::lampAt(position);
   return light;
 }
 
@@ -81,11 +79,7 @@ inline Synthetic moved(Synthetic s, const Eigen::Isometry3d& motion, double scal
     c.camFromWorld.linear() = c.camFromWorld.linear() * motion.linear().transpose();
     c.camFromWorld.translation() = -c.camFromWorld.linear() * eye;
   }
-  if (s.light.position) s.light.position = point(*s.light.position);
-  if (s.light.direction) s.light.direction = motion.linear() * *s.light.direction;
-  if (s.light.segment)
-    for (Eigen::Vector3d& end : *s.light.segment) end = point(end);
-  s.light.radius *= scale;
+  s.light.lamp = transformed(s.light.lamp, scale, motion.linear(), scale * motion.translation());
   return s;
 }
 

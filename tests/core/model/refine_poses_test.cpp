@@ -46,13 +46,13 @@ Errors lightErrors(const Synthetic& s, double poseSigma, double noise, int seeds
                        surface.get(),
                        withNoise(exact[i], noise, seed, int(i), 0).contour.points,
                        {}});
-    const Light start = Light::at(*s.light.position * 1.1);
+    const Light start = Light::at(s.light.lamp.position() * 1.1);
     const Outcome<Bundle> b = bundleLight(views, start);
     const Outcome<PoseRefinement> r = refinePoses(views, start, priorPx);
     if (!b || !r) throw std::runtime_error("no light");
-    const double distance = s.light.position->norm();
-    plain.push_back((b->light.position() - *s.light.position).norm() / distance);
-    refined.push_back((r->bundle.light.position() - *s.light.position).norm() / distance);
+    const double distance = s.light.lamp.position().norm();
+    plain.push_back((b->light.position() - s.light.lamp.position()).norm() / distance);
+    refined.push_back((r->bundle.light.position() - s.light.lamp.position()).norm() / distance);
   }
   std::sort(plain.begin(), plain.end());
   std::sort(refined.begin(), refined.end());
@@ -92,7 +92,7 @@ TEST(RefinePoses, Scale) {
       c.camFromWorld.translation() *= scale;
       views.push_back({c, surface.get(), exactHighlightsOf(here, here.cameras[i])[0].contour.points, {}});
     }
-    const Outcome<PoseRefinement> r = refinePoses(views, Light::at(1.1 * *s.light.position), 0.3);
+    const Outcome<PoseRefinement> r = refinePoses(views, Light::at(1.1 * s.light.lamp.position()), 0.3);
     ASSERT_TRUE(r) << scale;
     EXPECT_EQ(r->cameras.size(), views.size());
     EXPECT_GT(r->movedPx, 0.01);

@@ -173,17 +173,15 @@ TEST(Reflectance, LevelsThatAreNotThereAreRemarked) {
 // The whole way: a lamp of 60 cm is found as one, predicts views that did not train, and has a band.
 TEST(Reflectance, FindsALongLampAndPredictsOtherViews) {
   Synthetic geometry = ellipsoidScene(8);
-  const Eigen::Vector3d middle = 2 * geometry.light.position->normalized(), half(0.18, 0.24, 0);
-  geometry.light.position.reset();
-  geometry.light.segment = {Eigen::Vector3d(middle - half), Eigen::Vector3d(middle + half)};
-  geometry.light.radius = 0.015;
+  const Eigen::Vector3d middle = 2 * geometry.light.lamp.position().normalized(), half(0.18, 0.24, 0);
+  geometry.light.lamp = segmentLamp(Eigen::Vector3d(middle - half), Eigen::Vector3d(middle + half));
+  geometry.light.lamp = withRadius(geometry.light.lamp, 0.015);
   const RadianceScene s = radianceScene(std::move(geometry), Lobe::TorranceSparrow, 0.08);
   const Outcome<ModelFit> fit = modelByName("reflectance").fit(inputOf(s, 6), {});
   ASSERT_TRUE(fit) << fit.failure().message();
   const ReflectanceFit& lobe = *fit->as<ReflectanceFit>();
-  ASSERT_TRUE(lobe.lightSegment);
-  EXPECT_EQ(lobe.lightRadius, 0);
-  EXPECT_NEAR((lobe.lightSegment->second - lobe.lightSegment->first).norm(), 0.6, 0.006);
+  ASSERT_TRUE(std::holds_alternative<SegmentShape<>>(lobe.shape));
+  EXPECT_NEAR(2 * reachOf(lobe.shape), 0.6, 0.006);
   for (int i = 6; i < 8; ++i) {
     const Camera& camera = s.geometry.cameras[i];
     EXPECT_LT(reflectanceErrorPct(s, *fit, camera), 0.15) << i;
@@ -195,7 +193,7 @@ TEST(Reflectance, FindsALongLampAndPredictsOtherViews) {
   Settings point;
   point.set("fit.light_size", std::string("point"));
   const Outcome<ModelFit> blind = modelByName("reflectance").fit(inputOf(s, 6), point);
-  EXPECT_FALSE(blind && blind->as<ReflectanceFit>()->lightSegment);
+  EXPECT_FALSE(blind && std::holds_alternative<SegmentShape<>>(blind->as<ReflectanceFit>()->shape));
 }
 
 ModelFit fitOf(const Light& light, Lobe lobe, double roughness) {

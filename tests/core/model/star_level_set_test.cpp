@@ -32,7 +32,7 @@ const Settings kStar = starSettings();
 ModelFit radianceFit(const Light& light, Lobe lobe, double roughness, double radius = 0) {
   ModelFit fit;
   fit.lightEstimate = light;
-  fit.family = ReflectanceFit{lobe, roughness, 0.5, radius};
+  fit.family = ReflectanceFit{lobe, roughness, 0.5, SphereShape<>::of(radius)};
   return fit;
 }
 
@@ -41,7 +41,7 @@ Outcome<std::vector<PredictedHighlight>> starsOf(const ModelFit& fit, const Came
   const auto mirrorPoints = brightestPointsFor(surface, camera, *fit.lightEstimate, kStar);
   if (!mirrorPoints) return mirrorPoints.failure();
   const ReflectanceFit& lobe = *fit.as<ReflectanceFit>();
-  const RadianceField radiance(surface, camera, lobe.lobe, lobe.roughness, Lamp::sphere(*fit.lightEstimate, lobe.lightRadius));
+  const RadianceField radiance(surface, camera, lobe.lobe, lobe.roughness, *fit.lamp());
   return radianceStars(radiance, lobe, *fit.lightEstimate, *mirrorPoints, 5.54, camera, surface, kStar);
 }
 

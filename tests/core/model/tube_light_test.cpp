@@ -33,10 +33,7 @@ Outcomes heldOutError(const TrueLight& light, int orders, double scale = 1, doub
     return spec;
   }());
   TrueLight lamp = light;
-  if (lamp.position) *lamp.position *= scale;
-  if (lamp.segment)
-    for (Eigen::Vector3d& end : *lamp.segment) end *= scale;
-  lamp.radius *= scale;
+  lamp.lamp = transformed(lamp.lamp, scale, Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero());
   ExactOptions options;
   Material material;
   material.roughness = 0.12;
@@ -91,8 +88,8 @@ TrueLight tube(double length) {
   TrueLight light;
   light.id = "tube";
   const Eigen::Vector3d middle(1.2, -1.0, 2.2), half = 0.5 * length * Eigen::Vector3d(0.6, 0.8, 0);
-  light.segment = {Eigen::Vector3d(middle - half), Eigen::Vector3d(middle + half)};
-  light.radius = 0.02;
+  light.lamp = segmentLamp(Eigen::Vector3d(middle - half), Eigen::Vector3d(middle + half));
+  light.lamp = withRadius(light.lamp, 0.02);
   return light;
 }
 
@@ -135,8 +132,8 @@ TEST(TubeLight, NoLightBehindAHighlightPasses) {
   const auto surface = makeAnalytic(spec);
   TrueLight lamp;
   lamp.id = "lamp";
-  lamp.segment = {Eigen::Vector3d(0.2, -1.3, 2.05), Eigen::Vector3d(0.2, -1.0, 2.2)};
-  lamp.radius = 0.015;
+  lamp.lamp = segmentLamp(Eigen::Vector3d(0.2, -1.3, 2.05), Eigen::Vector3d(0.2, -1.0, 2.2));
+  lamp.lamp = withRadius(lamp.lamp, 0.015);
   Material material;
   std::vector<FrameEvidence> frames;
   std::vector<Camera> cameras;
@@ -176,8 +173,7 @@ TEST(TubeLight, NoLightBehindAHighlightPasses) {
 /// The tube seen under the same angles from a distance `times` as large.
 TrueLight distantTube(double length, double times) {
   TrueLight light = tube(length);
-  for (Eigen::Vector3d& end : *light.segment) end *= times;
-  light.radius *= times;
+  light.lamp = transformed(light.lamp, times, Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero());
   return light;
 }
 
@@ -199,8 +195,7 @@ TEST(TubeLight, FarAwayTheExtentIsAnAngle) {
 std::vector<BundleView> viewsOfAnExtentAtInfinity(const std::shared_ptr<const Surface>& surface, const Eigen::Vector3d& direction,
                                                   const Eigen::Matrix3d& extent, double limit, int n) {
   Synthetic s = ellipsoidScene(n);
-  s.light.position.reset();
-  s.light.direction = direction;
+  s.light.lamp = lampTowards(direction);
   const Light light = Light::towards(direction);
   std::vector<BundleView> views;
   for (const Camera& camera : s.cameras) {

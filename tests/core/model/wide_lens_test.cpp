@@ -67,7 +67,7 @@ std::shared_ptr<Scene> sceneThrough(bool wide, std::vector<Highlight>* expected 
   const std::shared_ptr<const Surface> surface = makeAnalytic(body);
   TrueLight light;
   light.id = "lamp";
-  light.position = Eigen::Vector3d(1.6, 1.2, 2.4);
+  light.lamp = lampAt(Eigen::Vector3d(1.6, 1.2, 2.4));
   for (int i = 0; i < 10; ++i) {
     const Camera pinhole = turnedTowards(eyeOf(i)), lens = fisheye(eyeOf(i), i % 3 ? 1 : -1);
     ExactOptions options;

@@ -94,7 +94,7 @@ TEST(AddedLobe, TheAdviserTriesItAndEveryShapeOfTheLamp) {
   r.train = parseTrainSpec("first:3", *r.scene);
   ReflectanceFit sphere;
   sphere.lobe = Lobe::Ggx;
-  sphere.lightRadius = 0.1;
+  sphere.shape = SphereShape<>::of(0.1);
   ModelFit fit;
   fit.family = sphere;
   r.models["reflectance"].fits = {{"lamp", {}, fit, {}}};

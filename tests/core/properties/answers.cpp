@@ -77,8 +77,7 @@ void compareFits(const ModelFit& a, const ModelFit& b, const std::string& model,
   }
   if (const ReflectanceFit* p = a.as<ReflectanceFit>(), *q = b.as<ReflectanceFit>(); p && q) {
     EXPECT_EQ(p->lobe, q->lobe) << place;
-    EXPECT_EQ(p->lightRadius > 0, q->lightRadius > 0) << place;
-    EXPECT_EQ(p->lightSegment.has_value(), q->lightSegment.has_value()) << place;
+    EXPECT_STREQ(nameOf(p->shape), nameOf(q->shape)) << place;
     c.relative(model, Quantity::Roughness, p->roughness, q->roughness);
   }
 }

@@ -26,9 +26,9 @@ std::vector<RadianceView> misread(std::vector<RadianceView> views) {
 }
 
 RadianceFit fitFor(const std::vector<RadianceView>& views, const RadianceScene& s, Lobe lobe) {
-  const Light guess =
-      s.geometry.light.position ? Light::at(1.1 * *s.geometry.light.position) : Light::towards(*s.geometry.light.direction);
-  const auto fit = searchRadiance({lobe}, views, guess, widthOf(lobe, kNearRoughness, 0.5), {});
+  const Lamp& truth = s.geometry.light.lamp;
+  const Light guess = truth.atInfinity() ? glint::lightOf(truth) : Light::at(1.1 * truth.position());
+  const auto fit = searchRadiance({lobe}, views, guess, widthOf(lobe, kNearRoughness, 0.5), lampChoices("auto"));
   if (!fit) throw std::runtime_error(fit.failure().message());
   return *fit;
 }
@@ -49,14 +49,14 @@ TEST(FitNear, Nominal) {
 
 TEST(FitNear, NominalSizeOfTheLightIsKept) {
   RadianceScene s = radianceScene(ellipsoidScene(6), Lobe::TorranceSparrow, 0.06);
-  s.geometry.light.radius = 0.25;
+  s.geometry.light.lamp = withRadius(s.geometry.light.lamp, 0.25);
   const std::vector<RadianceView> views = radianceViews(s);
-  const auto off = searchRadiance({Lobe::TorranceSparrow}, misread(views), Light::at(1.1 * *s.geometry.light.position),
-                                  widthOf(Lobe::TorranceSparrow, 0.08, 0.5), {true, false});
-  ASSERT_TRUE(off && off->lightRadius > 0);
+  const auto off = searchRadiance({Lobe::TorranceSparrow}, misread(views), Light::at(1.1 * s.geometry.light.lamp.position()),
+                                  widthOf(Lobe::TorranceSparrow, 0.08, 0.5), lampChoices("sphere"));
+  ASSERT_TRUE(off && radiusOf(off->lamp) > 0);
   const auto fit = fitNear({Lobe::TorranceSparrow}, views, *off);
   ASSERT_TRUE(fit) << fit.failure().message();
-  EXPECT_NEAR(fit->lightRadius, 0.25, 0.02);  // as FitRadiance.NominalSizeOfTheLight
+  EXPECT_NEAR(radiusOf(fit->lamp), 0.25, 0.02);  // as FitRadiance.NominalSizeOfTheLight
   EXPECT_NEAR(fit->roughness, 0.06, 0.001);
 }
 
@@ -80,7 +80,7 @@ TEST(FitNear, NoiseStaysWithinTheCovariance) {
   for (unsigned seed = 1; seed <= kTrials; ++seed) {
     const auto fit = fitNear({Lobe::TorranceSparrow}, radianceViews(s, 0.5, seed), off);
     ASSERT_TRUE(fit) << fit.failure().message();
-    const Eigen::Vector3d d = fit->light.position() - *s.geometry.light.position;
+    const Eigen::Vector3d d = fit->light().position() - s.geometry.light.lamp.position();
     mahalanobis += d.dot(fit->positionCovariance.ldlt().solve(d)) / kTrials;
   }
   // Mean of chi^2 with 3 degrees of freedom: 3, standard deviation sqrt(2 * 3 / 12) = 0.71; three of them.
@@ -92,7 +92,7 @@ TEST(FitNear, DegenerateStartSaysSo) {
   const RadianceScene s = radianceScene(ellipsoidScene(6), Lobe::TorranceSparrow, kNearRoughness);
   const std::vector<RadianceView> views = radianceViews(s);
   RadianceFit behind = fitFor(views, s, Lobe::TorranceSparrow);
-  behind.light = Light::at(-*s.geometry.light.position);
+  behind.lamp = Light::at(-s.geometry.light.lamp.position());
   const auto fit = fitNear(kMicrofacets, views, behind);
   EXPECT_TRUE(!fit || fit->poor || lightError(*fit, s) < kRecovered);
 }
@@ -105,11 +105,11 @@ TEST(FitNear, TheModelSearchesWhereTheStartLeadsNowhere) {
   FitInput input = fitInput(scene, {});
   ModelFit behind;
   behind.family = ReflectanceFit{Lobe::TorranceSparrow, kNearRoughness};
-  behind.lightEstimate = Light::at(-*scene.light.position);
+  behind.lightEstimate = Light::at(-scene.light.lamp.position());
   input.near = std::make_shared<const ModelFit>(behind);
   const Outcome<ModelFit> fit = modelByName("reflectance").fit(input, {});
   ASSERT_TRUE(fit) << fit.failure().message();
-  EXPECT_LT((fit->lightEstimate->position() - *scene.light.position).norm(), kRecovered * scene.light.position->norm());
+  EXPECT_LT((fit->lightEstimate->position() - scene.light.lamp.position()).norm(), kRecovered * scene.light.lamp.position().norm());
   EXPECT_NEAR(fit->as<ReflectanceFit>()->roughness, kNearRoughness, kRecovered * kNearRoughness);
 }
 

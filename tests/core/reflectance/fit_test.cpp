@@ -23,7 +23,7 @@ const std::vector<Lobe> kLobes{Lobe::TorranceSparrow, Lobe::Ggx, Lobe::BlinnPhon
 
 /// About as far off as a triangulated light: a tenth of the distance, and sideways by a part of the lobe's width.
 Light nearby(const RadianceScene& s) {
-  const Eigen::Vector3d truth = *s.geometry.light.position;
+  const Eigen::Vector3d truth = s.geometry.light.lamp.position();
   return Light::at(truth +
                    truth.norm() * (0.1 * truth.normalized() + 0.3 * s.material.roughness * Eigen::Vector3d(0.7, 0.4, -0.6)));
 }
@@ -58,7 +58,7 @@ TEST(FitRadiance, Nominal) {
     EXPECT_LT(lightError(*fit, s), kRecovered) << nameOf(lobe);
     EXPECT_LT(fit->rmsPx, 5e-3) << nameOf(lobe);
     EXPECT_FALSE(fit->poor) << nameOf(lobe);
-    EXPECT_EQ(fit->lightRadius, 0) << nameOf(lobe);  // a point light shows no size
+    EXPECT_EQ(radiusOf(fit->lamp), 0) << nameOf(lobe);  // a point light shows no size
   }
 }
 
@@ -104,13 +104,12 @@ TEST(FitRadiance, NominalOnContoursThatWereCut) {
 
 TEST(FitRadiance, NominalWithTheLightAtInfinity) {
   RadianceScene s = radianceScene(ellipsoidScene(6), Lobe::TorranceSparrow, kRoughness);
-  s.geometry.light.position.reset();
-  s.geometry.light.direction = Eigen::Vector3d(0.3, -0.4, 0.8).normalized();
+  s.geometry.light.lamp = lampTowards(Eigen::Vector3d(0.3, -0.4, 0.8).normalized());
   for (const Light& start : {Light::towards({0.3, -0.45, 0.8}), Light::at({3, -5, 9})}) {
     const auto fit = fitRadiance(Lobe::TorranceSparrow, radianceViews(s), start, kRoughness);
     ASSERT_TRUE(fit) << fit.failure().message();
-    const Eigen::Vector3d found = fit->light.directionFrom(Eigen::Vector3d::Zero());
-    EXPECT_LT(found.cross(*s.geometry.light.direction).norm(), kRecovered);
+    const Eigen::Vector3d found = fit->light().directionFrom(Eigen::Vector3d::Zero());
+    EXPECT_LT(found.cross(Eigen::Vector3d(s.geometry.light.lamp.centre.head<3>())).norm(), kRecovered);
     EXPECT_NEAR(fit->roughness, kRoughness, kRecovered * kRoughness);
   }
 }
@@ -119,17 +118,17 @@ TEST(FitRadiance, NominalWithTheLightAtInfinity) {
 // cone of directions) than the fit (points of a disc).
 TEST(FitRadiance, NominalSizeOfTheLight) {
   RadianceScene s = radianceScene(ellipsoidScene(6), Lobe::TorranceSparrow, 0.06);
-  s.geometry.light.radius = 0.25;
+  s.geometry.light.lamp = withRadius(s.geometry.light.lamp, 0.25);
   const auto views = radianceViews(s);
   const auto sized = fitRadiance(Lobe::TorranceSparrow, views, nearby(s), 0.08);
   ASSERT_TRUE(sized) << sized.failure().message();
-  EXPECT_NEAR(sized->lightRadius, 0.25, 0.02);
+  EXPECT_NEAR(radiusOf(sized->lamp), 0.25, 0.02);
   EXPECT_NEAR(sized->roughness, 0.06, 0.001);
   RadianceFitOptions point;
   point.lightSize = false;
   const auto blind = fitRadiance(Lobe::TorranceSparrow, views, nearby(s), 0.08, point);
   ASSERT_TRUE(blind);
-  EXPECT_EQ(blind->lightRadius, 0);
+  EXPECT_EQ(radiusOf(blind->lamp), 0);
   EXPECT_GT(blind->roughness, 0.062);  // takes the lamp's width for the lobe's
   EXPECT_LT(sized->cost, 0.5 * blind->cost);
 }
@@ -137,11 +136,11 @@ TEST(FitRadiance, NominalSizeOfTheLight) {
 // A lamp about twice as wide as the lobe: what is seen is the lamp, a little blurred.
 TEST(FitRadiance, NominalSizeOfALightWiderThanTheLobe) {
   RadianceScene s = radianceScene(ellipsoidScene(4), Lobe::Ggx, 0.03);
-  s.geometry.light.radius = 0.25;
+  s.geometry.light.lamp = withRadius(s.geometry.light.lamp, 0.25);
   const auto views = radianceViews(s);
   const auto fit = fitRadiance(Lobe::Ggx, views, nearby(s), 0.08);
   ASSERT_TRUE(fit) << fit.failure().message();
-  EXPECT_NEAR(fit->lightRadius, 0.25, 0.01);
+  EXPECT_NEAR(radiusOf(fit->lamp), 0.25, 0.01);
   EXPECT_NEAR(fit->roughness, 0.03, 0.002);
   EXPECT_LT(fit->rmsPx, 0.02);
 }
@@ -157,8 +156,8 @@ TEST(FitRadiance, DegenerateLobeDoesNotHideBehindAHugeLamp) {
     const auto with = fitRadiance(lobe, radianceViews(s), nearby(s), 0.05);
     ASSERT_TRUE(without && with);
     EXPECT_LE(with->iterations, without->iterations + 2 * 25 + 20);  // the last round of each of the two attempts may end late
-    const double distance = s.geometry.light.position->norm();
-    EXPECT_LT(with->lightRadius / distance / with->roughness, 2 * 2.5 * 1.1);  // half the angle turns the half vector
+    const double distance = s.geometry.light.lamp.position().norm();
+    EXPECT_LT(radiusOf(with->lamp) / distance / with->roughness, 2 * 2.5 * 1.1);  // half the angle turns the half vector
   }
 }
 
@@ -167,7 +166,7 @@ TEST(FitRadiance, NoiseIsNotTakenForASize) {
   for (unsigned seed = 1; seed <= 8; ++seed) {
     const auto fit = fitRadiance(Lobe::TorranceSparrow, radianceViews(s, 1, seed), nearby(s), kRoughness);
     ASSERT_TRUE(fit);
-    EXPECT_EQ(fit->lightRadius, 0) << seed;
+    EXPECT_EQ(radiusOf(fit->lamp), 0) << seed;
   }
 }
 
@@ -187,7 +186,7 @@ TEST(FitRadiance, ScaleOfTheWorldDoesNotMatter) {
     const RadianceScene s = radianceScene(moved(ellipsoidScene(6), pose(0.7, {0.3, -0.2, 0.5}), scale), Lobe::Ggx, kRoughness);
     const auto fit = fitRadiance(Lobe::Ggx, radianceViews(s), nearby(s), kRoughness);
     if (!fit) throw std::runtime_error(fit.failure().message());
-    return std::pair(fit->roughness, Eigen::Vector3d(fit->light.position() / scale));
+    return std::pair(fit->roughness, Eigen::Vector3d(fit->light().position() / scale));
   };
   const auto [roughness, position] = run(1);
   for (const double scale : {1e-4, 1e4}) {
@@ -205,7 +204,7 @@ TEST(FitRadiance, NoiseStaysWithinTheCovariance) {
   for (unsigned seed = 1; seed <= kTrials; ++seed) {
     const auto fit = fitRadiance(Lobe::TorranceSparrow, radianceViews(s, 0.5, seed), nearby(s), kRoughness);
     ASSERT_TRUE(fit) << fit.failure().message();
-    const Eigen::Vector3d d = fit->light.position() - *s.geometry.light.position;
+    const Eigen::Vector3d d = fit->light().position() - s.geometry.light.lamp.position();
     mahalanobis += d.dot(fit->positionCovariance.ldlt().solve(d)) / kTrials;
     roughness += fit->roughness / kTrials;
     EXPECT_NEAR(fit->rmsPx, 0.5, 0.05);  // 432 points: four standard deviations are 0.07

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/reflectance/lamp.h"
 
+#include <Eigen/Geometry>
 #include <ceres/jet.h>
 #include <gtest/gtest.h>
 
@@ -42,7 +43,7 @@ TEST(SegmentLight, AgreesWithADenseQuadrature) {
           const Eigen::Vector3d v(std::sin(slant), 0, std::cos(slant));
           const Eigen::Vector3d half = ratio * 2 * m * 2 * std::cos(slant) * axis.normalized();  // a lamp 2 m away
           const Eigen::Vector3d c = 2 * Eigen::Vector3d(-std::sin(slant), 0, std::cos(slant)) - along * half;
-          lobe::LampIn<double> lamp = lobe::inWorld(Lamp::segment(c - half, c + half));
+          const Lamp lamp = normalised(segmentLamp(c - half, c + half), Eigen::Vector3d::Zero(), 1);
           const lobe::LampRule rule = lobe::lampRuleFor(lamp.shape, lobe::lampRatio(m, Eigen::Vector3d::Zero(), v, lamp));
           const auto value = lobe::logOfLamp<double>(lobe, m, Eigen::Vector3d::Zero(), n, v, lamp, rule);
           ASSERT_TRUE(value);
@@ -58,13 +59,10 @@ TEST(SegmentLight, DerivativesAgreeWithDifferences) {
                                              v = Eigen::Vector3d(0.3, 0.2, 1).normalized();
   Eigen::Matrix<double, 8, 1> at;
   at << -0.5, -0.1, 1.4, 0.6, 0.2, 0.25, 0.1, -0.05;  // L, m, half axis
-  const lobe::LampRule rule = lobe::lampRuleFor(lobe::LampShape::Segment, 2);
+  const lobe::LampRule rule = lobe::lampRuleFor(SegmentShape<>{}, 2);
   const auto value = [&](Lobe lobe, const auto& x) {
     using T = std::decay_t<decltype(x(0))>;
-    lobe::LampIn<T> lamp;
-    lamp.shape = lobe::LampShape::Segment;
-    lamp.light = x.template head<4>();
-    lamp.halfAxis = x.template tail<3>();
+    const LampOf<T> lamp(x.template head<4>(), SegmentShape<T>{x.template tail<3>(), 0});
     return *lobe::logOfLamp<T>(lobe, x(4), p, n, v, lamp, rule);
   };
   for (const Lobe lobe : kLampLobes) {
@@ -82,20 +80,20 @@ TEST(SegmentLight, DerivativesAgreeWithDifferences) {
 }
 
 TEST(SegmentLight, SeenEndOnItSendsNothing) {
-  const lobe::LampIn<double> lamp = lobe::inWorld(Lamp::segment({0, 0, 1}, {0, 0, 2}));
+  const Lamp lamp = segmentLamp({0, 0, 1}, {0, 0, 2});
   EXPECT_FALSE(lobe::logOfLamp<double>(Lobe::Ggx, 0.1, Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ(),
                                        Eigen::Vector3d::UnitZ(), lamp, lobe::lampRuleFor(lamp.shape, 1)));
 }
 
 TEST(Lamp, KeepsItsInvariant) {
-  const Lamp segment = Lamp::segment({1, 2, 3}, {1, 2, 5});
-  EXPECT_TRUE(segment.isSegment());
-  EXPECT_EQ(segment.ends()->second, Eigen::Vector3d(1, 2, 5));
+  const Lamp segment = segmentLamp({1, 2, 3}, {1, 2, 5});
+  EXPECT_EQ(endsOf(segment)->second, Eigen::Vector3d(1, 2, 5));
   EXPECT_TRUE(Lamp(Light::at({1, 2, 3})).isPoint());
-  EXPECT_FALSE(Lamp::sphere(Light::at({1, 2, 3}), 0.1).ends());
-  EXPECT_THROW((void)Lamp::segment({1, 2, 3}, {1, 2, 3}), std::invalid_argument);
-  EXPECT_THROW((void)Lamp::sphere(Light::at({1, 2, 3}), -1), std::invalid_argument);
-  EXPECT_THROW((void)Lamp::sphere(Light::towards({1, 2, 3}), 0.1), std::invalid_argument);
+  EXPECT_TRUE(sphereLamp(Light::at({1, 2, 3}), 0).isPoint());
+  EXPECT_FALSE(endsOf(sphereLamp(Light::at({1, 2, 3}), 0.1)));
+  EXPECT_THROW((void)segmentLamp({1, 2, 3}, {1, 2, 3}), std::invalid_argument);
+  EXPECT_THROW((void)sphereLamp(Light::at({1, 2, 3}), -1), std::invalid_argument);
+  EXPECT_THROW((void)sphereLamp(Light::towards({1, 2, 3}), 0.1), std::invalid_argument);
 }
 
 // The lobe itself, evaluated with N tilted from H by the width, has fallen to the level.
@@ -113,6 +111,54 @@ TEST(LobeWidth, IsWhereTheLobeHasFallenToTheLevel) {
       }
   EXPECT_THROW((void)widthOf(Lobe::Ggx, 0, 0.5), std::invalid_argument);
   EXPECT_THROW((void)roughnessOf(Lobe::Ggx, 0.1, 1), std::invalid_argument);
+}
+
+// What files, people and drawings get of every shape, worked out by hand.
+TEST(Lamp, SaysItselfInFilesWordsAndLines) {
+  struct Row {
+    Lamp lamp;
+    const char* name;
+    std::vector<std::string> keys, facts;
+    std::size_t chains;
+    double reach;
+  };
+  const std::vector<Row> rows{{lampAt({0.1, 0.2, 0.3}), "point", {"position"}, {}, 0, 0},
+                              {lampTowards({0, 0, 3}), "point", {"direction"}, {}, 0, 0},
+                              {sphereLamp(Light::at({1, 2, 3}), 0.25), "sphere", {"position", "radius"}, {"radius"}, 3, 0.25},
+                              {withRadius(segmentLamp({0.1, 0.7, 2}, {0.4, 1.1, 2}), 0.01),
+                               "segment",
+                               {"segment", "radius"},
+                               {"radius", "length", "end", "end"},
+                               4,
+                               0.25}};
+  for (const Row& r : rows) {
+    EXPECT_STREQ(nameOf(r.lamp.shape), r.name);
+    std::vector<std::string> keys, facts;
+    for (const LampField& f : fieldsOf(r.lamp)) keys.push_back(f.name);
+    for (const LampFact& f : factsOf(r.lamp)) facts.push_back(f.name);
+    EXPECT_EQ(keys, r.keys) << r.name;
+    EXPECT_EQ(facts, r.facts) << r.name;
+    EXPECT_EQ(outlineOf(r.lamp).size(), r.chains) << r.name;
+    EXPECT_NEAR(reachOf(r.lamp.shape), r.reach, 1e-15) << r.name;
+    EXPECT_EQ(std::size_t(unknownCount(r.lamp.shape)), r.name == std::string("segment") ? 3 : r.name == std::string("sphere") ? 1 : 0);
+  }
+  // As typed: sums leave no round-off behind.
+  EXPECT_EQ(fieldsOf(rows[0].lamp)[0].value, Eigen::RowVector3d(0.1, 0.2, 0.3));
+  Eigen::Matrix<double, 2, 3> ends;
+  ends << 0.1, 0.7, 2, 0.4, 1.1, 2;
+  EXPECT_EQ(fieldsOf(rows[3].lamp)[0].value, ends);
+}
+
+TEST(Lamp, MovesWithTheWorld) {
+  const Eigen::Matrix3d quarter = Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  const Lamp tube = transformed(withRadius(segmentLamp({1, 0, 0}, {3, 0, 0}), 0.1), 2, quarter, {0, 0, 5});
+  EXPECT_LT((endsOf(tube)->first - Eigen::Vector3d(0, 2, 5)).norm(), 1e-15);
+  EXPECT_LT((endsOf(tube)->second - Eigen::Vector3d(0, 6, 5)).norm(), 1e-14);
+  EXPECT_DOUBLE_EQ(radiusOf(tube), 0.2);
+  EXPECT_LT((transformed(lampTowards({1, 0, 0}), 2, quarter, {0, 0, 5}).centre - Eigen::Vector4d(0, 1, 0, 0)).norm(), 1e-15);
+  EXPECT_EQ(moved(lampAt({1, 2, 3}), {1, 0, 0}).position(), Eigen::Vector3d(2, 2, 3));
+  const Lamp back = fromNormalised(normalised(tube, {1, 2, 3}, 7), {1, 2, 3}, 7);
+  EXPECT_LT((endsOf(back)->first - endsOf(tube)->first).norm(), 1e-14);
 }
 
 }  // namespace

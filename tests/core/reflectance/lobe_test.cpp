@@ -155,7 +155,7 @@ TEST(SphereLight, AgreesWithADenseQuadrature) {
 
 double irradiance(const TrueLight& light, const Eigen::Vector3d& point, const Eigen::Vector3d& n) {
   double sum = 0;
-  for (const LightSample& s : sampleLight(light, point)) sum += s.weight * std::max(0.0, n.dot(s.direction));
+  for (const LightSample& s : sampleLight(light.lamp, point)) sum += s.weight * std::max(0.0, n.dot(s.direction));
   return sum;
 }
 
@@ -163,8 +163,8 @@ TEST(SampleLight, ASphereFacingThePointGivesTheInverseSquareLaw) {
   // A uniform sphere above the horizon has the irradiance of a point at its centre, whatever its radius (Lambert).
   for (const double radius : {0.0, 0.01, 0.3, 0.9}) {
     TrueLight light;
-    light.position = Eigen::Vector3d(0, 0, 2);
-    light.radius = radius;
+    light.lamp = lampAt(Eigen::Vector3d(0, 0, 2));
+    light.lamp = withRadius(light.lamp, radius);
     EXPECT_NEAR(irradiance(light, Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ()), 0.25, 1e-12) << radius;
   }
 }
@@ -174,7 +174,7 @@ TEST(SampleLight, ATubeAgreesWithTheClosedForm) {
   // E = (4 / pi) (1 / 2a) int h^2 / (h^2 + x^2)^2 dx = (4 / pi) (1 / 2a) (a / (a^2 + h^2) + atan(a / h) / h).
   const double a = 0.7, h = 1.3;
   TrueLight light;
-  light.segment = {Eigen::Vector3d(-a, 0, h), Eigen::Vector3d(a, 0, h)};
+  light.lamp = segmentLamp(Eigen::Vector3d(-a, 0, h), Eigen::Vector3d(a, 0, h));
   const double expected = 4 / M_PI / (2 * a) * (a / (a * a + h * h) + std::atan(a / h) / h);
   EXPECT_NEAR(irradiance(light, Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ()), expected, 1e-12);
 }

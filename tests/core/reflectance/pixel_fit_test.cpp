@@ -446,10 +446,9 @@ TEST(PixelProblem, AStepOfTheBlurEqualsOneThatComputesAllAnew) {
     patch::PixelProblem problem(evidence, s.lobe, kind);
     std::vector<double> residuals(static_cast<std::size_t>(problem.residuals()));
     patch::State at;
-    at.shape = lobe::LampShape::Sphere;
-    at.light = patch::normalisedLight(Light::at(s.lamp), evidence);
+    at.lamp = normalised(lampAt(s.lamp), evidence.origin, evidence.scale);
+    at.lamp.shape = SphereShape<>{1e-4};
     at.logRoughness = std::log(s.roughness);
-    at.radiusSquared = 1e-4;
     problem.chooseRule(at);
     ASSERT_TRUE(problem.residualsAt(at, residuals.data()));
     EXPECT_LT(keptAgainstAnew(problem, at, kStepPx2), kRoundOff);

@@ -56,8 +56,8 @@ inline std::vector<RadianceView> radianceViews(const RadianceScene& s, double no
 
 /// Distance of the light from the true one, over that one's distance from the origin.
 inline double lightError(const RadianceFit& fit, const RadianceScene& s) {
-  const Eigen::Vector3d truth = *s.geometry.light.position;
-  return (fit.light.position() - truth).norm() / truth.norm();
+  const Eigen::Vector3d truth = s.geometry.light.lamp.position();
+  return (fit.light().position() - truth).norm() / truth.norm();
 }
 
 }  // namespace glint::test

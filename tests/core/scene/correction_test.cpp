@@ -97,9 +97,9 @@ TEST(Corrections, CamerasMoveIntoTheFrameOfTheMesh) {
       matrix({0, 0, 1, -0.5, 1, 0, 0, 1.5, 0, 1, 0, 3.5, 0, 0, 0, 1}), 1e-12));
   EXPECT_DOUBLE_EQ(moved.frames[0].depthScale, 0.0005);
   // Q^T ((5, 6, 11) - t) / 2 = Q^T (2, 2, 4) = (2, 4, -2); the sun along z: (0, 1, 0).
-  EXPECT_TRUE(moved.lights[0].position->isApprox(Eigen::Vector3d(2, 4, -2), 1e-12));
-  EXPECT_DOUBLE_EQ(moved.lights[0].radius, 0.1);
-  EXPECT_TRUE(moved.lights[1].direction->isApprox(Eigen::Vector3d(0, 1, 0), 1e-12));
+  EXPECT_TRUE(moved.lights[0].lamp.position().isApprox(Eigen::Vector3d(2, 4, -2), 1e-12));
+  EXPECT_DOUBLE_EQ(radiusOf(moved.lights[0].lamp), 0.1);
+  EXPECT_TRUE(moved.lights[1].lamp.centre.head<3>().isApprox(Eigen::Vector3d(0, 1, 0), 1e-12));
   EXPECT_DOUBLE_EQ(moved.surfaces.at("body").metresPerUnit, 1);
 }
 

@@ -459,7 +459,7 @@ TEST(WriteScene, RoundTripIsExact) {
     EXPECT_EQ(again.frames[i].image, moved.frames[i].image);
     EXPECT_EQ(again.frames[i].lightsOn, scene.frames[i].lightsOn);
   }
-  EXPECT_EQ(*again.lights.at(0).position, *scene.lights.at(0).position);
+  EXPECT_EQ(again.lights.at(0).lamp.position(), scene.lights.at(0).lamp.position());
   EXPECT_THAT(contentOf(folder / "scene.json"), testing::Not(HasSubstr(folder.path().string())));  // relative paths only
 }
 
@@ -482,8 +482,8 @@ TEST(WriteScene, EveryKindOfSurfaceLightAndHighlightComesBack) {
   writeScene(scene, folder / "two.json");
   const Scene again = readScene(folder / "two.json");
   EXPECT_THAT(again.warnings, ElementsAre());
-  EXPECT_EQ(*again.lights[1].direction, Eigen::Vector3d(0, 0, 1));
-  EXPECT_EQ((*again.lights[2].segment)[1], Eigen::Vector3d(0.6, 0, 2));
+  EXPECT_EQ(Eigen::Vector3d(again.lights[1].lamp.centre.head<3>()), Eigen::Vector3d(0, 0, 1));
+  EXPECT_EQ(endsOf(again.lights[2].lamp)->second, Eigen::Vector3d(0.6, 0, 2));
   EXPECT_EQ(again.surfaces.at("t").analytic->minorRadius, 0.1);
   EXPECT_EQ(again.surfaces.at("s").analytic->width, 2.0);
   EXPECT_EQ(again.surfaces.at("q").analytic->matrix(2, 2), 3);

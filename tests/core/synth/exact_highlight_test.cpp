@@ -37,7 +37,7 @@ Camera cameraOf(const nlohmann::json& frame) {
 TrueLight lightOf(const nlohmann::json& file) {
   TrueLight light;
   light.id = "lamp";
-  light.position = Eigen::Vector3d(file.at("light")[0], file.at("light")[1], file.at("light")[2]);
+  light.lamp = lampAt(Eigen::Vector3d(file.at("light")[0], file.at("light")[1], file.at("light")[2]));
   return light;
 }
 
@@ -94,7 +94,7 @@ struct SphereScene {
     camera.pixelFromRay << 400, 0, 159.5, 0, 400, 119.5, 0, 0, 1;
     camera.camFromWorld.translation() = Eigen::Vector3d(0, 0, 1.7);  // at (0, 0, -1.7), looking along +z
     light.id = "lamp";
-    light.position = Eigen::Vector3d(1.1, -0.7, -1.5);
+    light.lamp = lampAt(Eigen::Vector3d(1.1, -0.7, -1.5));
   }
 };
 
@@ -137,9 +137,9 @@ TEST(ExactHighlights, SmallSphereLightTendsToThePointLight) {
   SphereScene scene;
   const Material material{Lobe::TorranceSparrow, 0.12, 1, {0, 0, 0}};
   const Outcome<std::vector<Highlight>> point = exactHighlights(*scene.surface, scene.camera, scene.light, material, {});
-  scene.light.radius = 1e-4;
+  scene.light.lamp = withRadius(scene.light.lamp, 1e-4);
   const Outcome<std::vector<Highlight>> small = exactHighlights(*scene.surface, scene.camera, scene.light, material, {});
-  scene.light.radius = 0.1;
+  scene.light.lamp = withRadius(scene.light.lamp, 0.1);
   const Outcome<std::vector<Highlight>> large = exactHighlights(*scene.surface, scene.camera, scene.light, material, {});
   ASSERT_TRUE(point && small && large);
   EXPECT_LT(test::meanDistance(point->front().contour, small->front().contour), 2e-3);  // two sagittas of 2e-3 at most
@@ -150,17 +150,17 @@ TEST(ExactHighlights, DegenerateIsRefusedByName) {
   SphereScene scene;
   ExactOptions limit;
   limit.kind = ContourKind::LimitAngle;
-  scene.light.radius = 0.1;
+  scene.light.lamp = withRadius(scene.light.lamp, 0.1);
   EXPECT_EQ(exactHighlights(*scene.surface, scene.camera, scene.light, {}, limit).failure().reason, Reason::NotSupported);
-  scene.light.radius = 0;
-  scene.light.position = Eigen::Vector3d(0, 0, 5);  // behind the sphere
+  scene.light.lamp = withRadius(scene.light.lamp, 0);
+  scene.light.lamp = lampAt(Eigen::Vector3d(0, 0, 5));  // behind the sphere
   EXPECT_EQ(exactHighlights(*scene.surface, scene.camera, scene.light, {}, {}).failure().reason, Reason::NoHighlight);
 }
 
 // The inner wall of a ring is in the shadow of the wall across, whatever the ring's size: nothing is tested at a distance in metres.
 TEST(LightSource, ScaleOfAShadowUnderALightAtInfinity) {
   TrueLight light;
-  light.direction = Eigen::Vector3d(-1, 0, 0.05).normalized();
+  light.lamp = lampTowards(Eigen::Vector3d(-1, 0, 0.05).normalized());
   for (const double scale : {1e-6, 1.0, 1e6}) {
     AnalyticSpec spec;
     spec.type = "torus";

@@ -14,7 +14,7 @@ constexpr double kStated = 1e-7;  // of log I, down to a thousandth of the peak 
 double gathered(const TrueLight& lamp, double w, double off, double ruleWidth) {
   const Eigen::Vector3d axis(std::sin(off), 0, std::cos(off));
   double sum = 0;
-  for (const LightSample& s : sampleLight(lamp, Eigen::Vector3d::Zero(), ruleWidth)) {
+  for (const LightSample& s : sampleLight(lamp.lamp, Eigen::Vector3d::Zero(), ruleWidth)) {
     const double angle = std::atan2(s.direction.cross(axis).norm(), s.direction.dot(axis));
     sum += s.weight * std::exp(-angle * angle / (w * w));
   }
@@ -25,9 +25,9 @@ double gathered(const TrueLight& lamp, double w, double off, double ruleWidth) {
 // its rule serves.
 TEST(LightSource, SpheresAreAsExactAsStated) {
   TrueLight lamp;
-  lamp.position = Eigen::Vector3d(0, 0, 2);
+  lamp.lamp = lampAt(Eigen::Vector3d(0, 0, 2));
   for (const double ratio : {0.01, 0.05, 0.5, 1.0, 2.0, 4.0}) {
-    lamp.radius = 0.02;
+    lamp.lamp = withRadius(lamp.lamp, 0.02);
     const double w = std::atan2(lamp.radius, 2.0) / (ratio * (1 - 1e-9));
     // A lobe that has fallen to a thousandth: exp(-2.63^2).
     for (const double off : {0.0, 1.0, 2.63})
@@ -37,9 +37,9 @@ TEST(LightSource, SpheresAreAsExactAsStated) {
 
 TEST(LightSource, SmallSpheresTakeFewSamples) {
   TrueLight lamp;
-  lamp.position = Eigen::Vector3d(0, 0, 2);
-  lamp.radius = 0.01;
-  EXPECT_LE(sampleLight(lamp, Eigen::Vector3d::Zero(), 0.2).size(), 12u);
+  lamp.lamp = lampAt(Eigen::Vector3d(0, 0, 2));
+  lamp.lamp = withRadius(lamp.lamp, 0.01);
+  EXPECT_LE(sampleLight(lamp.lamp, Eigen::Vector3d::Zero(), 0.2).size(), 12u);
 }
 
 }  // namespace

@@ -75,12 +75,11 @@ TEST(Dragged, NothingHappensWhereNothingCan) {
 TEST(DraggedLight, MovesByTheVectorUnlessItIsAtInfinity) {
   TrueLight lamp;
   lamp.id = "lamp";
-  lamp.position = Eigen::Vector3d(1, 2, 3);
+  lamp.lamp = lampAt(Eigen::Vector3d(1, 2, 3));
   WhatIf w = draggedLight({}, lamp, {0.1, 0, -0.2});
   w = draggedLight(w, lamp, {0.1, 0.5, 0});
   EXPECT_LT((w.lightsBy.at("lamp") - Eigen::Vector3d(0.2, 0.5, -0.2)).norm(), 1e-15);
-  lamp.position.reset();
-  lamp.direction = Eigen::Vector3d::UnitZ();
+  lamp.lamp = lampTowards(Eigen::Vector3d::UnitZ());
   EXPECT_TRUE(draggedLight({}, lamp, {0.1, 0, 0}).none());
 }
 
