@@ -137,7 +137,7 @@ TEST(CameraCheck, ALampWithASizeOrALengthIsNoFault) {
   for (const TrueLight& lamp : cases<TrueLight>({ballLamp(), tubeLamp()})) {
     const CameraCheck check = checkCameras(orbit(ellipsoid(), 10, 0, lamp));
     EXPECT_EQ(check.views, 8) << check.whyNot;
-    EXPECT_THAT(check.findings, IsEmpty()) << (lamp.segment ? "tube" : "ball");
+    EXPECT_THAT(check.findings, IsEmpty()) << nameOf(lamp.lamp.shape);
   }
 }
 
@@ -146,8 +146,8 @@ TEST(CameraCheck, FocalLengthUnderALampWithASizeOrALength) {
   for (const TrueLight& lamp : cases<TrueLight>({ballLamp(), tubeLamp()})) {
     const CameraCheck check = checkCameras(
         withCameras(orbit(ellipsoid(), 10, 0, lamp), [](Camera& c) { c.pixelFromRay.topLeftCorner<2, 2>() *= 1.01; }));
-    EXPECT_THAT(check.findings, ElementsAre(HasSubstr("% shorter"))) << (lamp.segment ? "tube" : "ball");
-    EXPECT_NEAR(check.focalPct.value_or(0), -1, kFocalPct) << (lamp.segment ? "tube" : "ball");
+    EXPECT_THAT(check.findings, ElementsAre(HasSubstr("% shorter"))) << nameOf(lamp.lamp.shape);
+    EXPECT_NEAR(check.focalPct.value_or(0), -1, kFocalPct) << nameOf(lamp.lamp.shape);
   }
 }
 

@@ -22,7 +22,7 @@ Painted paintedBall() {
   p.surface = ball();
   p.cameras = arc(12, 120);
   p.lamp.id = "lamp";
-  p.lamp.position = Eigen::Vector3d(0.3, 0.4, 2.0);
+  p.lamp.lamp = lampAt(Eigen::Vector3d(0.3, 0.4, 2.0));
   p.paint = {{onBall(-0.12, -0.15), 0.03, 1.0}, {onBall(0.16, -0.05), 0.035, 0.95}};
   return p;
 }
@@ -85,7 +85,7 @@ TEST(HighlightMotion, ScaleOfLengthsAndValuesDoesNotMatter) {
   p.surface.radius *= kScale;
   p.surface.worldFromSurface.translation() *= kScale;
   for (Camera& c : p.cameras) c.camFromWorld.translation() *= kScale;
-  *p.lamp.position *= kScale;
+  p.lamp.lamp = lampAt(kScale * p.lamp.lamp.position());
   p.gloss *= kScale;
   for (Paint& spot : p.paint) spot = {kScale * spot.at, kScale * spot.radius, kScale * spot.brightness};
   const Judged large = judged(p);
@@ -153,7 +153,7 @@ TEST(HighlightMotion, AStillCameraUnderAMovingLampCannotTell) {
 TEST(HighlightMotion, ATurningObjectUnderALampThatStandsWithTheCamera) {
   Painted p = paintedBall();
   p.lampOnCamera = true;
-  p.lamp.position = Eigen::Vector3d(0.5, -0.3, 0.2);
+  p.lamp.lamp = lampAt(Eigen::Vector3d(0.5, -0.3, 0.2));
   const Judged j = judged(p);
   row("ball that is turned before a still camera and lamp", j);
   EXPECT_GE(j.all(false), 10);
@@ -177,7 +177,7 @@ TEST(HighlightMotion, AHighlightOfALampCloseToTheSurfaceIsNotRejected) {
   for (Painted p : {paintedBall(), paintedPlane()}) {
     p.roughness = 0.35;  // so that there is a spot to detect
     for (const double height : {0.015, 0.03, 0.1}) {
-      p.lamp.position = Eigen::Vector3d(0, 0, height);
+      p.lamp.lamp = lampAt(Eigen::Vector3d(0, 0, height));
       const Judged j = judged(p);
       row(formatted("%s, roughness 0.35, lamp %g m above it", p.surface.type == "sphere" ? "ball" : "plane", height), j);
       EXPECT_EQ(j.all(false), 12) << height;

@@ -19,7 +19,7 @@ Painted painted() {
   p.surface = sphere(0.5);
   p.cameras = arc(12, 120);
   p.lamp.id = "lamp";
-  p.lamp.position = Eigen::Vector3d(0.3, 0.4, 2.0);
+  p.lamp.lamp = lampAt(Eigen::Vector3d(0.3, 0.4, 2.0));
   for (const auto& [x, y] : {std::pair(-0.15, 0.1), std::pair(0.2, 0.12)})
     p.paint.push_back({{x, y, std::sqrt(0.25 - x * x - y * y) - 0.5}, 0.03, 1.0});
   return p;

@@ -142,7 +142,7 @@ inline Synthetic sphereScene(int n = 7) {
     const double a = -1.2 + 1.6 * i / std::max(1, n - 1);
     s.cameras.push_back(lookAt({2 * std::cos(a), 2 * std::sin(a), 0.8 + 0.3 * std::cos(3 * a)}, {0, 0, 0}));
   }
-  s.light = lampAt({0.8, -1.5, 1.8});
+  s.light = trueLampAt({0.8, -1.5, 1.8});
   return s;
 }
 

@@ -30,10 +30,10 @@ struct Synthetic {
 
 inline Light lightOf(const TrueLight& light) { return glint::lightOf(light.lamp); }
 
-inline TrueLight lampAt(const Eigen::Vector3d& position) {
+inline TrueLight trueLampAt(const Eigen::Vector3d& position) {
   TrueLight light;
   light.id = "lamp";
-  light.lamp = glint::lampAt(position);
+  light.lamp = lampAt(position);
   return light;
 }
 
@@ -48,7 +48,7 @@ inline Synthetic sheetScene(double curvature, int n = 6) {
     const Eigen::Vector3d mirror = (lamp.z() * eye + eye.z() * lamp) / (lamp.z() + eye.z());
     s.cameras.push_back(lookAt(eye, {0.7 * mirror.x(), mirror.y(), 0}));
   }
-  s.light = lampAt(lamp);
+  s.light = trueLampAt(lamp);
   return s;
 }
 
@@ -60,7 +60,7 @@ inline Synthetic ellipsoidScene(int n = 6) {
     const double a = -2.2 + 2.4 * i / std::max(1, n - 1);
     s.cameras.push_back(lookAt({2 * std::cos(a), 2 * std::sin(a), 0.9 + 0.3 * std::sin(a)}, {0, 0, 0}));
   }
-  s.light = lampAt({1.2, -1.0, 2.2});
+  s.light = trueLampAt({1.2, -1.0, 2.2});
   return s;
 }
 

@@ -172,12 +172,12 @@ TEST(ModelRefusals, NoViewsAndNoSurface) {
 
 TEST(LimitAngleModel, LightAtInfinity) {
   Synthetic scene = ellipsoidScene();
-  scene.light.position.reset();
-  scene.light.direction = Eigen::Vector3d(0.5, -0.4, 0.9).normalized();
+  const Eigen::Vector3d direction = Eigen::Vector3d(0.5, -0.4, 0.9).normalized();
+  scene.light.lamp = lampTowards(direction);
   const FitInput input = fitInput(scene, {});
   ASSERT_TRUE(input.light) << input.lightFailure->message();
   const ModelFit fit = fitted("limit-angle", input);
-  EXPECT_LT(fit.lightEstimate->directionFrom({0, 0, 0}).cross(*scene.light.direction).norm(), 1e-4);
+  EXPECT_LT(fit.lightEstimate->directionFrom({0, 0, 0}).cross(direction).norm(), 1e-4);
   for (const Camera& camera : scene.cameras) {
     const Prediction p = predicted("limit-angle", fit, scene, camera);
     ASSERT_EQ(p.highlights().size(), 1u);
@@ -213,10 +213,10 @@ TEST(CanonicalModel, DirectionsOverTheEdgeAreNamed) {
 TEST(CanonicalModel, DirectionsOverTheHorizonAreNamed) {
   Synthetic scene;
   scene.surface = sphere(0.4);
-  scene.light = lampAt({-2, 0, 0.6});
+  scene.light = trueLampAt({-2, 0, 0.6});
   scene.cameras = {lookAt({2, 0, 0.6}, {0, 0, 0.4})};
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.translation() = *scene.light.position;
+  pose.translation() = scene.light.lamp.position();
   ModelFit fit;
   fit.model = "canonical";
   fit.lightEstimate = lightOf(scene.light);
@@ -236,7 +236,7 @@ TEST(CanonicalModel, DirectionsOverTheHorizonAreNamed) {
 // Two lamps; the second is off in the last frames: nothing is predicted for it there.
 TEST(Lights, OneSwitchedOff) {
   Synthetic first = sheetScene(0.4, 8), second = first;
-  second.light = lampAt({-0.4, 0.5, 1.8});
+  second.light = trueLampAt({-0.4, 0.5, 1.8});
   second.light.id = "other";
   auto scene = std::make_shared<Scene>();
   scene->surfaces["sheet"].analytic = first.surface;

@@ -21,7 +21,7 @@ constexpr double kPredictedPct = 0.01;
 Synthetic grazingScene(int n) {
   Synthetic s;
   s.surface = sheet(0.5);
-  s.light = lampAt({-0.2, 1.9, 0.55});
+  s.light = trueLampAt({-0.2, 1.9, 0.55});
   for (int i = 0; i < n; ++i) {
     const double a = -1.85 + 0.6 * i / (n - 1);
     s.cameras.push_back(lookAt({1.9 * std::cos(a), 1.9 * std::sin(a), 0.5}, {0, 0, 0}));
@@ -230,7 +230,7 @@ TEST(Reflectance, HighlightsThatNobodySeesAreNamed) {
 // The peak lies beyond the border, a part of the highlight inside: the level is that of the true peak.
 TEST(Reflectance, HighlightsWithTheirPeakBeyondTheBorderKeepTheirShape) {
   RadianceScene s =
-      radianceScene(Synthetic{plane(), {lookAt({0, -1.5, 1.5}, {0, 0, 0})}, lampAt({1.5, 0.9, 1.2}), 0.1, {}}, Lobe::Ggx, 0.15);
+      radianceScene(Synthetic{plane(), {lookAt({0, -1.5, 1.5}, {0, 0, 0})}, trueLampAt({1.5, 0.9, 1.2}), 0.1, {}}, Lobe::Ggx, 0.15);
   ExactOptions options;
   options.marginPx = 300;
   const auto truth = exactHighlights(*s.surface, s.geometry.cameras[0], s.geometry.light, s.material, options);

@@ -107,7 +107,7 @@ TEST(TubeLight, TheExtentExplainsWhatOneLimitAngleCannot) {
 
 TEST(TubeLight, TheViewsChooseTheOrder) {
   EXPECT_TRUE(heldOutError(tube(0.8), -1).extent);
-  EXPECT_FALSE(heldOutError(lampAt({1.2, -1.0, 2.2}), -1, 1, 1.0).extent) << "noise alone gives no reason for an extent";
+  EXPECT_FALSE(heldOutError(trueLampAt({1.2, -1.0, 2.2}), -1, 1, 1.0).extent) << "noise alone gives no reason for an extent";
 }
 
 TEST(TubeLight, Scale) {

@@ -133,7 +133,7 @@ TEST(SeenWindow, OfAFisheyeByItsFormula) {
 TEST(WideLens, BrightestPointFarFromTheAxis) {
   const auto scene = sceneThrough(true);
   const std::shared_ptr<const Surface> surface = makeAnalytic(*scene->surfaces.at("body").analytic);
-  const Light light = Light::at(*scene->lights.front().position);
+  const Light light = lightOf(scene->lights.front().lamp);
   for (const Frame& f : scene->frames) {
     const auto found = predictedBrightestPoints(*surface, f.camera, light, {});
     ASSERT_TRUE(found) << f.id << ": " << found.failure().message();

@@ -144,8 +144,9 @@ TEST(SphereLight, AgreesWithADenseQuadrature) {
           const Eigen::Vector3d light = 2 * Eigen::Vector3d(-std::sin(slant - off), 0, std::cos(slant - off));
           Eigen::Vector4d l;
           l << light, 1;
-          const lobe::DiscRule& rule = lobe::discRuleFor(lobe::sizeRatio(m, Eigen::Vector3d::Zero(), v, l, radius));
-          const auto value = lobe::logOfSphereLight<double>(lobe, m, Eigen::Vector3d::Zero(), n, v, l, radius * radius, rule);
+          const Lamp lamp{l, SphereShape<>::of(radius)};
+          const lobe::LampRule rule = lobe::lampRuleFor(lamp.shape, lobe::lampRatio(m, Eigen::Vector3d::Zero(), v, lamp));
+          const auto value = lobe::logOfLamp<double>(lobe, m, Eigen::Vector3d::Zero(), n, v, lamp, rule);
           ASSERT_TRUE(value);
           EXPECT_NEAR(*value, denseLog(lobe, m, n, v, light, radius), 3e-5)
               << nameOf(lobe) << " " << slant << " " << ratio << " " << off;

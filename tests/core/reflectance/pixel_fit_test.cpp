@@ -169,7 +169,7 @@ Outcome<PixelFit> fitted(const Scene& s, const std::vector<Lobe>& lobes = kAll, 
 }
 
 double offBy(const PixelFit& fit, const Scene& s) {
-  return (fit.model.lamp.centre.position() / s.scale - s.lamp).norm() / s.lamp.norm();
+  return (fit.model.lamp.position() / s.scale - s.lamp).norm() / s.lamp.norm();
 }
 
 // What nine samples a pixel and single precision leave of the light, m and the lobe.
@@ -276,7 +276,7 @@ TEST(PixelFit, Scale) {
     s.scale = scale;
     const Outcome<PixelFit> fit = fitted(s, {Lobe::Ggx});
     ASSERT_TRUE(fit) << scale;
-    EXPECT_LT((fit->model.lamp.centre.position() / scale - reference->model.lamp.centre.position()).norm(), 1e-5) << scale;
+    EXPECT_LT((fit->model.lamp.position() / scale - reference->model.lamp.position()).norm(), 1e-5) << scale;
     EXPECT_NEAR(fit->model.roughness, reference->model.roughness, 1e-7) << scale;
   }
 }
@@ -292,7 +292,7 @@ TEST(PixelFit, Noise) {
     const Outcome<PixelFit> fit = fitted(s);
     ASSERT_TRUE(fit) << fit.failure().message();
     EXPECT_EQ(fit->model.lobe, Lobe::Ggx) << seed;
-    const Eigen::Vector3d error = fit->model.lamp.centre.position() - s.lamp;
+    const Eigen::Vector3d error = fit->model.lamp.position() - s.lamp;
     worst = std::max(worst, error.norm() / s.lamp.norm());
     // 99.99 % of a chi-squared with three degrees of freedom.
     EXPECT_LT(error.dot(fit->positionCovariance.inverse() * error), 21.1) << seed;
@@ -459,7 +459,7 @@ TEST(PixelProblem, AStepOfTheBlurEqualsOneThatComputesAllAnew) {
     EXPECT_LT(keptAgainstAnew(problem, at, kStepPx2), kRoundOff);
     // A finer rule for a larger lamp, before the residuals are asked for again.
     patch::State larger = at;
-    larger.radiusSquared = 1;
+    larger.lamp.shape = SphereShape<>{1};
     ASSERT_TRUE(problem.chooseRule(larger));
     EXPECT_LT(keptAgainstAnew(problem, at, kStepPx2), kRoundOff);
   }

@@ -80,13 +80,14 @@ TEST(FitSegment, NoiseStaysWithinTheUncertainty) {
   for (unsigned seed = 1; seed <= 2; ++seed) {
     const auto fit = search(radianceViews(s, 1, seed), guess());
     ASSERT_TRUE(fit) << fit.failure().message();
-    if (fit->lightHalfAxis.norm() == 0) continue;
+    const auto* const segment = std::get_if<SegmentShape<>>(&fit->lamp.shape);
+    if (!segment) continue;
     ++found;
     const Found f = compared(*fit);
     EXPECT_NEAR(f.halfLength, kHalfLength, 0.1 * kHalfLength) << seed;
     ASSERT_TRUE(fit->uncertainty);
     ASSERT_EQ(fit->uncertainty->root.rows(), 8);
-    const Eigen::VectorXd byLength = fit->lightHalfAxis.normalized().transpose() * fit->uncertainty->root.bottomRows(3);
+    const Eigen::VectorXd byLength = segment->halfAxis.normalized().transpose() * fit->uncertainty->root.bottomRows(3);
     inside += std::abs(f.halfLength - kHalfLength) < 3 * byLength.norm();
   }
   EXPECT_EQ(found, 2);

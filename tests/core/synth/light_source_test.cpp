@@ -28,7 +28,7 @@ TEST(LightSource, SpheresAreAsExactAsStated) {
   lamp.lamp = lampAt(Eigen::Vector3d(0, 0, 2));
   for (const double ratio : {0.01, 0.05, 0.5, 1.0, 2.0, 4.0}) {
     lamp.lamp = withRadius(lamp.lamp, 0.02);
-    const double w = std::atan2(lamp.radius, 2.0) / (ratio * (1 - 1e-9));
+    const double w = std::atan2(radiusOf(lamp.lamp), 2.0) / (ratio * (1 - 1e-9));
     // A lobe that has fallen to a thousandth: exp(-2.63^2).
     for (const double off : {0.0, 1.0, 2.63})
       EXPECT_NEAR(std::log(gathered(lamp, w, off * w, w) / gathered(lamp, w, off * w, 1e-9)), 0, kStated) << ratio << ", " << off;

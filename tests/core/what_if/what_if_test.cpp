@@ -140,7 +140,7 @@ std::shared_ptr<Scene> twoLamps() {
   auto scene = lamp(sheet(0.3));
   TrueLight second = scene->lights[0];
   second.id = "second";
-  *second.position += Eigen::Vector3d(-0.5, 0.1, 0.2);
+  second.lamp = moved(second.lamp, {-0.5, 0.1, 0.2});
   scene->lights.push_back(second);
   for (Frame& f : scene->frames) f.lightsOn.clear();
   WhatIf w;
