@@ -190,7 +190,8 @@ class Reflectance final : public HighlightModel {
       std::span<double> own = unknownsOf(other.shape);
       for (std::size_t k = 0; k < own.size() && by.size() > parameters::kLampShape; ++k)
         own[k] += by(parameters::kLampShape + static_cast<Eigen::Index>(k));
-      if (auto* const sphere = std::get_if<SphereShape<>>(&other.shape)) sphere->squaredRadius = std::max(0.0, sphere->squaredRadius);
+      if (auto* const sphere = std::get_if<SphereShape<>>(&other.shape))
+        sphere->squaredRadius = std::max(0.0, sphere->squaredRadius);
       const auto log = [&](const SurfacePoint& p) {
         const double roughness = fitted->roughness * std::exp(by(parameters::kLogRoughness.first));
         return lobe::logOfLamp<double>(fitted->lobe, roughness, p.position, p.normal, (eye - p.position).normalized(), other,

@@ -7,6 +7,7 @@
 #include "core/base/added_choice.h"
 #include "core/base/number_text.h"
 #include "core/base/outcome.h"
+#include "core/reflectance/lobe_terms.h"
 
 namespace glint {
 namespace {
@@ -102,8 +103,7 @@ const char* addedLobeName(Lobe lobe) {
 const std::vector<Lobe>& allLobes() { return known(); }
 
 bool isMicrofacet(Lobe lobe) {
-  if (const LobeProfile* const profile = profileOf(lobe)) return profile->isMicrofacet();
-  return lobe == Lobe::TorranceSparrow || lobe == Lobe::Ggx;
+  return lobe::withLobe(lobe, [](const auto& l) { return l.isMicrofacet(); });
 }
 
 }  // namespace glint

@@ -37,8 +37,8 @@ struct RadianceStart {
   Lobe lobe = Lobe::TorranceSparrow;
   Light light;
   double roughness = 0;
-  double cost = 0;    ///< mean robust square per point after a short fit, px^2: starts of all lobes are compared by it
-  double excess = 0;  ///< what remains over what a fit may leave that is not poor; far above 1: not worth trying
+  double cost = 0;        ///< mean robust square per point after a short fit, px^2: starts of all lobes are compared by it
+  double excess = 0;      ///< what remains over what a fit may leave that is not poor; far above 1: not worth trying
   Eigen::VectorXd place;  ///< normalised: L with |L| = 1, log m
 
   bool promises() const;

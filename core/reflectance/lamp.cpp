@@ -149,9 +149,7 @@ const char* nameOf(const LampShape& shape) {
   return of(shape, [](const auto& s) { return s.kName; });
 }
 
-std::vector<LampShape> allLampShapes() {
-  return shapesOf(std::make_index_sequence<std::variant_size_v<LampShape> - 1>());
-}
+std::vector<LampShape> allLampShapes() { return shapesOf(std::make_index_sequence<std::variant_size_v<LampShape> - 1>()); }
 
 LampChoices lampChoices(const std::string& name) {
   return choicesNamed(name, std::make_index_sequence<std::variant_size_v<LampShape>>());
@@ -203,7 +201,8 @@ std::vector<std::vector<Eigen::Vector3d>> outlineOf(const Lamp& lamp) {
     std::vector<Eigen::Vector3d>& circle = chains.emplace_back();
     for (int i = 0; i <= kSteps; ++i) {
       const double t = 2 * M_PI * (i % kSteps) / kSteps;
-      circle.push_back(middle + radius * (std::cos(t) * Eigen::Vector3d::Unit(k) + std::sin(t) * Eigen::Vector3d::Unit((k + 1) % 3)));
+      circle.push_back(middle +
+                       radius * (std::cos(t) * Eigen::Vector3d::Unit(k) + std::sin(t) * Eigen::Vector3d::Unit((k + 1) % 3)));
     }
   }
   return chains;
@@ -224,7 +223,7 @@ const std::vector<DiscRule::Node>& alongRuleFor(double ratio) {
     for (const QuadratureNode& node : gaussLegendre(n)) r.nodes.push_back({node.x, 0, 0.5 * node.weight});
     return r;
   };
-  static const std::array<Rung, 13> ladder{rung(0.1, 3),  rung(0.35, 4), rung(0.5, 6), rung(0.75, 8), rung(1.0, 10),
+  static const std::array<Rung, 13> ladder{rung(0.1, 3),  rung(0.35, 4), rung(0.5, 6),  rung(0.75, 8), rung(1.0, 10),
                                            rung(1.5, 12), rung(2.0, 16), rung(3.0, 24), rung(4.0, 32), rung(5.0, 40),
                                            rung(6.5, 56), rung(8.0, 64), rung(12.0, 96)};
   for (const Rung& r : ladder)
@@ -264,7 +263,8 @@ Nearest nearestTo(const Lamp& lamp, const Eigen::Vector3d& position, const Eigen
   Nearest nearest{lamp.centre.head<3>() - lamp.centre.w() * position};
   if (const auto* const segment = std::get_if<SegmentShape<>>(&lamp.shape)) {
     const Eigen::Vector3d axis = lamp.centre.w() * segment->halfAxis, &offset = nearest.offset;
-    const Eigen::Vector3d acrossAxis = axis - axis.dot(direction) * direction, across = offset - offset.dot(direction) * direction;
+    const Eigen::Vector3d acrossAxis = axis - axis.dot(direction) * direction,
+                          across = offset - offset.dot(direction) * direction;
     const double squared = acrossAxis.squaredNorm();
     nearest.offset += (squared > 0 ? std::clamp(-across.dot(acrossAxis) / squared, -1.0, 1.0) : 0.0) * axis;
   }

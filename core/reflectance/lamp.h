@@ -34,7 +34,7 @@ namespace glint {
 
 template <class T = double>
 struct PointShape {
-  static constexpr const char* kName = "point", *kWords = "a lamp without a size";
+  static constexpr const char *kName = "point", *kWords = "a lamp without a size";
   static constexpr int kUnknowns = 0, kLength = 1, kMostSteps = std::numeric_limits<int>::max();
   static constexpr bool kMayVanish = true;
   static constexpr double kLeast = 0, kLeastStep = 0, kRatioReserve = 1, kLargestRatio = std::numeric_limits<double>::infinity();
@@ -48,10 +48,11 @@ struct PointShape {
 /// A sphere of uniform radiance. The square of its radius is the unknown: smooth where it vanishes.
 template <class T = double>
 struct SphereShape {
-  static constexpr const char* kName = "sphere", *kWords = "a lamp with a size";
+  static constexpr const char *kName = "sphere", *kWords = "a lamp with a size";
   static constexpr int kUnknowns = 1, kLength = 2, kMostSteps = 25;
   static constexpr bool kMayVanish = true;
-  static constexpr double kLeast = 1e-10, kLeastStep = 1e-12, kRatioReserve = 1, kLargestRatio = 2.5;  // a larger disc takes minutes
+  static constexpr double kLeast = 1e-10, kLeastStep = 1e-12, kRatioReserve = 1,
+                          kLargestRatio = 2.5;  // a larger disc takes minutes
   T squaredRadius{0.0};
   static SphereShape of(double radius) { return {radius * radius}; }
   T* unknowns() { return &squaredRadius; }
@@ -64,7 +65,7 @@ struct SphereShape {
 /// A straight tube of uniform radiance, whose intensity goes with the sine of the angle to its axis.
 template <class T = double>
 struct SegmentShape {
-  static constexpr const char* kName = "segment", *kWords = "a lamp with a length";
+  static constexpr const char *kName = "segment", *kWords = "a lamp with a length";
   static constexpr int kUnknowns = 3, kLength = 1, kMostSteps = 60;
   static constexpr bool kMayVanish = false;
   static constexpr double kLeast = 0, kLeastStep = 1e-7, kRatioReserve = 1.3, kLargestRatio = 12;
@@ -89,7 +90,8 @@ struct LampOf {
   ShapeOf<T> shape;
 
   LampOf() = default;
-  LampOf(const Light& point) : centre(point.homogeneous().template cast<T>()) {}  // NOLINT(google-explicit-constructor): the plainest lamp
+  LampOf(const Light& point)
+      : centre(point.homogeneous().template cast<T>()) {}  // NOLINT(google-explicit-constructor): the plainest lamp
   LampOf(const Eigen::Matrix<T, 4, 1>& l, ShapeOf<T> s) : centre(l), shape(std::move(s)) {}
 
   bool isPoint() const { return std::holds_alternative<PointShape<T>>(shape); }
@@ -156,9 +158,9 @@ struct LampField {
 std::vector<LampField> fieldsOf(const Lamp& lamp);
 /// A shape whose points say its place too.
 struct PlacedShape {
-  std::string name;       ///< key
-  int points = 0;         ///< number of them
-  std::string wrongSize;  ///< what to say of another number
+  std::string name;                                                       ///< key
+  int points = 0;                                                         ///< number of them
+  std::string wrongSize;                                                  ///< what to say of another number
   std::string (*faultOf)(const std::vector<Eigen::Vector3d>&) = nullptr;  ///< why they make no lamp; "" where they do
   Lamp (*make)(const std::vector<Eigen::Vector3d>&) = nullptr;
 };

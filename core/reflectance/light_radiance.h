@@ -26,7 +26,7 @@ std::optional<T> logOfPointLight(Lobe lobe, const T& roughness, const Eigen::Vec
   if (!(squared > T(0.0))) return std::nullopt;
   const Eigen::Matrix<T, 3, 1> toLight = offset / sqrt(squared);
   if (!(normal.dot(toLight) > T(0.0)) || !(normal.dot(view) > T(0.0))) return std::nullopt;
-  if (lobe == Lobe::Phong && !(T(2.0) * normal.dot(toLight) * normal.dot(view) - toLight.dot(view) > T(0.0))) return std::nullopt;
+  if (!withLobe(lobe, [&](const auto& l) { return l.template reaches<T>(normal, toLight, view); })) return std::nullopt;
   return terms<T>(lobe, roughness, n, toLight, toCamera).total() - log(squared);
 }
 
@@ -36,7 +36,7 @@ template <class T>
 class RadianceSum {
  public:
   RadianceSum(Lobe lobe, const T& roughness, const Eigen::Vector3d& normal, const Eigen::Vector3d& toCamera)
-      : phong_(lobe == Lobe::Phong), normal_(normal.cast<T>()), view_(toCamera.cast<T>()), seen_(normal.dot(toCamera) > 0) {
+      : normal_(normal.cast<T>()), seen_(normal.dot(toCamera) > 0) {
     if (seen_) at_.emplace(lobe, roughness, normal, toCamera);
   }
 
@@ -48,7 +48,7 @@ class RadianceSum {
     if (!seen_ || !(squared > T(0.0)) || !(normal_.dot(offset) > T(0.0))) return;
     const T distance = sqrt(squared);
     const Eigen::Matrix<T, 3, 1> toLight = offset / distance;
-    if (phong_ && !(T(2.0) * normal_.dot(toLight) * normal_.dot(view_) - toLight.dot(view_) > T(0.0))) return;
+    if (!at_->reaches(toLight)) return;
     const typename LobeAt<T>::Value value = at_->towards(toLight);
     const T term = T(weight) * value.over / (value.under * (power == 3 ? T(squared * distance) : squared));
     if (!any_) {
@@ -71,8 +71,7 @@ class RadianceSum {
   }
 
  private:
-  bool phong_;
-  Eigen::Matrix<T, 3, 1> normal_, view_;
+  Eigen::Matrix<T, 3, 1> normal_;
   bool seen_, any_ = false;
   std::optional<LobeAt<T>> at_;
   T top_{0.0}, sum_{0.0};
@@ -80,8 +79,9 @@ class RadianceSum {
 
 /// log I of one lobe under a lamp of this shape about L = (l, w), up to a constant of the lamp; parts of it below the horizon give nothing.
 template <class T>
-std::optional<T> logOfShape(const PointShape<T>&, Lobe lobe, const T& roughness, const Eigen::Vector3d& position, const Eigen::Vector3d& n,
-                            const Eigen::Vector3d& toCamera, const Eigen::Matrix<T, 4, 1>& light, const LampRule&) {
+std::optional<T> logOfShape(const PointShape<T>&, Lobe lobe, const T& roughness, const Eigen::Vector3d& position,
+                            const Eigen::Vector3d& n, const Eigen::Vector3d& toCamera, const Eigen::Matrix<T, 4, 1>& light,
+                            const LampRule&) {
   return logOfPointLight<T>(lobe, roughness, position, n, toCamera, light);
 }
 
@@ -137,8 +137,9 @@ std::optional<T> logOfShape(const SegmentShape<T>& segment, Lobe lobe, const T& 
 template <class T>
 std::optional<T> logOfLamp(Lobe lobe, const T& roughness, const Eigen::Vector3d& position, const Eigen::Vector3d& n,
                            const Eigen::Vector3d& toCamera, const LampOf<T>& lamp, const LampRule& rule) {
-  return std::visit([&](const auto& shape) { return logOfShape(shape, lobe, roughness, position, n, toCamera, lamp.centre, rule); },
-                    lamp.shape);
+  return std::visit(
+      [&](const auto& shape) { return logOfShape(shape, lobe, roughness, position, n, toCamera, lamp.centre, rule); },
+      lamp.shape);
 }
 
 }  // namespace glint::lobe

@@ -12,8 +12,10 @@
 namespace glint {
 namespace {
 
-constexpr std::array<std::pair<Lobe, const char*>, 4> kNames{
-    {{Lobe::Phong, "phong"}, {Lobe::BlinnPhong, "blinn-phong"}, {Lobe::TorranceSparrow, "torrance-sparrow"}, {Lobe::Ggx, "ggx"}}};
+constexpr std::array<std::pair<Lobe, const char*>, 4> kNames{{{Lobe::Phong, lobe::PhongLobe::kName},
+                                                              {Lobe::BlinnPhong, lobe::BlinnPhongLobe::kName},
+                                                              {Lobe::TorranceSparrow, lobe::TorranceSparrowLobe::kName},
+                                                              {Lobe::Ggx, lobe::GgxLobe::kName}}};
 
 }  // namespace
 
@@ -39,7 +41,7 @@ std::optional<LogRadiance> logRadiance(Lobe lobe, double roughness, const Eigen:
                                        const Eigen::Vector3d& toCamera) {
   require(roughness > 0 && std::isfinite(roughness), "logRadiance: roughness must be positive");
   if (!(n.dot(toLight) > 0) || !(n.dot(toCamera) > 0)) return std::nullopt;
-  if (lobe == Lobe::Phong && !(reflect(toLight, n).dot(toCamera) > 0)) return std::nullopt;
+  if (!lobe::withLobe(lobe, [&](const auto& l) { return l.template reaches<double>(n, toLight, toCamera); })) return std::nullopt;
   const lobe::Terms<double> t = lobe::terms<double>(lobe, roughness, n, toLight, toCamera);
   return LogRadiance{t.lobe, t.masking, t.cosines};
 }

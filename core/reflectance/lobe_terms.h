@@ -3,10 +3,12 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 
 #include "core/reflectance/added_lobe.h"
 #include "core/reflectance/lobe.h"
+#include "core/surface/part_bounds.h"
 
 namespace glint::lobe {
 
@@ -48,42 +50,265 @@ T ggxLambda(const T& roughness, const T& tan2) {
   return T(0.5) * s2 / (sqrt(T(1.0) + s2) + T(1.0));
 }
 
-/// The terms for unit vectors on the lit and visible side (N.L > 0, N.V > 0; phong: R.V > 0), which the caller has checked.
+/// I of a lobe under one light as over / under * exp(exponent), for sums without a logarithm for each term.
+template <class T>
+struct Factors {
+  T over, under, exponent;
+};
+
+// The lobes. A new one is a struct here, a value of Lobe, and its case in withLobe(). t = tan^2 of the angle that the lobe falls with. Each says:
+//   isMicrofacet     it has masking and cosines
+//   reaches          whether light from there is mirrored to the camera's side at all
+//   tanSquared       t for unit vectors N, L, V
+//   logDistribution  log D(m, t), or the log of the cosine power
+//   lambda           Smith's Lambda for tan^2 of a direction's angle to N
+//   constant         what of log I does not depend on the light; inverse = 1 / m^2, cosView = N.V
+//   factors          the rest, with masking = 1 + Lambda(V) + Lambda(L) for a microfacet lobe
+//   fall             log of the value in the mirror direction over that at theta_h, rad
+//   roughnessOf      m of a lobe that has fallen by `depth` at theta_h
+//   largest          of log D over parts of a surface, in single precision
+//   leastShadowed    below cos theta_V (1 + Lambda(V)), which grows with cos theta_V
+
+inline double squaredTangent(double theta) { return std::pow(std::tan(theta), 2); }
+inline double logCosine(double theta) { return std::log(std::cos(theta)); }
+
+/// What the lobes that fall with the angle between N and H share.
+struct HalfVectorLobe {
+  template <class T>
+  static bool reaches(const Eigen::Matrix<T, 3, 1>&, const Eigen::Matrix<T, 3, 1>&, const Eigen::Matrix<T, 3, 1>&) {
+    return true;
+  }
+  template <class T>
+  static T tanSquared(const Eigen::Matrix<T, 3, 1>& n, const Eigen::Matrix<T, 3, 1>& toLight,
+                      const Eigen::Matrix<T, 3, 1>& toCamera) {
+    return lobe::tanSquared<T>(n, (toLight + toCamera).eval());
+  }
+};
+
+/// What the cosine powers share.
+struct CosinePower {
+  static constexpr bool isMicrofacet() { return false; }
+  template <class T>
+  static T lambda(const T&, const T&) {
+    return T(0.0);
+  }
+  template <class T>
+  static T constant(const T&, const T&) {
+    return T(0.0);
+  }
+  static Eight leastShadowed(float, const Eight& cosView) { return cosView; }
+};
+
+struct PhongLobe : CosinePower {
+  static constexpr const char* kName = "phong";
+  template <class T>
+  static bool reaches(const Eigen::Matrix<T, 3, 1>& n, const Eigen::Matrix<T, 3, 1>& toLight,
+                      const Eigen::Matrix<T, 3, 1>& toCamera) {
+    return T(2.0) * n.dot(toLight) * n.dot(toCamera) - toLight.dot(toCamera) > T(0.0);
+  }
+  template <class T>
+  static T tanSquared(const Eigen::Matrix<T, 3, 1>& n, const Eigen::Matrix<T, 3, 1>& toLight,
+                      const Eigen::Matrix<T, 3, 1>& toCamera) {
+    return lobe::tanSquared<T>((T(2.0) * n.dot(toLight) * n - toLight).eval(), toCamera);
+  }
+  // log cos through tan keeps the digits near the peak, where cos is 1 to round-off.
+  template <class T>
+  static T logDistribution(const T& m, const T& t) {
+    using std::log1p;
+    return T(-0.25) / (m * m) * log1p(t);
+  }
+  template <class T>
+  static Factors<T> factors(const T&, const T& inverse, const T& t, const T&) {
+    using std::log1p;
+    return {T(1.0), T(1.0), T(-0.25) * inverse * log1p(t)};
+  }
+  static double fall(double m, double theta) {
+    return 2 * theta < M_PI / 2 ? -std::log(std::cos(2 * theta)) / (2 * m * m) : HUGE_VAL;
+  }
+  static double roughnessOf(double theta, double depth) {
+    return std::sqrt(-std::log(std::cos(2 * std::min(theta, 0.249 * M_PI))) / (2 * depth));
+  }
+  // sin^2 of half the angle between R and V is sin^2(theta_h) (cos^2 b + sin^2 b cos^2 f), b half the angle between L and V.
+  // log1p: a narrow lobe makes much of the round-off of 1 - x. The log of 0 is not finite.
+  static Eight largest(double m, const PartBounds& parts) {
+    const float m2 = float(m) * float(m);
+    const Eight& t = parts.tanSquared;
+    return 0.5f / m2 * (-2 * t / (1 + t) * parts.cosHalf.square()).max(-1 + 1e-7f).log1p();
+  }
+};
+
+struct BlinnPhongLobe : HalfVectorLobe, CosinePower {
+  static constexpr const char* kName = "blinn-phong";
+  template <class T>
+  static T logDistribution(const T& m, const T& t) {
+    using std::log1p;
+    return T(2.0) / (m * m) * (T(-0.5) * log1p(t));
+  }
+  template <class T>
+  static Factors<T> factors(const T&, const T& inverse, const T& t, const T&) {
+    using std::log1p;
+    return {T(1.0), T(1.0), -inverse * log1p(t)};
+  }
+  static double fall(double m, double theta) { return -2 / (m * m) * logCosine(theta); }
+  static double roughnessOf(double theta, double depth) { return std::sqrt(-2 * logCosine(theta) / depth); }
+  static Eight largest(double m, const PartBounds& parts) { return -1 / (float(m) * float(m)) * parts.tanSquared.log1p(); }
+};
+
+/// log(1 + x). Unlike log1p it is computed eight at a time; what it loses (6e-8, absolute) is below the margin for round-off.
+inline Eight ofOneAnd(const Eight& x) { return (1 + x).log(); }
+
+/// Beckmann's distribution.
+struct TorranceSparrowLobe : HalfVectorLobe {
+  static constexpr const char* kName = "torrance-sparrow";
+  static constexpr bool isMicrofacet() { return true; }
+  template <class T>
+  static T logDistribution(const T& m, const T& t) {
+    using std::log;
+    using std::log1p;
+    const T m2 = m * m;
+    return -t / m2 - log(T(M_PI) * m2) - T(4.0) * (T(-0.5) * log1p(t));
+  }
+  template <class T>
+  static T lambda(const T& m, const T& tan2) {
+    return beckmannLambda<T>(m, tan2);
+  }
+  template <class T>
+  static T constant(const T& inverse, const T& cosView) {
+    using std::log;
+    return log(inverse) - log(T(4 * M_PI) * cosView);
+  }
+  template <class T>
+  static Factors<T> factors(const T&, const T& inverse, const T& t, const T& masking) {
+    const T secant = T(1.0) + t;
+    return {secant * secant, masking, -t * inverse};
+  }
+  static double fall(double m, double theta) { return squaredTangent(theta) / (m * m) + 4 * logCosine(theta); }
+  static double roughnessOf(double theta, double depth) {
+    return std::sqrt(squaredTangent(theta) / (depth - 4 * logCosine(theta)));
+  }
+  // -t/m^2 + 2 log(1 + t) rises up to t = 2 m^2 - 1 for lobes wider than that.
+  static Eight largest(double m, const PartBounds& parts) {
+    const float m2 = float(m) * float(m);
+    const Eight at = parts.tanSquared.max(2 * m2 - 1);
+    return -at / m2 + 2 * ofOneAnd(at) - std::log(float(M_PI) * m2);
+  }
+  /// m / (2 sqrt(pi)) where V is at the horizon.
+  static Eight leastShadowed(float m, const Eight& cosView) { return cosView.max(0.27f * std::min(1.f, m)); }
+};
+
+struct GgxLobe : HalfVectorLobe {
+  static constexpr const char* kName = "ggx";
+  static constexpr bool isMicrofacet() { return true; }
+  template <class T>
+  static T logDistribution(const T& m, const T& t) {
+    using std::log;
+    using std::log1p;
+    const T m2 = m * m;
+    return T(-2.0) * log1p(t / m2) - log(T(M_PI) * m2) - T(4.0) * (T(-0.5) * log1p(t));
+  }
+  template <class T>
+  static T lambda(const T& m, const T& tan2) {
+    return ggxLambda<T>(m, tan2);
+  }
+  template <class T>
+  static T constant(const T& inverse, const T& cosView) {
+    return TorranceSparrowLobe::constant<T>(inverse, cosView);
+  }
+  template <class T>
+  static Factors<T> factors(const T&, const T& inverse, const T& t, const T& masking) {
+    const T secant = T(1.0) + t, tail = T(1.0) + t * inverse;
+    return {secant * secant, tail * tail * masking, T(0.0)};
+  }
+  static double fall(double m, double theta) { return 2 * std::log1p(squaredTangent(theta) / (m * m)) + 4 * logCosine(theta); }
+  static double roughnessOf(double theta, double depth) {
+    return std::sqrt(squaredTangent(theta) / std::expm1(0.5 * (depth - 4 * logCosine(theta))));
+  }
+  // Rises with t where m > 1, towards 4 log m.
+  static Eight largest(double roughness, const PartBounds& parts) {
+    const float m = float(roughness), m2 = m * m;
+    const Eight& t = parts.tanSquared;
+    return m <= 1 ? Eight(2 * (ofOneAnd(t) - ofOneAnd(t / m2)) - std::log(float(M_PI) * m2))
+                  : Eight(Eight::Constant(4 * std::log(m) - std::log(float(M_PI) * m2)));
+  }
+  /// m / 2 where V is at the horizon.
+  static Eight leastShadowed(float m, const Eight& cosView) {
+    const float m2 = std::min(1.f, m * m);
+    return 0.5f * (cosView + (cosView.square() * (1 - m2) + m2).sqrt());
+  }
+};
+
+/// One that a plugin brought.
+struct ProfileLobe : HalfVectorLobe {
+  const LobeProfile& profile;
+  explicit ProfileLobe(const LobeProfile& p) : profile(p) {}
+  bool isMicrofacet() const { return profile.isMicrofacet(); }
+  template <class T>
+  T logDistribution(const T& m, const T& t) const {
+    return addedDistribution<T>(profile, m, t);
+  }
+  template <class T>
+  T lambda(const T& m, const T& tan2) const {
+    return addedLambda<T>(profile, m, tan2);
+  }
+  template <class T>
+  T constant(const T&, const T& cosView) const {
+    using std::log;
+    return isMicrofacet() ? T(-log(T(4.0) * cosView)) : T(0.0);
+  }
+  template <class T>
+  Factors<T> factors(const T& m, const T&, const T& t, const T& masking) const {
+    return {T(1.0), masking, logDistribution<T>(m, t)};
+  }
+  double fall(double m, double theta) const {
+    return profile.logDistribution(m, 0).value - profile.logDistribution(m, squaredTangent(theta)).value;
+  }
+  /// A wider lobe falls less at one angle: bisection in log m.
+  double roughnessOf(double theta, double depth) const {
+    double low = std::log(1e-5), high = std::log(10.0);  // a mirror's, and a lobe that is wider than any hemisphere
+    for (int i = 0; i < 60; ++i) {
+      const double middle = 0.5 * (low + high);
+      (fall(std::exp(middle), theta) > depth ? low : high) = middle;
+    }
+    return std::exp(0.5 * (low + high));
+  }
+  Eight largest(double m, const PartBounds& parts) const {
+    if (m > kCheckedRoughness) return Eight::Constant(1e30f);  // no part is ruled out
+    Eight log;
+    for (Eigen::Index i = 0; i < log.size(); ++i)
+      log[i] = float(profile.logDistribution(m, std::max(0.f, parts.tanSquared[i])).value);
+    return log;
+  }
+  static Eight leastShadowed(float, const Eight& cosView) { return cosView.max(1e-6f); }  // a Lambda that is not known may be 0
+};
+
+/// @param f  takes every lobe
+template <class F>
+decltype(auto) withLobe(Lobe lobe, F&& f) {
+  switch (lobe) {
+    case Lobe::Phong: return f(PhongLobe());
+    case Lobe::BlinnPhong: return f(BlinnPhongLobe());
+    case Lobe::TorranceSparrow: return f(TorranceSparrowLobe());
+    case Lobe::Ggx: return f(GgxLobe());
+    default: return f(ProfileLobe(*profileOf(lobe)));
+  }
+}
+
+/// The terms for unit vectors on the lit and visible side (N.L > 0, N.V > 0; the lobe reaches the camera), which the caller has checked.
 template <class T>
 Terms<T> terms(Lobe lobe, const T& m, const Eigen::Vector3d& n, const Eigen::Matrix<T, 3, 1>& toLight,
                const Eigen::Vector3d& toCamera) {
   using std::log;
   using std::log1p;
-  Terms<T> out;
   const Eigen::Matrix<T, 3, 1> normal = n.cast<T>(), view = toCamera.cast<T>();
-  const T m2 = m * m;
-  if (lobe == Lobe::Phong) {
-    // log cos through tan keeps the digits near the peak, where cos is 1 to round-off.
-    const Eigen::Matrix<T, 3, 1> mirrored = T(2.0) * normal.dot(toLight) * normal - toLight;
-    out.lobe = T(-0.25) / m2 * log1p(tanSquared<T>(mirrored, view));
+  return withLobe(lobe, [&](const auto& l) {
+    Terms<T> out;
+    out.lobe = l.template logDistribution<T>(m, l.template tanSquared<T>(normal, toLight, view));
+    if (!l.isMicrofacet()) return out;
+    out.masking =
+        -log1p(l.template lambda<T>(m, tanSquared<T>(normal, toLight)) + l.template lambda<T>(m, tanSquared<T>(normal, view)));
+    out.cosines = -log(T(4.0) * normal.dot(view));
     return out;
-  }
-  const T tan2 = tanSquared<T>(normal, (toLight + view).eval());
-  const T logCosH = T(-0.5) * log1p(tan2);
-  if (lobe == Lobe::BlinnPhong) {
-    out.lobe = T(2.0) / m2 * logCosH;
-    return out;
-  }
-  const T tan2L = tanSquared<T>(normal, toLight), tan2V = tanSquared<T>(normal, view);
-  if (lobe == Lobe::TorranceSparrow) {
-    out.lobe = -tan2 / m2 - log(T(M_PI) * m2) - T(4.0) * logCosH;
-    out.masking = -log1p(beckmannLambda<T>(m, tan2L) + beckmannLambda<T>(m, tan2V));
-  } else if (lobe == Lobe::Ggx) {
-    out.lobe = T(-2.0) * log1p(tan2 / m2) - log(T(M_PI) * m2) - T(4.0) * logCosH;
-    out.masking = -log1p(ggxLambda<T>(m, tan2L) + ggxLambda<T>(m, tan2V));
-  } else {
-    const LobeProfile& added = *profileOf(lobe);
-    out.lobe = addedDistribution<T>(added, m, tan2);
-    if (!added.isMicrofacet()) return out;
-    out.masking = -log1p(addedLambda<T>(added, m, tan2L) + addedLambda<T>(added, m, tan2V));
-  }
-  out.cosines = -log(T(4.0) * normal.dot(view));
-  return out;
+  });
 }
 
 /// One lobe at one point seen from one side, under many lights: log I = constant() + log(over / under) + exponent. What does not
@@ -92,56 +317,38 @@ Terms<T> terms(Lobe lobe, const T& m, const Eigen::Vector3d& n, const Eigen::Mat
 template <class T>
 class LobeAt {
  public:
-  struct Value {
-    T over, under, exponent;
-  };
+  using Value = Factors<T>;
   LobeAt(Lobe lobe, const T& roughness, const Eigen::Vector3d& normal, const Eigen::Vector3d& toCamera)
       : lobe_(lobe),
         roughness_(roughness),
         inverse_(T(1.0) / (roughness * roughness)),
         normal_(normal.cast<T>()),
         view_(toCamera.cast<T>()) {
-    using std::log;
-    if (lobe_ != Lobe::TorranceSparrow && lobe_ != Lobe::Ggx) {
-      added_ = profileOf(lobe_);
-      if (!added_ || !added_->isMicrofacet()) return;
-      masking_ = T(1.0) + lambda(tanSquared<T>(normal_, view_));
-      constant_ = -log(T(4.0) * normal_.dot(view_));
-      return;
-    }
-    masking_ = T(1.0) + lambda(tanSquared<T>(normal_, view_));
-    constant_ = log(inverse_) - log(T(4 * M_PI) * normal_.dot(view_));
+    withLobe(lobe_, [&](const auto& l) {
+      if (l.isMicrofacet()) masking_ = T(1.0) + l.template lambda<T>(roughness_, tanSquared<T>(normal_, view_));
+      constant_ = l.template constant<T>(inverse_, normal_.dot(view_));
+    });
   }
   /// False where the exponent is always 0.
   bool hasExponent() const { return lobe_ != Lobe::Ggx; }
   const T& constant() const { return constant_; }
 
-  /// @param toLight  a unit vector on the lit side (phong: R.V > 0), which the caller has checked.
+  /// Whether the lobe sends light from this unit vector on the lit side to the camera at all.
+  bool reaches(const Eigen::Matrix<T, 3, 1>& toLight) const {
+    return withLobe(lobe_, [&](const auto& l) { return l.template reaches<T>(normal_, toLight, view_); });
+  }
+  /// @param toLight  a unit vector on the lit side that reaches the camera, which the caller has checked.
   Value towards(const Eigen::Matrix<T, 3, 1>& toLight) const {
-    using std::log1p;
-    if (lobe_ == Lobe::Phong)
-      return {T(1.0), T(1.0),
-              T(-0.25) * inverse_ * log1p(tanSquared<T>((T(2.0) * normal_.dot(toLight) * normal_ - toLight).eval(), view_))};
-    const T tan2 = tanSquared<T>(normal_, (toLight + view_).eval());
-    if (lobe_ == Lobe::BlinnPhong) return {T(1.0), T(1.0), -inverse_ * log1p(tan2)};
-    if (added_)
-      return {T(1.0), added_->isMicrofacet() ? T(masking_ + lambda(tanSquared<T>(normal_, toLight))) : T(1.0),
-              addedDistribution<T>(*added_, roughness_, tan2)};
-    const T secant = T(1.0) + tan2;
-    const T masking = masking_ + lambda(tanSquared<T>(normal_, toLight));
-    if (lobe_ == Lobe::TorranceSparrow) return {secant * secant, masking, -tan2 * inverse_};
-    const T tail = T(1.0) + tan2 * inverse_;
-    return {secant * secant, tail * tail * masking, T(0.0)};
+    return withLobe(lobe_, [&](const auto& l) -> Value {
+      const T t = l.template tanSquared<T>(normal_, toLight, view_);
+      if (!l.isMicrofacet()) return l.template factors<T>(roughness_, inverse_, t, T(1.0));
+      return l.template factors<T>(roughness_, inverse_, t,
+                                   T(masking_ + l.template lambda<T>(roughness_, tanSquared<T>(normal_, toLight))));
+    });
   }
 
  private:
-  T lambda(const T& tan2) const {
-    if (added_) return addedLambda<T>(*added_, roughness_, tan2);
-    return lobe_ == Lobe::Ggx ? ggxLambda<T>(roughness_, tan2) : beckmannLambda<T>(roughness_, tan2);
-  }
-
   Lobe lobe_;
-  const LobeProfile* added_ = nullptr;
   T roughness_, inverse_;  ///< m, 1 / m^2
   Eigen::Matrix<T, 3, 1> normal_, view_;
   T masking_{1.0}, constant_{0.0};

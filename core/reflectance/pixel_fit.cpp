@@ -99,8 +99,7 @@ class Search {
       for (const BackgroundKind kind :
            {BackgroundKind::None, BackgroundKind::Cosine, BackgroundKind::SlopedCosine, BackgroundKind::Quadratic})
         // A lamp with an extent takes long: the first lobe tells which backgrounds compete.
-        if ((!options_.background || kind == *options_.background) &&
-            (!best || start.lamp.isPoint() || kind == best->kind))
+        if ((!options_.background || kind == *options_.background) && (!best || start.lamp.isPoint() || kind == best->kind))
           tryOut(lobe, kind, from);
     }
     const Candidate* best = least([](const Candidate&) { return true; });

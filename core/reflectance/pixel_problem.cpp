@@ -125,7 +125,7 @@ bool run(PixelProblem& problem, Attempt& a, const SolveOptions& options, bool at
   ceres.AddResidualBlock(&cost, nullptr, blocks);
   if (atInfinity)
     ceres.SetManifold(blocks[0], new ceres::ProductManifold<ceres::SphereManifold<3>, ceres::SubsetManifold>(
-                                          ceres::SphereManifold<3>(), ceres::SubsetManifold(1, {0})));
+                                     ceres::SphereManifold<3>(), ceres::SubsetManifold(1, {0})));
   else
     ceres.SetManifold(blocks[0], new ceres::SphereManifold<4>());
   if (blocks.size() > 3 && std::visit([](const auto& shape) { return shape.kMayVanish; }, s.lamp.shape))
@@ -319,8 +319,8 @@ Attempt solveFrom(PixelProblem& problem, const State& start, const SolveOptions&
 }  // namespace
 
 Attempt solve(PixelProblem& problem, const State& start, const SolveOptions& options) {
-  TracedRun run(options.blur ? "lamp, lobe and blur from pixels" : "lamp and lobe from pixels", problem.worldOf(start.lamp.centre),
-                "squares of relative radiance");
+  TracedRun run(options.blur ? "lamp, lobe and blur from pixels" : "lamp and lobe from pixels",
+                problem.worldOf(start.lamp.centre), "squares of relative radiance");
   const Attempt a = solveFrom(problem, start, options);
   run.end(a.converged,
           !std::isfinite(a.cost) ? "no usable step"

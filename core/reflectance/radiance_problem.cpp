@@ -24,13 +24,13 @@ constexpr double kScanStepPx = 24;  // of the search for a frame's maximum when 
 constexpr int kMaxFootSteps = 4;
 constexpr double kFootPx = 1e-4;  // a foot this close serves: its error enters the residual in second order
 constexpr double kFarthestFootPx = 8;
-constexpr double kSigmaOfMedian = 1.4826;      // standard deviation over median absolute deviation of a normal distribution
-constexpr double kWidestRoughness = 3;         // roughness of a lobe that falls to half at 70 degrees and more: no highlight
-constexpr double kNoiseShare = 1.2;            // of the noise's sigma: what a right lobe leaves of it, with some reserve
-constexpr double kSagittaPx = 0.02;            // of contours as polylines
-constexpr double kExactPx = 1e-7;              // residuals of round-off, of which no step can be told better than another
-constexpr double kNearlySettled = 1e-6;        // change by which a round may end that was cut off: far below what noise does
-constexpr double kSettled = 1e-9;              // change of the unit vector L and of log m between reweightings
+constexpr double kSigmaOfMedian = 1.4826;  // standard deviation over median absolute deviation of a normal distribution
+constexpr double kWidestRoughness = 3;     // roughness of a lobe that falls to half at 70 degrees and more: no highlight
+constexpr double kNoiseShare = 1.2;        // of the noise's sigma: what a right lobe leaves of it, with some reserve
+constexpr double kSagittaPx = 0.02;        // of contours as polylines
+constexpr double kExactPx = 1e-7;          // residuals of round-off, of which no step can be told better than another
+constexpr double kNearlySettled = 1e-6;    // change by which a round may end that was cut off: far below what noise does
+constexpr double kSettled = 1e-9;          // change of the unit vector L and of log m between reweightings
 constexpr int kFirstRoundIterations = 30;  // fits that explain their contours need 3, at most 20; others creep along a valley
 
 /// The maxima follow the light before every evaluation.
@@ -300,8 +300,7 @@ Attempt RadianceProblem::solveFrom(const State& start) {
     a.iterations += solution.iterations;
     if (!solution.usable || !a.state.isFinite()) return a;
     const double change = (a.state.place() - before).norm();
-    a.converged = solution.converged || solution.cost <= kExactPx * kExactPx * double(points_.size()) ||
-                  change < kNearlySettled;
+    a.converged = solution.converged || solution.cost <= kExactPx * kExactPx * double(points_.size()) || change < kNearlySettled;
     if (a.converged && change < kSettled) break;
     if (round == 0 && !a.converged && a.iterations == kFirstRoundIterations) {
       if (!judge(a)) return Attempt{};

@@ -20,7 +20,7 @@ constexpr int kAxisScreenPoints = 16, kAxisScreenIterations = 20;
 constexpr std::size_t kPromisingAxes = 3;
 constexpr int kLeftOutPoints = 24;  // a view: enough to compare two models
 constexpr double kSamePlace =
-    1e-2;  // of a unit vector L, log m and the half axis over the distance: far less than a basin is wide
+    1e-2;                       // of a unit vector L, log m and the half axis over the distance: far less than a basin is wide
 constexpr double kProbe = 0.4;  // of the lobe's width, as angles of the light: a length that would show little
 constexpr double kStartLength = 0.1;  // half the lamp's length over its distance
 // Where a lamp's length takes a part of the width that is seen, the lobe is narrower than the contours; both are tried.
@@ -29,8 +29,8 @@ constexpr std::array<double, 2> kStartWidths{0.7, 0.35};
 struct Start {
   Lamp lamp;
   double roughness = 0;
-  double cost = 0;         ///< mean robust square per point after a short fit, px^2
-  lobe::State place;       ///< normalised
+  double cost = 0;    ///< mean robust square per point after a short fit, px^2
+  lobe::State place;  ///< normalised
 
   /// Both lead to the same minimum; a half axis has no sense.
   bool isNear(const Start& other) const {
@@ -82,7 +82,8 @@ std::vector<Start> screened(Lobe lobe, const std::vector<RadianceView>& views, c
   lobe::RadianceProblem problem(lobe, views, *std::move(gathered), options);
   lobe::State from = problem.start(light, 1);
   Eigen::Vector4d& centre = from.lamp.centre;
-  if (!(centre.w() > 0)) centre.w() = 0.3 * centre.head<3>().norm();  // at infinity a length has no meaning: some camera distances away
+  if (!(centre.w() > 0))
+    centre.w() = 0.3 * centre.head<3>().norm();  // at infinity a length has no meaning: some camera distances away
   centre.normalize();
   const Eigen::Vector3d towards = centre.head<3>().normalized();
   const double distance = centre.head<3>().norm() / centre.w();

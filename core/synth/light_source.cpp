@@ -62,7 +62,8 @@ std::vector<LightSample> samplesOf(const PointShape<>&, const Eigen::Vector3d& c
   return {{offset.normalized(), 1 / offset.squaredNorm(), centre}};
 }
 
-std::vector<LightSample> samplesOf(const SegmentShape<>& tube, const Eigen::Vector3d& middle, const Eigen::Vector3d& point, double) {
+std::vector<LightSample> samplesOf(const SegmentShape<>& tube, const Eigen::Vector3d& middle, const Eigen::Vector3d& point,
+                                   double) {
   const double radius = tube.radius;
   const std::array<Eigen::Vector3d, 2> ends{middle - tube.halfAxis, middle + tube.halfAxis};
   static const std::vector<QuadratureNode> along = gaussLegendre(kAlong), across = gaussLegendre(kAcross);

@@ -67,7 +67,8 @@ TEST(Framings, TheMirrorHoldsTheEllipsoidWhereItIsDrawn) {
   input.surfaceKey = inspection->surfaces->keyOf(1);
   input.surface = *inspection->surfaces->surfaceOf(1, {});
   input.scale = sceneScale(*inspection, input.surface.get(), {0, 1, 2, 3}, 1);
-  const Eigen::Vector3d end = inspection->scene->lights[0].lamp.position() + 1.1 * Eigen::Vector3d(0.25, 0, 0);  // of its longest axis
+  const Eigen::Vector3d end =
+      inspection->scene->lights[0].lamp.position() + 1.1 * Eigen::Vector3d(0.25, 0, 0);  // of its longest axis
   for (const bool drawn : {false, true}) {
     const std::optional<Framing> framing = highlightFraming(input, 0, HighlightLook::Mirror, {false, drawn});
     ASSERT_TRUE(framing);

@@ -39,7 +39,8 @@ void addBody(LayerContent& content, const Lamp& lamp, const Colour& colour, doub
 std::string sizeText(const Lamp& lamp) {
   std::string text;
   for (const LampFact& fact : factsOf(lamp))
-    text += fact.value.size() == 1 ? line(fact.name.c_str(), fact.value(0), "m") : line(fact.name.c_str(), Eigen::Vector3d(fact.value), "m");
+    text += fact.value.size() == 1 ? line(fact.name.c_str(), fact.value(0), "m")
+                                   : line(fact.name.c_str(), Eigen::Vector3d(fact.value), "m");
   return text;
 }
 
@@ -149,7 +150,8 @@ LayerContent trueLightLayer(const LayerInput& in) {
     info.layer = "true-light";
     info.light = light.id;
     const Lamp& lamp = light.lamp;
-    info.text = line("true light (not used by the method)", light.id) + (lamp.isPoint() ? line("radius", 0.0, "m") : sizeText(lamp));
+    info.text =
+        line("true light (not used by the method)", light.id) + (lamp.isPoint() ? line("radius", 0.0, "m") : sizeText(lamp));
     const std::string label = "truth: " + lightName(light.id);
     if (lamp.atInfinity()) {
       info.text += line("direction", Eigen::Vector3d(lamp.centre.head<3>()));

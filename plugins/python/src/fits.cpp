@@ -27,10 +27,7 @@ void declareLobe(py::class_<ModelFit>& fit) {
           },
           "m of the lobe, or None.")
       .def_property_readonly(
-          "light_radius",
-          [](const ModelFit& f) {
-            return f.lamp() ? std::optional(radiusOf(*f.lamp())) : std::nullopt;
-          },
+          "light_radius", [](const ModelFit& f) { return f.lamp() ? std::optional(radiusOf(*f.lamp())) : std::nullopt; },
           "Of a spherical lamp, world units; 0 for a point or a tube; or None of models without a lobe.")
       .def_property_readonly(
           "light_segment",

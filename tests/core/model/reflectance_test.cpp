@@ -229,8 +229,8 @@ TEST(Reflectance, HighlightsThatNobodySeesAreNamed) {
 
 // The peak lies beyond the border, a part of the highlight inside: the level is that of the true peak.
 TEST(Reflectance, HighlightsWithTheirPeakBeyondTheBorderKeepTheirShape) {
-  RadianceScene s =
-      radianceScene(Synthetic{plane(), {lookAt({0, -1.5, 1.5}, {0, 0, 0})}, trueLampAt({1.5, 0.9, 1.2}), 0.1, {}}, Lobe::Ggx, 0.15);
+  RadianceScene s = radianceScene(Synthetic{plane(), {lookAt({0, -1.5, 1.5}, {0, 0, 0})}, trueLampAt({1.5, 0.9, 1.2}), 0.1, {}},
+                                  Lobe::Ggx, 0.15);
   ExactOptions options;
   options.marginPx = 300;
   const auto truth = exactHighlights(*s.surface, s.geometry.cameras[0], s.geometry.light, s.material, options);

@@ -109,7 +109,8 @@ TEST(FitNear, TheModelSearchesWhereTheStartLeadsNowhere) {
   input.near = std::make_shared<const ModelFit>(behind);
   const Outcome<ModelFit> fit = modelByName("reflectance").fit(input, {});
   ASSERT_TRUE(fit) << fit.failure().message();
-  EXPECT_LT((fit->lightEstimate->position() - scene.light.lamp.position()).norm(), kRecovered * scene.light.lamp.position().norm());
+  EXPECT_LT((fit->lightEstimate->position() - scene.light.lamp.position()).norm(),
+            kRecovered * scene.light.lamp.position().norm());
   EXPECT_NEAR(fit->as<ReflectanceFit>()->roughness, kNearRoughness, kRecovered * kNearRoughness);
 }
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/reflectance/lamp.h"
 
-#include <Eigen/Geometry>
 #include <ceres/jet.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 
 #include "core/reflectance/light_radiance.h"
@@ -140,7 +140,9 @@ TEST(Lamp, SaysItselfInFilesWordsAndLines) {
     EXPECT_EQ(facts, r.facts) << r.name;
     EXPECT_EQ(outlineOf(r.lamp).size(), r.chains) << r.name;
     EXPECT_NEAR(reachOf(r.lamp.shape), r.reach, 1e-15) << r.name;
-    EXPECT_EQ(std::size_t(unknownCount(r.lamp.shape)), r.name == std::string("segment") ? 3 : r.name == std::string("sphere") ? 1 : 0);
+    EXPECT_EQ(std::size_t(unknownCount(r.lamp.shape)), r.name == std::string("segment")  ? 3
+                                                       : r.name == std::string("sphere") ? 1
+                                                                                         : 0);
   }
   // As typed: sums leave no round-off behind.
   EXPECT_EQ(fieldsOf(rows[0].lamp)[0].value, Eigen::RowVector3d(0.1, 0.2, 0.3));

@@ -24,7 +24,7 @@ RadianceScene longLamp(Synthetic geometry, double scale = 1) {
   geometry.light = {};
   geometry.light.id = "tube";
   geometry.light.lamp = segmentLamp(Eigen::Vector3d(scale * (kMiddle - kHalfLength * kAxis)),
-                            Eigen::Vector3d(scale * (kMiddle + kHalfLength * kAxis)));
+                                    Eigen::Vector3d(scale * (kMiddle + kHalfLength * kAxis)));
   geometry.light.lamp = withRadius(geometry.light.lamp, 0.015 * scale);
   return radianceScene(std::move(geometry), Lobe::TorranceSparrow, kSegmentRoughness);
 }
@@ -44,7 +44,8 @@ Found compared(const RadianceFit& fit, double scale = 1) {
 Light guess(double scale = 1) { return Light::at(scale * (1.1 * kMiddle + Eigen::Vector3d(0.08, 0.05, -0.1))); }
 
 Outcome<RadianceFit> search(const std::vector<RadianceView>& views, const Light& light) {
-  return searchRadiance(kMicrofacets, views, light, widthOf(Lobe::TorranceSparrow, 1.5 * kSegmentRoughness, 0.5), lampChoices("auto"));
+  return searchRadiance(kMicrofacets, views, light, widthOf(Lobe::TorranceSparrow, 1.5 * kSegmentRoughness, 0.5),
+                        lampChoices("auto"));
 }
 
 TEST(FitSegment, NominalLampOfSixtyCentimetres) {

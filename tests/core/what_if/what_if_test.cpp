@@ -103,7 +103,8 @@ TEST(WhatIf, SynthesisedContoursFollowTheLamp) {
   ASSERT_TRUE(fit.fit) << fit.fit.failure().message();
   EXPECT_LT((fit.fit->lightEstimate->position() - expected).norm(), kSameModel * expected.norm());
   EXPECT_NEAR(fit.fit->as<ReflectanceFit>()->roughness, 0.08, 0.08 * 0.01);
-  EXPECT_LT((result.scene->lights[0].lamp.position() - expected).norm(), kExactly) << "the picture shows the lamp where it was put";
+  EXPECT_LT((result.scene->lights[0].lamp.position() - expected).norm(), kExactly)
+      << "the picture shows the lamp where it was put";
 }
 
 TEST(WhatIf, SynthesisedContoursFollowTheCurvature) {
