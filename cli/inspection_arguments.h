@@ -34,8 +34,8 @@ struct InspectionArguments {
   InspectionRequest request() const;
   /// `--set` names this setting.
   bool sets(const std::string& key) const;
-  /// Reads the scene, and puts the frames of --exclude and the level of --level auto into the request: only the scene knows them. InputError;
-  /// CannotAnswer where no training frame shows a highlight to choose a level by.
+  /// Reads the scene, and puts the frames of --exclude and the level of --level auto into the request: only the scene knows them.
+  /// InputError; CannotAnswer where no training frame shows a highlight to choose a level by.
   /// @param levelReason  optional: why this level; "" where it was not chosen here
   std::shared_ptr<const Scene> scene(InspectionRequest& request, std::string* levelReason = nullptr) const;
 };

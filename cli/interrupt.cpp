@@ -59,8 +59,8 @@ void waitForSignals() {
   if (signal == SIGUSR1) return;
   State before = State::Working;
   if (!state.compare_exchange_strong(before, State::Stopping)) return;
-  // The work should notice within this time; where it cannot (inside a library), nothing of it is kept anyway. Together with the end
-  // of the process it stays below the 200 ms that are promised.
+  // The work should notice within this time; where it cannot (inside a library), nothing of it is kept anyway. Together with the
+  // end of the process it stays below the 200 ms that are promised.
   std::this_thread::sleep_for(std::chrono::milliseconds(100));
   removeUnfinishedWrites();
   sayStopped();

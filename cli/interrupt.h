@@ -4,8 +4,8 @@
 namespace glint::cli {
 
 /// While it lives, Ctrl-C and SIGTERM ask the work to stop (`interrupted`), and a thread ends the program with code 130 when
-/// the work has not stopped 100 ms later. Create it in main before any other thread. Before it lives, from the start of the process on,
-/// and after it a signal ends the process at once, with the same message and code.
+/// the work has not stopped 100 ms later. Create it in main before any other thread. Before it lives, from the start of the
+/// process on, and after it a signal ends the process at once, with the same message and code.
 class InterruptGuard {
  public:
   InterruptGuard();

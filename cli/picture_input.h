@@ -39,7 +39,7 @@ struct PictureInput {
 
 /// "1600x1000"; InputError (place --size) outside 64 .. 16384.
 std::pair<int, int> parseSize(const std::string& text);
-/// The first held-out frame, which shows what the models are worth; 0 when there is none.
+/// The first held-out frame, which shows what the models are worth; 0 without one.
 int firstHeldOut(const Inspection& inspection);
 
 }  // namespace glint::cli

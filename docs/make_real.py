@@ -340,7 +340,7 @@ Models that are fitted on pixels (`reflectance`) take the specular part as well 
 
 {models}
 Without the parted pixels the row *colours* would be nearly as poor as the others: contours alone would be right, and the lobe fitted to what the paint has changed. `lobe` takes the light of
-one smooth paint for background; blocks are none.
+one smooth paint for background; blocks have no smooth part.
 """
 
 

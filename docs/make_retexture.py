@@ -141,7 +141,7 @@ def strength_in(printed):
 
 def score(glint, folder, model, ids, peak):
     """Medians over held-out frames: PSNR of the composite, error of its highlight, its strength as a share of the true peak; PSNR without highlight,
-    of the frame as it is; what warnings say. Or why there is none."""
+    of the frame as it is; what warnings say. Or why the picture is missing."""
     session = folder / "shiny" / f"{model}.glint"
     fitted = run(glint, "reconstruct", folder / "shiny", "--model", model, "--train", TRAIN, "-o", session)
     if fitted.returncode:

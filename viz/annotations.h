@@ -50,9 +50,9 @@ class Annotations {
   void setBorder(Border border, const std::string& name);
   /// @param title  also the legend's title, which views side by side have in common.
   void setLegendVisible(bool visible, bool title = true);
-  /// Width and height of the legend from the upper left corner, window px; 0 where there is none.
+  /// Width and height of the legend from the upper left corner, window px; 0 without one.
   Eigen::Vector2d legendSize();
-  /// Height of what stands with the colour bar at the lower right, window px; 0 where there is none.
+  /// Height of what stands with the colour bar at the lower right, window px; 0 without any.
   double colourBarHeight();
   /// The legend lies over a photograph: it stands on a panel, which keeps it readable.
   void setOnPicture(bool on);

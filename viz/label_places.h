@@ -26,8 +26,8 @@ std::optional<Rectangle> placeForLabel(const Eigen::Vector2d& at, const Eigen::V
                                        double font, const std::vector<Rectangle>& taken, const std::vector<Rectangle>& glyphs,
                                        double clear = 0);
 
-/// In front of the tip of an arrow, as far from it at every zoom. Nothing where the arrow is seen from its end, or where that place is
-/// taken or out of the picture.
+/// In front of the tip of an arrow, as far from it at every zoom. Nothing where the arrow is seen from its end, or where that
+/// place is taken or out of the picture.
 /// @param arrow  px, from its tail to its tip.
 std::optional<Rectangle> placeAtTip(const Eigen::Vector2d& tip, const Eigen::Vector2d& arrow, const Eigen::Vector2d& size,
                                     const Eigen::Vector2d& picture, double font, const std::vector<Rectangle>& taken);

@@ -91,7 +91,7 @@ struct LayerInput {
   double glyphScale = 1;
   std::shared_ptr<const Surface> surface;  ///< of the selected frame; null when it has none
   std::string surfaceKey;
-  std::string surfaceProblem;  ///< why there is none
+  std::string surfaceProblem;  ///< why the surface is missing
   std::vector<int> frames;     ///< frames whose cameras are drawn: one per pose, those on this surface first
   bool dark = true;
   bool solo = false;  ///< only what belongs to the selected frame

@@ -34,8 +34,8 @@ class LitParts {
   LitParts& operator=(const LitParts&) = delete;
   /// Names are "layer" (all of it) or "layer/part"; none = nothing is lit.
   void light(const std::set<std::string>& names, const Colour& colour);
-  /// A plane that touches something, seen from `apex`: a strip from there over the place of touch, and the line between. The normal is
-  /// of unit length; `halfWidth` (m) is that of the strip at the place of touch.
+  /// A plane that touches something, seen from `apex`: a strip from there over the place of touch, and the line between. The
+  /// normal is of unit length; `halfWidth` (m) is that of the strip at the place of touch.
   void lightPlane(const Eigen::Vector3d& apex, const Eigen::Vector3d& touch, const Eigen::Vector3d& normal, double halfWidth,
                   const Colour& colour);
   void clearPlane();

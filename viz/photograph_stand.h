@@ -13,8 +13,8 @@ class vtkRenderer;
 
 namespace glint::viz {
 
-/// The picture that a renderer draws while it looks through a camera, and where the camera's photograph lies in it: enlarged and moved by
-/// the user, over the 3D picture. Display coordinates are window px, y up.
+/// The picture that a renderer draws while it looks through a camera, and where the camera's photograph lies in it: enlarged and
+/// moved by the user, over the 3D picture. Display coordinates are window px, y up.
 class PhotographStand {
  public:
   explicit PhotographStand(vtkRenderer* renderer) : renderer_(renderer), overlay_(renderer) {}

@@ -245,7 +245,7 @@ Image ladderPicture(const Inspection& inspection, int frame, const Outcome<Image
     canvas.text({0.8 * font, 4 * font}, "no models computed", font, theme.problem);
     return canvas.image();
   }
-  // What stands below a tile: the numbers in one line, or the whole reason why there are none.
+  // What stands below a tile: the numbers in one line, or the whole reason why they are missing.
   struct Below {
     std::string numbers, reason;
   };

@@ -18,7 +18,7 @@ constexpr double kWorstShownPct = 1000;  // ten times the highlight's size: a mo
 }
 
 namespace {
-/// The evidence of a frame with all its lights; null where there is none yet.
+/// The evidence of a frame with all its lights; null before it exists.
 const FrameEvidence* asFound(const Inspection* inspection, std::size_t frame) {
   if (!inspection || frame >= inspection->evidence.size()) return nullptr;
   const auto before = inspection->evidenceBefore.find(static_cast<int>(frame));

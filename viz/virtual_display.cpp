@@ -26,7 +26,7 @@ using Clock = std::chrono::steady_clock;
 constexpr std::chrono::seconds kStartLimit{20};
 constexpr std::chrono::seconds kStopLimit{5};
 
-/// Full path of a program in PATH; "" when there is none.
+/// Full path of a program in PATH; "" if it is not installed.
 std::string findProgram(const char* name) {
   const char* path = std::getenv("PATH");
   std::istringstream folders(path ? path : "/usr/bin:/bin");

@@ -25,8 +25,8 @@ void atomicWrite(const std::filesystem::path& file, const std::function<void(con
 /// Removes the temporary files of writes that are under way, for a program that ends at once (after Ctrl-C).
 void removeUnfinishedWrites();
 
-/// A file's bytes. InputError when it is missing, no regular file (a folder, a device), beyond the limit (in megabytes), or cannot be
-/// read.
+/// A file's bytes. InputError when it is missing, no regular file (a folder, a device), beyond the limit (in megabytes), or
+/// cannot be read.
 std::string readFile(const std::filesystem::path& file, std::optional<Limit> limit = std::nullopt);
 
 }  // namespace glint

@@ -105,7 +105,7 @@ void moveOne(const OpenFolder& from, const OpenFolder& to, const fs::path& name,
   forgetExpected(given / name);
 }
 
-/// The folder of this name, to move files into it. Nothing where there is none. A link that somebody put there would lead them out.
+/// The folder of this name, to move files into it. Nothing if it is missing, or a link, which would lead them out.
 std::optional<OpenFolder> folderIn(const OpenFolder& folder, const fs::path& name, const fs::path& given) {
   std::error_code ignored;  // what cannot be asked about fails later
   std::optional<OpenFolder> found = folder.below(name);
@@ -114,7 +114,7 @@ std::optional<OpenFolder> folderIn(const OpenFolder& folder, const fs::path& nam
   return found;
 }
 
-/// Moves what `from` holds into `to`: a folder as a whole where there is none yet, else file by file.
+/// Moves what `from` holds into `to`: a folder as a whole where `to` lacks it, else file by file.
 void moveInto(const OpenFolder& from, const OpenFolder& to, const fs::path& given, const std::string& last) {
   std::vector<fs::path> names;
   for (const fs::directory_entry& entry : fs::directory_iterator(from.path())) names.push_back(entry.path().filename());
@@ -129,7 +129,7 @@ void moveInto(const OpenFolder& from, const OpenFolder& to, const fs::path& give
   }
 }
 
-/// Moves the file by which the answer is found, where there is none yet: it comes first.
+/// Moves the file by which the answer is found first, where it does not exist yet.
 void moveNewMain(const OpenFolder& from, const OpenFolder& to, const fs::path& main, const fs::path& given) {
   std::error_code error;  // what cannot be asked about fails later
   const fs::path above = main.parent_path();

@@ -10,8 +10,8 @@
 
 namespace glint {
 
-/// Text of a cell that no spreadsheet takes for a formula: one that begins like a formula gets an apostrophe before it. Names come from
-/// files of others, and a formula in a table can read other cells and start programs. Numbers stay as they are.
+/// Text of a cell that no spreadsheet takes for a formula: one that begins like a formula gets an apostrophe before it. Names
+/// come from files of others, and a formula in a table can read other cells and start programs. Numbers stay as they are.
 inline std::string withoutFormula(const std::string& text) {
   // The last four are = + - @ in full width, which spreadsheets take as well.
   constexpr std::array<std::string_view, 10> kBeginnings{

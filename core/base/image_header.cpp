@@ -59,7 +59,7 @@ ImageHeader jpegFrame(std::string_view bytes, ImageHeader h) {
     const std::optional<std::uint64_t> marker = in.number(at, 1);
     const std::optional<std::uint64_t> code = in.number(at + 1, 1);
     if (!marker || !code) return truncated(h);
-    // NumbersInBytes between segments, and any number of FF before a marker, are passed over as by every decoder.
+    // Every decoder skips bytes between segments, and any number of FF before a marker.
     if (*marker != 0xff || *code == 0xff || *code == 0) {
       ++at;
       continue;
@@ -130,8 +130,8 @@ std::optional<ExrFacts> exrFacts(std::string_view bytes) {
   return facts;
 }
 
-/// Whether every block that the offset table names lies inside the file. Only single-part scan-line files are checked (what cameras and
-/// renderers write for one image); the decoder judges the others.
+/// Whether every block that the offset table names lies inside the file. Only single-part scan-line files are checked (what
+/// cameras and renderers write for one image); the decoder judges the others.
 /// @see OpenEXR File Layout: offsets, blocks (y, size, data).
 bool exrBlocksLieInside(std::string_view bytes, std::uint64_t table) {
   const NumbersInBytes in(bytes, false);
@@ -198,8 +198,8 @@ struct TiffTags {
     }
   }
   static bool isSize(std::uint64_t tag) { return tag == 256 || tag == 257 || tag == 277 || tag == 322 || tag == 323; }
-  /// Raw files of cameras are TIFF as well: samples behind a mosaic of colours (or linear, of DNG), DNG's own tag, or a camera's small preview
-  /// before the pixels.
+  /// Raw files of cameras are TIFF as well: samples behind a mosaic of colours (or linear, of DNG), DNG's own tag, or a camera's
+  /// small preview before the pixels.
   bool isRaw() const {
     constexpr std::uint64_t kMosaic = 32803, kLinearRaw = 34892;
     return dng || colours == kMosaic || colours == kLinearRaw || (make && parts && reduced.value_or(0) % 2 == 1);

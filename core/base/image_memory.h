@@ -5,8 +5,8 @@
 
 namespace glint {
 
-// One budget for the pixels of all frames that are worked on at the same time (Limit::ImageMemory). A few megabytes of PNG may hold gigabytes of
-// pixels, and every thread works on a frame of its own.
+// One budget for the pixels of all frames that are worked on at the same time (Limit::ImageMemory). A few megabytes of PNG may
+// hold gigabytes of pixels, and every thread works on a frame of its own.
 
 /// Says before frames are decoded how large they are, in million pixels; the largest of this process counts.
 void expectImages(double megapixels);

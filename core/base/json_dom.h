@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Internal to core: the JSON library's document, in time proportional to the text. Its own parser looks through all keys of an object
-// for every new one, so that an object of 100,000 keys takes many seconds.
+// Internal to core: the JSON library's document, in time proportional to the text. Its own parser looks through all keys of an
+// object for every new one, so that an object of 100,000 keys takes many seconds.
 
 #include <cmath>
 #include <nlohmann/json.hpp>

@@ -12,8 +12,8 @@ namespace glint {
 struct SolverRun {
   std::string what;  ///< what was sought: "light with one limit angle", "ellipsoid"
   std::string unit;  ///< of the costs: "px^2", "squares of relative radiance"
-  /// Sums of squares after the loss: of the start, then after each step that was taken. A new round begins where the weights were renewed;
-  /// the costs of different rounds weigh the points differently and must not be compared.
+  /// Sums of squares after the loss: of the start, then after each step that was taken. A new round begins where the weights were
+  /// renewed; the costs of different rounds weigh the points differently and must not be compared.
   std::vector<std::vector<double>> rounds;
   bool converged = false;
   std::string ending;   ///< in words: "converged", "out of iterations", "the light lies behind the surface"
@@ -60,7 +60,7 @@ class TracedRun {
   int index_ = -1;
 };
 
-/// A round of the innermost run. Nothing where there is none.
+/// A round of the innermost run. Does nothing outside of a run.
 void traceRound(const std::vector<double>& costs);
 /// The answer came from this run, not from earlier ones of what was sought. Nothing for -1.
 void traceAnswer(int run);

@@ -150,8 +150,8 @@ TemporaryPath::TemporaryPath(OpenFolder folder, const fs::path& target, Kind kin
       if (kind == Kind::Folder) ::rmdir(path_.c_str());
       throw InputError(target.string(), "", std::string("cannot be written: ") + std::strerror(error));
     }
-    // Between its making and its lock another program may have taken it for one that was left. A file system without locks refuses them
-    // to others too.
+    // Between its making and its lock another program may have taken it for one that was left. A file system without locks
+    // refuses them to others too.
     struct stat now {};
     const bool taken = ::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
     if (taken || ::fstat(descriptor_, &now) != 0 || now.st_nlink == 0) {

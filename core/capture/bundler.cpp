@@ -49,8 +49,8 @@ struct BundlerImage {
 constexpr std::size_t kWord = 2;                                     // bytes, with what separates it
 constexpr std::size_t kCameraLines = 5, kInLine = 3, kEachView = 4;  // lines, and numbers in each; numbers of a measurement
 
-/// The words of the file. Programs break its lines differently; where the cameras stand in lines as Bundler writes them, a bad line does not
-/// touch what follows it.
+/// The words of the file. Programs break its lines differently; where the cameras stand in lines as Bundler writes them, a bad
+/// line does not touch what follows it.
 class BundlerWords {
  public:
   BundlerWords(std::string_view text, const std::string& file) : rows_(text, file), text_(text), file_(file) {}

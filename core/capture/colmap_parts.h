@@ -60,8 +60,8 @@ using EachPoint = std::function<void(const Eigen::Vector3d& point, const std::ve
 // In a text, a line that cannot be read is a warning; its camera, image or point is not there. InputError where nothing is left.
 
 std::vector<ModelCamera> readCameras(const Files& files, std::vector<std::string>& warnings);
-/// Poses and names; the 2D points are skipped. An image that is there twice, word for word, counts once. `warnings`: one line for each
-/// quaternion that was not of length 1.
+/// Poses and names; the 2D points are skipped. An image that is there twice, word for word, counts once. `warnings`: one line for
+/// each quaternion that was not of length 1.
 std::vector<ModelImage> readImages(const Files& files, std::string_view bytes, std::vector<std::string>& warnings);
 /// The 2D points of one image, in our pixels.
 std::vector<Pixel> pixelsOf(const Files& files, std::string_view bytes, const ModelImage& image);
@@ -91,7 +91,7 @@ struct CameraModel {
   int lensParameters;             ///< at the end
   int parameters() const { return focalLengths + 2 + lensParameters; }
 };
-/// InputError where there is none of this number or name, or it is not supported.
+/// InputError if the number or name is unknown, or not supported.
 const CameraModel& cameraModelOf(std::int64_t number, const std::string& file, const std::string& place);
 const CameraModel& cameraModelOf(std::string_view name, const std::string& file, const std::string& place);
 /// @param parameters  as many as the model has, in COLMAP's order
@@ -121,7 +121,7 @@ template <class Place>
 Pixel pixelAt(double x, double y, const std::string& file, const Place& place) {
   return {boundedAt(x, kFarthestPx, file, place) + kFromCorner, boundedAt(y, kFarthestPx, file, place) + kFromCorner};
 }
-/// A word as an identifier or an index, a whole number of 32 bits without a sign; nothing where it is none.
+/// A word as an identifier or an index, a whole number of 32 bits without a sign; nothing for any other word.
 std::optional<std::uint32_t> number32(std::string_view word);
 std::string byteNo(std::size_t byte);
 std::string lineNo(std::size_t line);

@@ -37,7 +37,7 @@ fs::path FileNames::smallerCopy(const fs::path& missing, const std::string& file
     const fs::path found =
         finder_.at(gone.parent_path() / smaller, missing.lexically_relative(gone).string(), FileFinder::Ending::AnyImage);
     if (found.empty()) continue;
-    smaller_ = "the photographs are those of the folder " + smaller + ": there are none in " + gone.filename().string();
+    smaller_ = "the photographs are those of the folder " + smaller + ": " + gone.filename().string() + " has no such files";
     return resolveInside(gone.parent_path(), found.lexically_relative(gone.parent_path()).string(), rights_, file, place);
   }
   return {};

@@ -10,8 +10,8 @@
 
 namespace glint::capture {
 
-/// Where the files are that a capture or a scene names: the one place for slashes, case, Unicode form and ending (FileFinder), for
-/// `--photographs`, and for what a file from others may name. One for each reading: it knows the folders that it has listed.
+/// Where the files are that a capture or a scene names: the one place for slashes, case, Unicode form and ending (FileFinder),
+/// for `--photographs`, and for what a file from others may name. One for each reading: it knows the folders that it has listed.
 class FileNames {
  public:
   /// @param photographs  folders in which images are looked for first

@@ -15,8 +15,8 @@
 namespace glint::capture {
 
 /// As sizeOfImage, for one image after the other. A PNG says its size in its first bytes, and those of a capture mostly say the
-/// same; a JPEG says it behind what its camera noted. Such images are not read whole, which for 2000 photographs would be a gigabyte
-/// from the disk. What is damaged further on, its decoder tells.
+/// same; a JPEG says it behind what its camera noted. Such images are not read whole, which for 2000 photographs would be a
+/// gigabyte from the disk. What is damaged further on, its decoder tells.
 class ImageSizes {
  public:
   std::array<int, 2> of(const std::filesystem::path& image, const std::string& file, const std::string& place) {
@@ -30,7 +30,7 @@ class ImageSizes {
   }
 
  private:
-  /// Its first bytes; "" where there are none.
+  /// Its first bytes; "" if it cannot be read.
   static std::string startOf(const std::filesystem::path& image) {
     std::error_code ignored;  // what cannot be asked about is not there; a pipe would make the program wait
     if (!std::filesystem::is_regular_file(image, ignored)) return "";

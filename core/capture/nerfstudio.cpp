@@ -234,7 +234,7 @@ std::array<int, 2> nerfSize(const NerfKeys& keys, const fs::path& image, capture
   return size;
 }
 
-/// Focal length along x or y from the angle that the whole image spans: size / 2 = f tan(angle / 2). Nothing where there is none.
+/// Focal length along x or y from the angle that the whole image spans: size / 2 = f tan(angle / 2). Nothing without such an angle.
 std::optional<double> nerfFocalOfAngle(const NerfKeys& keys, char axis, int sizePx) {
   std::optional<JsonNode> node = keys.find(std::string("camera_angle_") + axis);
   double unit = 1;
@@ -496,8 +496,8 @@ bool isNerfFile(const fs::path& file) {
   }
 }
 
-/// The files transforms*.json of a folder, the one to read first: transforms.json, else transforms_train.json, else by name. Those of the
-/// original NeRF data are parts of one capture.
+/// The files transforms*.json of a folder, the one to read first: transforms.json, else transforms_train.json, else by name.
+/// Those of the original NeRF data are parts of one capture.
 std::vector<fs::path> nerfFilesIn(const fs::path& folder) {
   std::vector<fs::path> files;
   std::error_code error;  // what cannot be listed holds none

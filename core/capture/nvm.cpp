@@ -59,7 +59,7 @@ NvmFixed nvmFixed(const Row& row, std::size_t word, const std::string& file) {
   return fixed;
 }
 
-/// The name of a camera's row, whose last `numbers` words are none of it. VisualSFM writes a quotation mark for each blank, other
+/// The name of a camera's row, without the row's last `numbers` words. VisualSFM writes a quotation mark for each blank, other
 /// programs write the blank itself; on Windows folders end with a backslash.
 std::string nvmName(const Row& row, std::size_t numbers) {
   const std::string_view first = row.words.front(), last = row.words[row.words.size() - numbers - 1];

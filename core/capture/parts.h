@@ -17,8 +17,8 @@ namespace glint::capture {
 /// Added to a coordinate whose origin is the corner of the first pixel (COLMAP, nerfstudio) gives ours, whose origin is its centre.
 inline constexpr double kFromCorner = -0.5;
 
-/// Rotation of a quaternion of any length but 0. A length that is off by more than 1e-3 was hardly meant as one: `warnings` says so.
-/// InputError where it is 0 or not finite.
+/// Rotation of a quaternion of any length but 0. A length that is off by more than 1e-3 was hardly meant as one: `warnings` says
+/// so. InputError where it is 0 or not finite.
 Eigen::Quaterniond unitQuaternion(double w, double x, double y, double z, const std::string& file, const std::string& place,
                                   std::vector<std::string>& warnings);
 
@@ -30,8 +30,8 @@ double bounded(double value, double most, const std::string& file, const std::st
 Camera cameraOf(int width, int height, double fx, double fy, double cx, double cy, const Lens& lens, const std::string& file,
                 const std::string& place);
 
-/// Width and height of an image file, without decoding it. InputError where it is missing or no image: programs whose files do not
-/// say the size need it ("the file does not say the size of its images; name their folder by --photographs").
+/// Width and height of an image file, without decoding it. InputError where it is missing or no image: programs whose files do
+/// not say the size need it ("the file does not say the size of its images; name their folder by --photographs").
 std::array<int, 2> sizeOfImage(const std::filesystem::path& image, const std::string& file, const std::string& place);
 
 /// The folders `models*` of the data set whose scene_camera.json this is, in the order of their names. They may be links.
@@ -90,8 +90,8 @@ inline constexpr const char* kNoFinitePose = "no finite pose (tracking was lost)
 inline constexpr const char* kCutPose = "has fewer numbers than a pose (a cut line?)";
 inline constexpr const char* kSaidBefore = "says the same as a line before";
 
-/// Whether a pose, or a part of it, is null, NaN or infinite (JsonNode reads all of them as null): programs write it where they have lost
-/// the camera.
+/// Whether a pose, or a part of it, is null, NaN or infinite (JsonNode reads all of them as null): programs write it where they
+/// have lost the camera.
 bool isLostPose(const JsonNode& pose);
 /// Whether a matrix has fewer than three rows, or one of them fewer than four numbers.
 bool isCutPose(const JsonNode& pose);

@@ -41,8 +41,8 @@ class CutPose : public InputError {
 /// The longest line in bytes: one with a camera has 600.
 inline constexpr std::size_t kLongestPoseLine = 65536;
 
-/// Reads poses one at a time, as soon as their line has ended: lines come from others, and may come live. Blank lines and comments
-/// (#) are passed over. Memory is bounded, whatever comes.
+/// Reads poses one at a time, as soon as their line has ended: lines come from others, and may come live. Blank lines and
+/// comments (#) are passed over. Memory is bounded, whatever comes.
 class PoseLineReader {
  public:
   /// @param in    outlives the reader
@@ -52,7 +52,7 @@ class PoseLineReader {
   /// The next pose; nothing at the end. After a throw about a line, the next call reads the line behind it.
   /// @throw LostPose    for a line that says that there is no pose
   /// @throw CutPose     for a line with fewer numbers than a pose, or of JSON that the end of the file cuts
-  /// @throw InputError  (name, "line 7" or "line 7: camera_from_world[0]") for a line that is none, is longer than kLongestPoseLine,
+  /// @throw InputError  (name, "line 7" or "line 7: camera_from_world[0]") for a line that states no pose, is longer than kLongestPoseLine,
   ///                    or whose pose is not rigid (core/geometry/pose_json.h); with the name alone where the file cannot be read
   std::optional<PoseLine> next();
 
@@ -80,8 +80,8 @@ class PoseLineReader {
   bool ended_ = false;
 };
 
-/// All poses of a file, in its order. Lines without a whole pose (LostPose, CutPose) and lines that say the same again are passed over, with a line in
-/// `warnings` for each kind.
+/// All poses of a file, in its order. Lines without a whole pose (LostPose, CutPose) and lines that say the same again are passed
+/// over, with a line in `warnings` for each kind.
 /// @throw InputError for the first line that is wrong, for two poses of one id, and where there is no pose at all
 std::vector<PoseLine> readPoseLines(const std::filesystem::path& file, std::vector<std::string>& warnings);
 

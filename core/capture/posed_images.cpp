@@ -42,7 +42,7 @@ bool looksLikeImageName(const fs::path& file) {
   return std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end();
 }
 
-/// Directly in the folder, by name. Hidden files are none: systems leave previews there ("._0001.jpg").
+/// Directly in the folder, by name. Hidden files do not count: systems leave previews there ("._0001.jpg").
 std::vector<fs::path> filesIn(const fs::path& folder, bool (*isOne)(const fs::path&)) {
   std::vector<fs::path> files;
   std::error_code error;  // what cannot be listed holds none

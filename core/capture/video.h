@@ -27,8 +27,8 @@ struct VideoContent {
   int withoutTime = 0;          ///< pictures for which the video has no time: taken one period after the one before
 };
 
-/// Whether the first bytes are those of a container that is read here: MP4 and MOV, Matroska and WebM, AVI. Playlists, which name other
-/// files, are none. False where the file cannot be read.
+/// Whether the first bytes are those of a container that is read here: MP4 and MOV, Matroska and WebM, AVI. Playlists do not
+/// count, because they name other files. False if the file cannot be read.
 bool looksLikeVideo(const std::filesystem::path& file);
 
 /// Goes through all pictures, without converting them. InputError: no video (looksLikeVideo), nothing decodes, more than kMostPictures,

@@ -27,8 +27,8 @@ fs::path folderOf(const link_map& library) {
   return known ? folder.data() : "";
 }
 
-/// Beside the library that this code is part of. A test program that holds the code itself has it in lib, beside its own folder. Nowhere
-/// else: a file of that name may be of another version.
+/// Beside the library that this code is part of. A test program that holds the code itself has it in lib, beside its own folder.
+/// Nowhere else: a file of that name may be of another version.
 fs::path codecLibrary() {
   Dl_info here{};
   link_map* library = nullptr;

@@ -18,15 +18,15 @@ namespace glint {
 /// @throws std::runtime_error  damaged data
 std::optional<cv::Mat> decodeTiff(const std::string& bytes, std::string& reason);
 
-/// EXR files whose channels all belong to layers: the one layer with R, G and B (the one named Combined, where there are several), else the
-/// one channel that is depth (Z or V) or luminance (Y).
+/// EXR files whose channels all belong to layers: the one layer with R, G and B (the one named Combined, where there are
+/// several), else the one channel that is depth (Z or V) or luminance (Y).
 /// @param reason  as above
 /// @return floats of the first part, blue first, 1 or 3 channels; nothing: a file for OpenCV
 /// @throws std::exception  damaged data
 std::optional<cv::Mat> decodeExrLayer(const std::string& bytes, std::string& reason);
 
 /// The channel of depth of an EXR file: Z or V without a layer, else the one of a layer (the one named Depth, where there are several).
-/// @param reason  takes why there is none; the picture is then empty. @throws std::exception  damaged data
+/// @param reason  says why the picture is empty. @throws std::exception  damaged data
 cv::Mat depthOfExr(const std::string& bytes, std::string& reason);
 
 }  // namespace glint

@@ -122,7 +122,7 @@ class Candidates {
     for (const std::string& lobe : lobes) setOther("fit.lobe", lobe, "another lobe");
   }
 
-  /// Its fits have a lobe, or there is none to tell and it reconstructs no ellipsoid.
+  /// Its fits have a lobe; without fits, it reconstructs no ellipsoid.
   bool mayHaveLobe() const {
     const auto result = r_.models.find(model_.id());
     if (result != r_.models.end())

@@ -68,25 +68,25 @@ struct Diagnosis {
   bool complete = false;               ///< everything was tried that was to be
   int tried = 0, known = 0;            ///< changes that were run for this, and that could have been
 };
-/// Makes the advice for another present model from what was measured: at once. A remedy beats the present state, and with more than another model
-/// also every model as it is, beyond chance (isBetter).
+/// Makes the advice for another present model from what was measured: at once. A remedy beats the present state, and with more
+/// than another model also every model as it is, beyond chance (isBetter).
 /// @param present  "" or one that was not measured = as before, at first the best one
 void adviseFor(Diagnosis& diagnosis, const std::string& present);
 inline constexpr std::size_t kMostRemedies = 3;
 
 struct DiagnoseOptions {
   std::string present;  ///< the model on screen; "" or one that was not computed = the best of those that were
-  /// Settings, training frames and exclusions that are measured on the best model, and a third of that on each other one whose error is at most five
-  /// times as large: the bound of the work.
+  /// Settings, training frames and exclusions that are measured on the best model, and a third of that on each other one whose
+  /// error is at most five times as large: the bound of the work.
   int mostTried = 6;
   bool askAuto = true;  ///< whether the automatic choice is made, too, and compared: a note; takes longest
   /// Called with the diagnosis as far as it is: at once with what the computed models tell, then whenever something was measured.
   std::function<void(const Diagnosis&)> soFar;
 };
 
-/// Compares the computed models, then measures others and what helps the best of them, each by a run of its own with everything that the user
-/// would see (inspect()). A remedy that was chosen by what held-out frames show makes them less independent: `evaluate` on other frames judges it.
-/// Progress counts the trials. Stopped.
+/// Compares the computed models, then measures others and what helps the best of them, each by a run of its own with everything
+/// that the user would see (inspect()). A remedy that was chosen by what held-out frames show makes them less independent:
+/// `evaluate` on other frames judges it. Progress counts the trials. Stopped.
 /// @param inspection  complete
 Diagnosis diagnose(const Inspection& inspection, const DiagnoseOptions& options = {}, const ProgressFn& progress = {});
 

@@ -29,7 +29,7 @@ std::vector<TrainingView> viewsOf(const Inspection& inspection, const FitKey& ke
   return views;
 }
 
-/// The common light; where there is none, that of the peaks alone, so that a bundle that fails can be explained.
+/// The common light; if its bundle failed, the light of the peaks alone, so that the failure can be explained.
 Outcome<LightEstimate> lightAnyway(const Inspection& inspection, const FitKey& key) {
   const auto known = inspection.lights.find(key);
   if (known != inspection.lights.end() && known->second) return known->second;

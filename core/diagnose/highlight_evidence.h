@@ -25,12 +25,12 @@ struct HighlightEvidence {
   double weight = 0;                 ///< how much it stands against it: 0 = not at all, 1 = clearly
 };
 
-/// Highlights of the training frames, in the order of Inspection::views. A fit that failed is made again with fit.most_residual at its largest, so
-/// that it shows what it leaves.
+/// Highlights of the training frames, in the order of Inspection::views. A fit that failed is made again with fit.most_residual
+/// at its largest, so that it shows what it leaves.
 /// @param inspection  with evidence, views, and the lights if the model needs one
 std::vector<HighlightEvidence> highlightEvidence(const Inspection& inspection, const HighlightModel& model);
 
-/// Two highlights of one light whose limit angles lie so far apart that one limit angle cannot fit both; null where there are none.
+/// Two highlights of one light whose limit angles lie so far apart that one limit angle cannot fit both; null without such a pair.
 struct LimitConflict {
   const HighlightEvidence* wide = nullptr;
   const HighlightEvidence* narrow = nullptr;

@@ -27,8 +27,8 @@ bool isOutside(const Camera& camera, const Polyline& contour) {
   return 2 * inside < static_cast<long>(contour.points.size());
 }
 
-/// What hides the lamp from the middle of the contour on the surface, or how flat it is seen; "" where neither does, or where that misses the
-/// surface. A brightest point would not do: `primal` predicts outlines that no point of the surface made.
+/// What hides the lamp from the middle of the contour on the surface, or how flat it is seen; "" where neither does, or where
+/// that misses the surface. A brightest point would not do: `primal` predicts outlines that no point of the surface made.
 std::string geometryAgainst(const Inspection& inspection, const FrameComparison& c, const PredictedHighlight& h) {
   const Camera& camera = inspection.scene->frames[std::size_t(c.frame)].camera;
   const Eigen::Vector3d eye = camera.centreInWorld();

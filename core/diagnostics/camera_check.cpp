@@ -192,8 +192,8 @@ class Check {
     return sum;
   }
 
-  /// Views whose highlight is that of the lamp; every second one of them, from the first or second one on, is a half. A single frame may show
-  /// something else.
+  /// Views whose highlight is that of the lamp; every second one of them, from the first or second one on, is a half. A single
+  /// frame may show something else.
   static std::vector<int> agreeing(const SharedLamp& lamp, int first = 0, int step = 1) {
     constexpr double kOther = 3;  // times the miss of three quarters of the views
     std::vector<int> list, chosen;

@@ -53,8 +53,8 @@ double widestAngle(const std::vector<Eigen::Vector3d>& directions);
 /// @see Leinster and Cobbold, Measuring diversity: the importance of species similarity, Ecology 2012.
 double effectiveNumber(const std::vector<Eigen::Vector3d>& directions, double independent);
 
-/// What ModelFit::residualPx of a fit measures: "from the observed contour to the outline, one way, RMS". It is another number than the
-/// contour error of the same frame, which goes both ways: a contour may lie along an outline that runs far beyond it.
+/// What ModelFit::residualPx of a fit measures: "from the observed contour to the outline, one way, RMS". It is another number
+/// than the contour error of the same frame, which goes both ways: a contour may lie along an outline that runs far beyond it.
 std::string residualMeaning(const ModelFit& fit);
 /// Of LightEstimate::rmsPx.
 std::string residualMeaning(const LightEstimate& light);

@@ -44,9 +44,9 @@ constexpr std::array<RowColumn, kRowValues> kColumns{{
     {"radiance", "Radiance", "radiance at the observed peak",
      "Fitted radiance at the observed peak, background removed, in the units of the image. None where the peak is unknown", 4, 0},
     {"incident", "Incident \u00b0", "incident angle at the brightest point (\u00b0)",
-     "Angle between the normal and the view ray at the brightest point: of the prediction; where there is none, of the observed "
+     "Angle between the normal and the view ray at the brightest point of the prediction; without a prediction, at the observed "
      "peak of "
-     "a training frame. None of a model that does not look at the surface",
+     "a training frame. Models that do not look at the surface have no such angle",
      2, 0},
     {"limit", "Limit \u00b0", "limit angle of the prediction (\u00b0)",
      "Limit angle of the predicted contour: median over its directions, else that of the fit", 3, 0},

@@ -77,7 +77,7 @@ struct HighlightRow {
   RowRole role = RowRole::HeldOut;
   RowStatus status = RowStatus::NotCompared;
   std::string reason;                     ///< why there is no error; "" where there is one
-  std::array<double, kRowValues> values;  ///< finite, or NaN where there is none
+  std::array<double, kRowValues> values;  ///< finite, or NaN without a value
   double value(RowValue which) const { return values[std::size_t(which)]; }
 };
 

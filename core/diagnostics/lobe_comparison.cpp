@@ -191,7 +191,7 @@ std::vector<Polyline> lobeContours(const LobeGrid& grid, const LobeMatch& match,
     for (int x = 0; x < grid.width; ++x)
       if (const std::optional<LobePixel>& place = at(x, y))
         share.at(x, y) = float(std::exp(logOfLobe(match.lobe, match.m, *place) - match.logUnit) + match.offsetPct / 100);
-  // Beside a cell that is none, the contour is the border of what is known, not of the highlight.
+  // Beside an empty cell the contour is the border of what is known, not of the highlight.
   const auto known = [&](const Pixel& p) {
     for (int y = int(std::floor(p.y())); y <= int(std::ceil(p.y())); ++y)
       for (int x = int(std::floor(p.x())); x <= int(std::ceil(p.x())); ++x)

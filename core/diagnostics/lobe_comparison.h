@@ -10,8 +10,8 @@
 
 namespace glint {
 
-/// The pixels of one highlight under one lobe: I = height S(m) + offset, S the lobe's radiance from a point light at each pixel's own
-/// directions and distance. The offset is what the fit of the background took of the lobe's tail.
+/// The pixels of one highlight under one lobe: I = height S(m) + offset, S the lobe's radiance from a point light at each pixel's
+/// own directions and distance. The offset is what the fit of the background took of the lobe's tail.
 struct LobeMatch {
   Lobe lobe = Lobe::TorranceSparrow;
   double m = 0;                         ///< roughness
@@ -44,8 +44,8 @@ inline constexpr int kMostLobePixels =
 /// @return  TooFewPoints below 24 pixels; NotConverged where no lobe fits.
 Outcome<LobeComparison> compareLobes(const LobeSamples& samples);
 
-/// Where the radiance of a match is a fraction `level` of the best lobe's peak: the curve of `profile` against the same level, in the
-/// photograph. In pieces, where the grid of the samples ends or the surface does.
+/// Where the radiance of a match is a fraction `level` of the best lobe's peak: the curve of `profile` against the same level, in
+/// the photograph. In pieces, where the grid of the samples ends or the surface does.
 /// @return  stored px; empty where the match failed or does not reach the level.
 std::vector<Polyline> lobeContours(const LobeGrid& grid, const LobeMatch& match, double level);
 

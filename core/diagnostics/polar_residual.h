@@ -54,7 +54,7 @@ struct AngleByDirection {
 };
 
 /// The light that a model's fit of this light and frame predicts with: its own, the one estimated for all models, or its
-/// ellipsoid's centre. NoLight when there is none of them.
+/// ellipsoid's centre. NoLight without any of them.
 Outcome<Light> lightOfModel(const Inspection& inspection, int frame, const std::string& model, const std::string& light);
 
 /// The surface that a frame's computations used, a corrected depth map included. It may have to be read, which takes its time.

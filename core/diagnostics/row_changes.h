@@ -8,9 +8,9 @@
 
 namespace glint {
 
-/// The row of `before` that is about the same highlight under the same model as each row of `after`: its place, or -1. Observed highlights are the
-/// same where their peaks are, or where they are the only ones of their light left in their frame, or else by greatest overlap. What is spurious has
-/// no counterpart.
+/// The row of `before` that is about the same highlight under the same model as each row of `after`: its place, or -1. Observed
+/// highlights are the same where their peaks are, or where they are the only ones of their light left in their frame, or else by
+/// greatest overlap. What is spurious has no counterpart.
 /// @param before, after  highlightRows() of two evaluations of one scene; their evidence may differ
 std::vector<int> counterparts(const Inspection& before, const std::vector<HighlightRow>& rowsBefore, const Inspection& after,
                               const std::vector<HighlightRow>& rowsAfter);

@@ -16,8 +16,8 @@ struct SharedLamp {
   double miss = 0;             ///< that of three quarters of the views is not more
 };
 
-/// The lamp that is passed best, sought among the places where two rays of different views come nearest to each other, and the directions of
-/// single rays. A view may show other lamps, too, or a highlight twice.
+/// The lamp that is passed best, sought among the places where two rays of different views come nearest to each other, and the
+/// directions of single rays. A view may show other lamps, too, or a highlight twice.
 /// @param views  the mirrored rays of each view's highlights; a view may have none
 /// @return nothing where fewer than two views have a ray
 std::optional<SharedLamp> sharedLamp(const std::vector<std::vector<ReflectedRay>>& views);

@@ -11,7 +11,7 @@ namespace glint::draw {
 /// Contours live in ideal pixels; the photograph on screen is the distorted one.
 std::vector<Pixel> toPhotograph(const Camera& camera, const std::vector<Pixel>& ideal);
 
-/// Ideal pixel from which Selection::direction is measured: centroid of the observed contour, its peak where there is none.
+/// Ideal pixel from which Selection::direction is measured: centroid of the observed contour, its peak without a contour.
 /// Nothing when the frame has no such highlight.
 std::optional<Pixel> directionOrigin(const Inspection& inspection, int frame, int highlight);
 

@@ -111,8 +111,8 @@ struct OverlayOptions {
 /// their 95 % bands, ellipses (dashed), brightest points (circles), arrows from observed to predicted contour every 10 degrees,
 /// and the walks of the limit angles (to the end on S, dotted on to the end on T). Empty lines and marks for a frame without
 /// evidence; the captions then say why. What has no partner looks unlike the rest: an observed highlight that the selected model
-/// misses (any drawn one, where none is selected) is dashed with a crossed square at its peak; a spurious prediction has dashes and dots and
-/// a triangle at its middle; one that a filter took out is thin and dotted.
+/// misses (any drawn one, where none is selected) is dashed with a crossed square at its peak; a spurious prediction has dashes
+/// and dots and a triangle at its middle; one that a filter took out is thin and dotted.
 /// @param frame  index into scene->frames; std::invalid_argument when it does not exist.
 FrameOverlay frameOverlay(const Inspection& inspection, int frame, const OverlayOptions& options = {});
 

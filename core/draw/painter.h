@@ -20,8 +20,8 @@ enum class Dash { Solid, Dashed, Dotted, DashDotted };
 enum class Align { Left, Centre, Right };
 
 /// What charts and overlays are painted with, whatever takes the strokes: pixels in memory (viz/canvas.h), a file that scales
-/// (core/draw/svg_painter.h) or the screen (gui/base/qt_painter.h). Coordinates are px, (0, 0) is the top left corner and y points
-/// down. What is painted later lies on top.
+/// (core/draw/svg_painter.h) or the screen (gui/base/qt_painter.h). Coordinates are px, (0, 0) is the top left corner and y
+/// points down. What is painted later lies on top.
 class Painter {
  public:
   virtual ~Painter() = default;

@@ -60,7 +60,7 @@ PlotData lobePlot(const FrameSamples& samples, int highlight);
 /// Radiance over its peak against alpha: means and spread of the pixels of one highlight, and every lobe fitted to them, with roughness
 /// and residual. @param highlight  -1 = the first.
 PlotData lobesPlot(const FrameSamples& samples, int highlight);
-/// The samples of one highlight; -1 = the first; null where there are none.
+/// The samples of one highlight; -1 = the first; null without samples.
 const FrameSamples::Lobe* lobeOfHighlight(const FrameSamples& samples, int highlight);
 /// Semi-axes of every model's ellipsoid, longest first, with one standard deviation where the fit tells one.
 PlotData semiAxesPlot(const Inspection& inspection);

@@ -26,8 +26,8 @@ struct ScatterOptions {
   std::set<RowKey> brushed{};  ///< empty = none: else the others are grey
 };
 
-/// Two numbers of every highlight, one dot each. What lacks one of them is no dot: the plot's remarks count it in words, and its row of CSV has no
-/// value.
+/// Two numbers of every highlight, one dot each. What lacks one of them is no dot: the plot's remarks count it in words, and its
+/// row of CSV has no value.
 struct ScatterPlot {
   PlotData plot;
   std::vector<std::vector<int>> rows;         ///< of each series: the row of each of its points

@@ -15,8 +15,8 @@ namespace glint::draw {
 
 /// Whether a predicted highlight of a comparison is spurious. What lies outside of the image or where a person ignores a highlight is not.
 bool isSpurious(const FrameComparison& comparison, int predicted);
-/// Which of the models miss an observed highlight, from simple to rich. A model that predicts nothing anywhere is left out: its fit
-/// says why.
+/// Which of the models miss an observed highlight, from simple to rich. A model that predicts nothing anywhere is left out: its
+/// fit says why.
 /// @param observed  index into FrameEvidence::scored()
 /// @param counts    whether a model is asked
 std::vector<std::string> missedBy(const Inspection& inspection, int frame, int observed,
@@ -36,7 +36,7 @@ struct FrameUnmatched {
 std::map<int, FrameUnmatched> unmatchedByFrame(const Inspection& inspection);
 /// The spurious highlight that is selected; null where nothing is, or where it is not spurious any more.
 const PredictedHighlight* selectedSpurious(const Inspection& inspection, const Selection& selection);
-/// The comparison of the selected model that a missed or spurious selection is a row of, and that row; nulls where there is none.
+/// The comparison of the selected model that a missed or spurious selection is a row of, and that row; nulls without one.
 struct UnmatchedRow {
   const FrameComparison* comparison = nullptr;
   const FrameComparison::Row* row = nullptr;

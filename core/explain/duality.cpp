@@ -27,7 +27,7 @@ Failure noEllipsoid(const Inspection& inspection, const std::string& model) {
     for (const ModelResult::Fit& f : found->second.fits) {
       if (!f.fit) return f.fit.failure();
       if (const EllipsoidFit* const quadric = f.fit->as<EllipsoidFit>())
-        return {Reason::NotAnEllipsoid, model + " has found a quadric that is none: " + describe(quadric->quadric)};
+        return {Reason::NotAnEllipsoid, model + " has found a quadric that is no ellipsoid: " + describe(quadric->quadric)};
     }
   return {Reason::NotAnEllipsoid, "no model here has one"};
 }

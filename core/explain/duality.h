@@ -10,8 +10,8 @@
 
 namespace glint {
 
-/// An ellipsoid as its cones see it, and the same as points of the dual space: why a fit is linear in Q* and not in Q. A photograph
-/// tells which planes touch the ellipsoid (pi^T Q* pi = 0, linear in Q*), not where they touch it.
+/// An ellipsoid as its cones see it, and the same as points of the dual space: why a fit is linear in Q* and not in Q. A
+/// photograph tells which planes touch the ellipsoid (pi^T Q* pi = 0, linear in Q*), not where they touch it.
 struct Duality {
   struct Touch {
     ConePlane cone;

@@ -30,7 +30,7 @@ struct Case {
   /// Whether a frame has the same light and models as this one: with a model for each surface, only where it sees the same
   /// surface.
   bool sharesModel(int frame) const;
-  /// The light that the contours of all these frames tell; null where there is none.
+  /// The light that the contours of all these frames tell; null without such a light.
   const LightEstimate* common() const;
   /// The light that the model has found for itself, where it is another one than that; else null.
   const Light* own() const;

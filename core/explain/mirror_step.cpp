@@ -60,8 +60,8 @@ double largestTurn(const TrainingView& v, const Surface& surface) {
 /// Size of the highlight in a direction, m.
 double lengthOf(const std::optional<std::array<End, 2>>& ends) { return ends ? (*ends)[0].out + (*ends)[1].out : 0; }
 
-/// What the camera sees within the highlight in two directions, by a flat mirror and by this one, and how far behind the mirror its
-/// image lies there: 1/d' = 1/d + 2 kappa cos(theta) / (1 - (e . V)^2), Coddington's equations for any tangent direction e.
+/// What the camera sees within the highlight in two directions, by a flat mirror and by this one, and how far behind the mirror
+/// its image lies there: 1/d' = 1/d + 2 kappa cos(theta) / (1 - (e . V)^2), Coddington's equations for any tangent direction e.
 void fieldsOfView(const Case& c, const Curvature& k, ExplainStep& step) {
   const TrainingView& v = *c.out.view;
   const Eigen::Vector3d toCamera = v.camera.centreInWorld() - v.seen->brightest.point.position, view = toCamera.normalized(),

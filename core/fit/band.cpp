@@ -24,8 +24,8 @@ constexpr double kLeastShare = 0.02;  // of the evidence: below, an alternative 
 // band still holds an input at the very end of its tolerance when noise comes on top: 1.96 sigma is then 1.24 d.
 constexpr double kToleranceShare = 0.2;
 
-/// Sizes of everything but the cameras' distances: a surface that is larger by `factor` about the origin, seen from the same cameras, looks
-/// as the given one does from cameras nearer to the origin by as much.
+/// Sizes of everything but the cameras' distances: a surface that is larger by `factor` about the origin, seen from the same
+/// cameras, looks as the given one does from cameras nearer to the origin by as much.
 CameraChange scaled(double factor) {
   return [factor](const Camera& c) {
     Camera moved = c;
@@ -52,8 +52,8 @@ Outcome<ModelFit> fitWith(const FitInput& input, const CameraChange& change, con
   return accepted(fitModel(model, std::move(views), light, settings), poor);
 }
 
-/// Mean square of the distances of the training contours' points from the contours that a fit predicts there, px^2: the same measure for
-/// every model. NaN where it predicts none.
+/// Mean square of the distances of the training contours' points from the contours that a fit predicts there, px^2: the same
+/// measure for every model. NaN where it predicts none.
 double meanSquare(const HighlightModel& model, const ModelFit& fit, const FitInput& input, const Settings& settings) {
   double sum = 0, count = 0;
   for (const TrainingView& v : input.views) {
@@ -101,8 +101,8 @@ FittedBand bandOf(const HighlightModel& model, const ModelFit& fit, const FitInp
   const PoorFits poor = fit.poor.empty() ? PoorFits::Refuse : PoorFits::Take;
   if (surfaceRefined) band->addOwnCovariance();
 
-  // Other lobes, or reflectance beside the limit angle. One that the evidence prefers is away by d for certain: uniform between -d and d; several that it likes alike are a mixture,
-  // whose variance is d^2 times the share.
+  // Other lobes, or reflectance beside the limit angle. One that the evidence prefers is away by d for certain: uniform between
+  // -d and d; several that it likes alike are a mixture, whose variance is d^2 times the share.
   struct Other {
     const HighlightModel* model;
     ModelFit fit;

@@ -36,8 +36,8 @@ void addOtherLevels(const std::vector<Highlight>& given, std::vector<Highlight>&
 FrameEvidence gatherEvidence(const Scene& scene, int frame, FrameSource source, const Settings& settings,
                              const SeparateLights& lights = {});
 
-/// Traces the detected highlights of a frame again on their specular part alone, where its colours allow it (`partHighlights`). Highlights that the scene
-/// gives stay as they are.
+/// Traces the detected highlights of a frame again on their specular part alone, where its colours allow it (`partHighlights`).
+/// Highlights that the scene gives stay as they are.
 /// @return what came of it; the reason also where the lens distortion has no inverse
 Parting partEvidence(const Scene& scene, int frame, FrameSource source, const Settings& settings, FrameEvidence& evidence);
 
@@ -45,7 +45,7 @@ Parting partEvidence(const Scene& scene, int frame, FrameSource source, const Se
 /// file. InputError when a file does not parse, does not hold the level or has a contour without area.
 Outcome<std::vector<Highlight>> readTruth(const std::string& folder, const Scene& scene, int frame, double level);
 
-/// InputError when `folder` is none, or holds contours of no frame at all.
+/// InputError if `folder` is not a folder, or holds no frame's contours.
 void requireTruthFolder(const std::string& folder, const Scene& scene);
 
 /// The contour resampled to 72 points, with independent Gaussian noise per coordinate on them and on the peak (--noise-px).

@@ -17,8 +17,8 @@ struct LightFit {
   SurfaceCorrection correction;
 };
 
-/// The one way from views to a light: estimateLight(), then what light.refine_depth and light.refine_normals ask for. A correction is kept where the
-/// views on the corrected surface keep what it promised.
+/// The one way from views to a light: estimateLight(), then what light.refine_depth and light.refine_normals ask for. A
+/// correction is kept where the views on the corrected surface keep what it promised.
 /// @param views  of one light, and of one surface where models are per surface; on the surfaces as they are given.
 LightFit fitLight(std::vector<TrainingView> views, const Scene& scene, const SurfaceCache& surfaces, const Settings& settings);
 

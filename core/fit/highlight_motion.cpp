@@ -251,8 +251,8 @@ void Judge::second(const Camera& camera, const FrameEvidence& evidence, Answer& 
   if (predicted) answer.says = Answer::Says::Stays;
 }
 
-/// Regression of what is left of the motion on that of the nearest lamp's highlight: its share, plus twice its standard deviation. Infinity where
-/// nothing is known.
+/// Regression of what is left of the motion on that of the nearest lamp's highlight: its share, plus twice its standard
+/// deviation. Infinity where nothing is known.
 double shareOfNearest(const std::vector<const Answer*>& stays) {
   double across = 0, along = 0, rest = 0;
   int n = 0;

@@ -34,9 +34,9 @@ struct MotionVerdict {
   std::string text() const;
 };
 
-/// The frames that are asked about the highlights of each frame: up to twelve that see the same surface, spread evenly over the sequence. Frames with
-/// given highlights ask none and are not asked: a hand that labels highlights leaves the paint out. Frames whose surface is their own depth map
-/// ask each other; `judgedByMotion` (depth_motion.h) takes care of that.
+/// The frames that are asked about the highlights of each frame: up to twelve that see the same surface, spread evenly over the
+/// sequence. Frames with given highlights ask none and are not asked: a hand that labels highlights leaves the paint out. Frames
+/// whose surface is their own depth map ask each other; `judgedByMotion` (depth_motion.h) takes care of that.
 /// @return  by frame, sorted, without the frame itself
 std::vector<std::vector<int>> motionPanels(const Scene& scene, const SurfaceCache& surfaces);
 

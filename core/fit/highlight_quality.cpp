@@ -52,8 +52,8 @@ std::optional<Footprint> footprintOnImage(const Highlight& h, const Camera& came
   return footprint;
 }
 
-/// How much smaller the contour of a Gaussian lobe would be without the blur: r^2 = 2 ln(1/q) (variance of the lobe + variance of the blur). No edge
-/// moves by more than the blur itself.
+/// How much smaller the contour of a Gaussian lobe would be without the blur: r^2 = 2 ln(1/q) (variance of the lobe + variance of
+/// the blur). No edge moves by more than the blur itself.
 double widenedBy(const FrameBlur& blur, const Ellipse& e, double level) {
   double most = 0;
   for (int axis = 0; axis < 2; ++axis) {

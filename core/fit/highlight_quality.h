@@ -20,8 +20,8 @@ namespace glint {
 std::vector<HighlightQuality> highlightQualities(const Frame& frame, const LinearPixels& pixels, const Surface* surface,
                                                  const std::optional<FrameBlur>& blur, const std::vector<Highlight>& highlights);
 
-/// Where the frame has one lamp, flags highlights whose mirrored ray does not meet that of the largest one (method.md section 4): another lamp's, the
-/// reflection of something else, or texture.
+/// Where the frame has one lamp, flags highlights whose mirrored ray does not meet that of the largest one (method.md section 4):
+/// another lamp's, the reflection of something else, or texture.
 /// @param qualities  one for each highlight, in their order
 void flagStrangers(const Frame& frame, const Surface& surface, const std::vector<Highlight>& highlights,
                    std::vector<HighlightQuality>& qualities);

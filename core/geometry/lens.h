@@ -34,7 +34,7 @@ inline constexpr std::array<LensModel, 10> kLensModels{LensModel::OpenCv,       
 
 /// As scene.json writes it: "OPENCV", ... "THIN_PRISM_FISHEYE", "VISUALSFM".
 const char* nameOf(LensModel model);
-/// Nothing where there is none of this name.
+/// Nothing for an unknown name.
 std::optional<LensModel> lensModelNamed(std::string_view name);
 /// "k1 k2 p1 p2 k3"
 const char* parametersOf(LensModel model);

@@ -27,7 +27,7 @@ constexpr double kMostGrowth = 1.3;       // over v^-1, the area of the longest 
 constexpr double kAreaSigmaPx2 = 0.3;     // of a contour made of chords, measured on exact lobes of 5 to 60 px
 constexpr double kUnusablePx = 1.5;       // a contour that near to an unusable pixel follows its border
 
-// The profile and its uncertainty. The tests have lobes that are none of these profiles.
+// The profile and its uncertainty. The tests use lobes with other profiles.
 constexpr std::array kTails{1.0, 1 / 1.5, 0.5,  1 / 3.0, 0.2,
                             0.1, 0.0,     -0.1, -0.2};  // 1/beta: from tails longer than GGX's to lobes that end
 constexpr std::array kStarts{-2.5, -1.0, 0.3, 1.5};     // log(A0 / median area)
@@ -256,7 +256,7 @@ double medianOutOfRound(const std::vector<SkirtLevel>& levels) {
   return upperMedian(all);
 }
 
-/// The contour at a value around a pixel; empty where there is none, with the reason why levels end here.
+/// The contour at a value around a pixel; empty, with the reason why levels end here, if there is no contour.
 std::optional<SkirtLevel> levelAround(const SkirtView& view, const Pixel& inside, double value, const char*& reason) {
   for (const IsoContour& c : isoContours(view.corrected, value)) {
     if (signedArea(c.line) < view.minAreaPx2 || !contains(c.line, inside)) continue;

@@ -50,7 +50,7 @@ struct PeakReference {
 
 /// Something that stands out of the background and is no highlight, with the reason.
 struct RejectedCandidate {
-  Pixel place{0, 0};  ///< measured pixels, as of the image
+  Pixel place{0, 0};  ///< measured pixels of the image
   double areaPx2 = 0;
   std::string reason;  ///< in words
 };
@@ -63,8 +63,8 @@ struct DetectOptions {
   double peakWindowLevel = 0.9;  ///< pixels above this fraction of the peak enter the log-quadratic fit
   double clipValue = 0;          ///< values at or above are saturated; 0 = none
   bool removeBackground = true;  ///< subtract the local diffuse background (median of the surrounding glossy pixels)
-  /// Several lights of unequal strength: weaker peaks are sought too, and every contour lies at `level` of its own peak, or of the reference that
-  /// names it (the strongest peak of its light, once that is known). A peak that does not stand out of a stronger one's contour at that level is none.
+  /// For several lights of unequal strength: finds weaker peaks, too. Each contour lies at `level` of its own peak, or of the reference
+  /// that names it (the strongest peak of its light, once known). A peak inside a stronger one's contour at that level does not count.
   bool separatePeaks = false;
   std::vector<PeakReference> references;
   std::optional<double> reference;  ///< contours lie at `level` of this value, wherever the strongest peak is

@@ -15,7 +15,7 @@ namespace glint {
 namespace {
 
 constexpr double kMiddle = 0.4;                             // footprints: the lobe is above 0.9 of its peak there (level 0.5)
-constexpr double kRingFrom = 1.6;                           // footprints, as of the background
+constexpr double kRingFrom = 1.6;                           // footprints, where the background's ring starts
 constexpr double kRingTo = 6;                               // far enough out that tail and diffuse light differ
 constexpr std::size_t kMostRing = 20000, kLeastRing = 200;  // pixels
 constexpr int kLeastMiddle = 3;                             // pixels
@@ -140,8 +140,8 @@ Combination leastDiffuse(const Colours& c, double level) {
   return result;
 }
 
-/// Radiance per unit of s in each channel: the slope of the highlight's colours over s, beside diffuse light that is linear in the pixel. What else the diffuse
-/// light does there goes into it, along the diffuse colours: it is for scale and pictures.
+/// Radiance per unit of s in each channel: the slope of the highlight's colours over s, beside diffuse light that is linear in
+/// the pixel. What else the diffuse light does there goes into it, along the diffuse colours: it is for scale and pictures.
 Eigen::Vector3d lampOf(const Colours& c, const Eigen::Vector3d& w) {
   Eigen::Matrix4d squares = Eigen::Matrix4d::Zero();
   Eigen::Matrix<double, 4, 3> products = Eigen::Matrix<double, 4, 3>::Zero();

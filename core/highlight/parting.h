@@ -45,13 +45,13 @@ struct Parting {
 Outcome<PartedRegion> partColours(const Image& linear, const std::vector<char>& usable, double clipValue,
                                   const Highlight& highlight, const std::vector<Highlight>& others);
 
-/// Contours and peaks of the highlights on their specular part alone, with the same level: no diffuse gradient, no texture's edge bends them, and no lobe's tail passes for
-/// background. All highlights are traced again or, with the reason, none.
+/// Contours and peaks of the highlights on their specular part alone, with the same level: no diffuse gradient, no texture's edge
+/// bends them, and no lobe's tail passes for background. All highlights are traced again or, with the reason, none.
 /// @param highlights  measured pixels, as detected with these options; replaced where parted
 Parting partHighlights(const Image& linear, const Image* mask, const DetectOptions& options, std::vector<Highlight>& highlights);
 
-/// The specular part of a parted frame around its highlights, 3 channels, linear; 0 elsewhere and where it would be negative. The rest of the image is the
-/// diffuse part.
+/// The specular part of a parted frame around its highlights, 3 channels, linear; 0 elsewhere and where it would be negative. The
+/// rest of the image is the diffuse part.
 Image specularPart(const Image& linear, const Parting& parting);
 
 }  // namespace glint

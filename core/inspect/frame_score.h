@@ -28,7 +28,7 @@ std::vector<FrameScore> frameScores(const ModelResult& result, int frames);
 std::optional<double> wholeErrorPct(const FrameScore& score);
 /// "missed 1 of 2 highlights, the other: 0.13 %"; "" where none was.
 std::string missedText(const FrameScore& score);
-/// "2 spurious highlights: predicted where none is seen"; "" where there is none.
+/// "2 spurious highlights: predicted where none is seen"; "" without spurious ones.
 std::string spuriousText(const FrameScore& score);
 
 /// Names of the inspection's models, from simple to rich (method.md section 7), unknown ones last; only those in `only` unless it

@@ -137,11 +137,11 @@ Inspection inspect(std::shared_ptr<const Scene> scene, const InspectionRequest& 
 Inspection inspectOneFrame(std::shared_ptr<const Scene> scene, const InspectionRequest& request, int frame,
                            const ProgressFn& progress = {}, const Inspection* previous = nullptr);
 
-/// What `inspectOneFrame` would say with those of the models alone that take no pixels: sooner, as a lobe's fit to the pixels is the longest
-/// part of many first runs. Given on as `previous` it leaves only the rest to be done.
+/// What `inspectOneFrame` would say with those of the models alone that take no pixels: sooner, as a lobe's fit to the pixels is
+/// the longest part of many first runs. Given on as `previous` it leaves only the rest to be done.
 /// Contours that the lobe finds again (detect.background = lobe) are those of the smooth background for as long.
-/// @return nothing where that is not worth a step of its own: no pixels are asked for, or every model takes them; `previous` has the lobe, or
-///         contours found with one; or it shows a model that takes pixels, which would be gone for a moment.
+/// @return nothing where that is not worth a step of its own: no pixels are asked for, or every model takes them; `previous` has
+///         the lobe, or contours found with one; or it shows a model that takes pixels, which would be gone for a moment.
 /// Failures as inspectOneFrame.
 std::optional<Inspection> firstLook(std::shared_ptr<const Scene> scene, const InspectionRequest& request, int frame,
                                     const ProgressFn& progress = {}, const Inspection* previous = nullptr);

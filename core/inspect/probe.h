@@ -20,8 +20,8 @@ struct PixelProbe {
   std::vector<Incidence> lights;  ///< the estimated lights that may shine on this frame, by id
 };
 
-/// Surface and incident angles at a pixel of a frame. The surface is the scene's (without light.refine_depth and light.refine_normals). May load a frame's own depth
-/// map, which takes its time.
+/// Surface and incident angles at a pixel of a frame. The surface is the scene's (without light.refine_depth and
+/// light.refine_normals). May load a frame's own depth map, which takes its time.
 /// @param measured  photograph pixel, as in the file (lens distortion not removed).
 /// @return  NoHit where the ray misses; NoSurface, FrameUnreadable of the surface; the reason of a pixel beyond the lens model.
 ///          std::invalid_argument for a frame that does not exist.

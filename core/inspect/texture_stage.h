@@ -18,7 +18,7 @@ namespace glint {
 void rejectTextures(Inspection& inspection, std::vector<int> frames, const SurfaceOfFrame& surfaceOf,
                     const std::function<void(const std::vector<int>&)>& gather, const ProgressFn& progress);
 
-/// Of a fit: how much bright texture its training frames show. "" where there is none.
+/// How much bright texture a fit's training frames show; "" without any.
 std::string textureRemark(const Inspection& inspection);
 
 }  // namespace glint

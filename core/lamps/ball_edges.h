@@ -17,9 +17,9 @@ namespace glint {
 inline constexpr int kOutlineSectors =
     120;  // 3 degrees: 22 px of a ball of 420 px, so noise is averaged and a sector is nearly straight
 
-/// A circle, or with a camera the outline of a sphere: the cone of rays that touch it, cut by the image plane. Three unknowns x: for the circle centre and
-/// radius; for the sphere the image of its centre and the outline's smaller half axis, f tan(alpha) / cos(theta), alpha the cone's half angle, theta its
-/// axis against the optical axis.
+/// A circle, or with a camera the outline of a sphere: the cone of rays that touch it, cut by the image plane. Three unknowns x:
+/// for the circle centre and radius; for the sphere the image of its centre and the outline's smaller half axis, f tan(alpha) /
+/// cos(theta), alpha the cone's half angle, theta its axis against the optical axis.
 struct OutlineModel {
   Eigen::Vector3d x = Eigen::Vector3d::Zero();
   std::optional<OutlineCamera> camera;

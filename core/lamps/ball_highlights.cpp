@@ -143,7 +143,7 @@ cv::Rect cropAround(const BallView& view, const Candidate& candidate) {
   return wide & cv::Rect(0, 0, view.values.cols, view.values.rows);
 }
 
-/// The disc of the part of { value >= level } around `place`, sampled finely enough. Radius 0: there is none.
+/// The disc of the part of { value >= level } around `place`, sampled finely enough. Radius 0: no such part.
 Core discAt(const BallView& view, const Candidate& candidate, double level) {
   const cv::Rect crop = cropAround(view, candidate);
   const int times = std::clamp(static_cast<int>(std::ceil(kFineRadius / std::max(candidate.radius, 1.0))), 1, kFinest);
@@ -212,7 +212,7 @@ bool atLimb(const Eigen::Vector2d& place, const BallOutline& ball) { return (pla
 
 std::string placeText(const Eigen::Vector2d& p) { return formatted("%.1f, %.1f", p.x(), p.y()); }
 
-/// The contour around a place at a level, in the shot; empty where there is none.
+/// The contour around a place at a level, in the shot; empty without one.
 std::vector<Eigen::Vector2d> contourAround(const BallView& view, const Candidate& candidate, double level) {
   const cv::Rect crop = cropAround(view, candidate);
   Image image(crop.width, crop.height, 1);

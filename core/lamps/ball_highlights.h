@@ -11,7 +11,7 @@ namespace glint {
 
 /// Bright reflections on one ball that stay where they are from photograph to photograph, such as a window's: none of them is that of the lamp of each.
 struct StillReflections {
-  Image mask;                                        ///< one channel, above 0 on them and close around; empty = there are none
+  Image mask;                                        ///< one channel, above 0 on them and close around; empty without any
   Eigen::Vector2d corner = Eigen::Vector2d::Zero();  ///< of its first pixel in the shot
   std::vector<Eigen::Vector2d> places;               ///< their middles in the shot
 

@@ -128,8 +128,8 @@ double support(const OutlineModel& model, const std::vector<BallEdge>& edges, do
   return sum;
 }
 
-/// From wide weights outwards; with equal ones from close by, where these find clearly more of an outline. The widths that were used; nothing where
-/// neither fit holds.
+/// From wide weights outwards; with equal ones from close by, where these find clearly more of an outline. The widths that were
+/// used; nothing where neither fit holds.
 std::optional<Widths> settle(OutlineModel& model, const std::vector<BallEdge>& edges, double blur, double widest) {
   const Widths outwards{kInner * blur, kOuter * blur}, equal{kOuter * blur, kOuter * blur};
   OutlineModel close = model;
@@ -214,9 +214,9 @@ double heightOn(const OutlineModel& model, const std::vector<BallEdge>& edges, d
   return steps.empty() ? 0.0 : upperMedian(steps);
 }
 
-/// What all edges have wrong together. A step beside light that rises or falls up to the rim, as in what a ball mirrors, seems to lie
-/// slope / step sigma^2 aside, sigma the whole blur: with twice the blur of ours by how much more, and the heights tell sigma. Grey levels are
-/// whole numbers: a faint edge is known to the width of one level.
+/// What all edges have wrong together. A step beside light that rises or falls up to the rim, as in what a ball mirrors, seems to
+/// lie slope / step sigma^2 aside, sigma the whole blur: with twice the blur of ours by how much more, and the heights tell
+/// sigma. Grey levels are whole numbers: a faint edge is known to the width of one level.
 Eigen::Matrix3d commonErrors(const OutlineModel& model, const std::vector<Image>& linear, const std::vector<BallEdge>& edges,
                              double blur) {
   const double twice = 2 * blur, fine = heightOn(model, edges, kOuter * blur);

@@ -45,8 +45,8 @@ struct OutlineChoice {
       0;  ///< by how much it lies inside of the given one all around, where that is more than its standard deviation says; else 0
 };
 
-/// The outline of the edges where these tell it better than the one that is given is known. Where it lies inside of that all around, it may be a
-/// reflection's edge within a rim that does not stand out: its radius is then uncertain by as much.
+/// The outline of the edges where these tell it better than the one that is given is known. Where it lies inside of that all
+/// around, it may be a reflection's edge within a rim that does not stand out: its radius is then uncertain by as much.
 /// @param given  with its covariance
 OutlineChoice chosenOutline(const Outcome<RefinedOutline>& found, const RefinedOutline& given);
 

@@ -345,8 +345,8 @@ ShotReader::Seen ShotReader::highlightsOf(const Shot& shot) {
 
 /// What makes it doubtful that a reflection which was not seen to move is the lamp's; "" = nothing does.
 std::string ShotReader::doubtOf(std::size_t k, const std::vector<LampAnswer>& lamps) const {
-  // A lamp that appears 20 degrees wide stands as near as three of its own widths; a window is seldom below 5. An ellipse fills pi / 4 of its
-  // rectangle: well more is a rectangle, less has streaks.
+  // A lamp that appears 20 degrees wide stands as near as three of its own widths; a window is seldom below 5. An ellipse fills
+  // pi / 4 of its rectangle: well more is a rectangle, less has streaks.
   constexpr double kWideDeg = 20, kShapedDeg = 5, kElongated = 1.5, kRectangular = 0.87, kCompact = 0.72;
   const auto at = [&](const Pixel& place, const Eigen::Vector3d& towards) {
     const Pixel p = place - s_.balls[k].corner;

@@ -42,14 +42,14 @@ struct BallShots {
   std::vector<std::filesystem::path> files() const;
 };
 
-/// The photographs in the folders that the balls name, by the endings of their names; `input` where a ball names none. A folder is looked for as it
-/// stands, and in `input`.
+/// The photographs in the folders that the balls name, by the endings of their names; `input` where a ball names none. A folder
+/// is looked for as it stands, and in `input`.
 /// @param exclude  a frame SPEC over the shots' ids; "" = none
 /// InputError: a folder is missing, has no photographs or could be two; a ball is named twice; `exclude`.
 BallShots ballShotsIn(const std::filesystem::path& input, const std::vector<NamedBall>& balls, const std::string& exclude);
 
-/// What EXIF data of whole shots say of the camera: the focal length; the principal point is taken in the middle, the lens as ideal. Nothing where a ball was cut
-/// out, where the first shot says nothing, or where the last one says something else.
+/// What EXIF data of whole shots say of the camera: the focal length; the principal point is taken in the middle, the lens as
+/// ideal. Nothing where a ball was cut out, where the first shot says nothing, or where the last one says something else.
 /// @param mm  becomes the focal length on 35 mm film
 std::optional<Camera> cameraOfExif(const BallShots& shots, double& mm);
 

@@ -27,8 +27,8 @@ struct LampExtent {
   double filled = 0;                 ///< share of that: pi / 4 of an ellipse, 1 of a window
 };
 
-/// How the directions to one lamp from the two balls that are farthest apart differ, degrees: along the line between the balls a near
-/// lamp makes a difference, across it only errors do.
+/// How the directions to one lamp from the two balls that are farthest apart differ, degrees: along the line between the balls a
+/// near lamp makes a difference, across it only errors do.
 struct Parallax {
   std::size_t from = 0, to = 0;  ///< indices of the balls
   double alongDeg = 0, acrossDeg = 0;

@@ -31,8 +31,8 @@ struct FittedBall {
   int edgeDegreesOfFreedom = 0;  ///< of those
   int highlights = 0;            ///< on this ball that were used
   double highlightResidualPx = 0;  ///< their rms: seen less predicted
-  /// What the fit leaves free of their coordinates: the sum over them of 1 less the leverage, so that those of all balls, and of the outlines, add up to
-  /// those of the fit.
+  /// What the fit leaves free of their coordinates: the sum over them of 1 less the leverage, so that those of all balls, and of
+  /// the outlines, add up to those of the fit.
   double highlightDegreesOfFreedom = 0;
 };
 

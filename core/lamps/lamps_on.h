@@ -14,7 +14,7 @@ namespace glint {
 enum class LampIs { On, Off, CannotBeSeen, Unsure };
 const char* wordOf(LampIs state);
 
-/// One lamp in one frame. Radiances are linear, as of the frame.
+/// One lamp in one frame. Radiances are linear, in the frame's unit.
 struct LampInFrame {
   int frame = 0;
   std::string light;

@@ -41,13 +41,13 @@ struct AimedLamp {
   Eigen::Vector3d from(const Eigen::Vector3d& point) const { return direction - inverseDistance * (point - reference); }
 };
 
-/// A ball by three numbers of its image, px: with a camera the pixel of its centre and the focal length over the depth in radii; else
-/// centre and radius of its outline.
+/// A ball by three numbers of its image, px: with a camera the pixel of its centre and the focal length over the depth in radii;
+/// else centre and radius of its outline.
 MirrorBall ballOf(const BallProjection& view, const Eigen::Vector3d& parameters);
 
-/// Those numbers and their covariance from the outline of the ball. With a camera the outline is the cone of rays that touch the ball, sin(angle to its centre) =
-/// radius / distance, fitted to the points of the edge, or to the circle where there are none; the covariance has the excess that the outline's own has over
-/// independent points.
+/// Those numbers and their covariance from the outline of the ball. With a camera the outline is the cone of rays that touch the
+/// ball, sin(angle to its centre) = radius / distance, fitted to the points of the edge, or to the circle where there are none;
+/// the covariance has the excess that the outline's own has over independent points.
 /// @return  NotConverged where no ball before the camera has this outline; NotFinite.
 struct BallParameters {
   Eigen::Vector3d value = Eigen::Vector3d::Zero();
@@ -67,8 +67,8 @@ struct MirrorRay {
 /// PeakOffSurface where the pixel's ray misses the ball.
 Outcome<MirrorRay> mirrorRay(const BallProjection& view, const MirrorBall& ball, const Pixel& peak);
 
-/// Where the ball mirrors the lamp: the root of 2 t = angle to the camera + angle to the lamp in the plane of the ball's centre, camera and lamp, t the
-/// angle of the normal there (Alhazen's problem). Nothing where the lamp lies behind the ball.
+/// Where the ball mirrors the lamp: the root of 2 t = angle to the camera + angle to the lamp in the plane of the ball's centre,
+/// camera and lamp, t the angle of the normal there (Alhazen's problem). Nothing where the lamp lies behind the ball.
 std::optional<Pixel> mirrorPixel(const BallProjection& view, const MirrorBall& ball, const AimedLamp& lamp);
 
 /// The lamp that the rays of several balls meet at, or their common direction: least squares of the sine of the angles, homogeneous.

@@ -27,7 +27,7 @@ constexpr double kContraryAngle = 6;     // degrees: no off-specular shift or bl
 constexpr double kContrarySpread = 5;    // standard deviations of the other views' angles
 constexpr double kMadToSigma = 1.4826;   // of normal noise
 constexpr std::size_t kMostPairs = 300;  // of rays that are tried as the lamp: all of 25 views
-constexpr double kKnownInverse = 5;      // standard deviations of the inverse distance, as of ball lamps
+constexpr double kKnownInverse = 5;      // standard deviations of the inverse distance; ball lamps have the same
 constexpr int kMostLeftOut = 8;          // parts of the views that are left out in turn: a spread of eight is known to a quarter
 constexpr int kLeastLeftOut = 4;         // parts; fewer tell no spread
 constexpr double kViewErrorPx = 0.2;     // of one view among too few to tell: a good pose, surface and lobe leave that much
@@ -255,7 +255,7 @@ class SceneLamp {
     if (estimate_->uncertainty)
       return place(estimate_->light, estimate_->uncertainty->root.topRows(4), estimate_->residualPx, again);
     if (!estimate_->covariance || estimate_->light.atInfinity()) return false;
-    // Of a position as of homogeneous coordinates with w = 1: d(l / w) = dl.
+    // A position has homogeneous coordinates with w = 1, so that d(l / w) = dl.
     Eigen::MatrixXd root = Eigen::MatrixXd::Zero(4, 3);
     root.topRows<3>() = estimate_->covariance->llt().matrixL();
     return place(estimate_->light, root * estimate_->light.homogeneous().w(), estimate_->residualPx, again);

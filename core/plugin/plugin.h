@@ -34,8 +34,8 @@ class PluginRegistry {
   virtual void add(std::unique_ptr<const CaptureReader> reader) = 0;
 };
 
-/// What a plugin exports as the C symbol `glint_plugin`: data, so that it is checked before any function of the plugin is called (but for
-/// its constructors of global objects, which the loader runs).
+/// What a plugin exports as the C symbol `glint_plugin`: data, so that it is checked before any function of the plugin is called
+/// (but for its constructors of global objects, which the loader runs).
 struct PluginDeclaration {
   std::uint32_t magic;     ///< kPluginMagic
   std::int32_t interface;  ///< GLINT_INTERFACE_VERSION of the headers that it was compiled with; checked before the rest is read

@@ -181,7 +181,7 @@ void metricsJson(const FrameComparison::Row* row, const FrameComparison& c, Json
   j["time_us"] = numberOrNull(c.prediction.timeUs);
 }
 
-/// Appends one row per highlight of a comparison, or one that says why there is none.
+/// Appends one row per highlight of a comparison, or one that says why no highlight was compared.
 void addRows(const Inspection& inspection, const ModelResult& result, const FrameComparison& c, Json& out) {
   const auto base = [&](int highlight) {
     Json j;

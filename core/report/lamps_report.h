@@ -38,8 +38,8 @@ std::string lampsJson(const LampsReport& report);
 extern const char* const kLampsCsvHeader;
 /// One row per lamp, with a header row.
 std::string lampsCsv(const LampsReport& report);
-/// A list of light positions as Relight and other RTI programs read it: the count, then for each photograph its name without blanks (each becomes '_')
-/// and the unit vector, x right, y up, z towards the camera.
+/// A list of light positions as Relight and other RTI programs read it: the count, then for each photograph its name without
+/// blanks (each becomes '_') and the unit vector, x right, y up, z towards the camera.
 std::string lampsLp(const LampsReport& report);
 /// A plain-text table for people.
 std::string lampsTable(const LampsReport& report);

@@ -27,7 +27,7 @@ Json stepJson(const Json& lesson, const Json& text) {
           {"remark", plain ? "" : remark}};
 }
 
-/// The typeset form of an equation, an SVG document whose title is the plain form; "" where there is none.
+/// The typeset form of an equation, an SVG document whose title is the plain form; "" without one.
 std::string_view pictureOf(const std::string& plain) {
   const std::size_t title = kEquationPictures.find("<title>" + html::escaped(plain) + "</title>");
   if (title == std::string_view::npos) return {};

@@ -15,8 +15,8 @@ bool counts(const Inspection& inspection, const FrameEvidence& e) {
   return e.frame >= 0 && (inspection.isTraining(e.frame) || inspection.isHeldOut(e.frame));
 }
 
-/// The warning about clipped highlights with their frames; "" where there are none. Clipping takes the peak away to which the contour's level
-/// refers.
+/// The warning about clipped highlights with their frames; "" without any. Clipping takes the peak away to which the contour's
+/// level refers.
 std::string clippedWarning(const Inspection& inspection) {
   std::vector<std::string> training, others;
   bool known = true;  // a lobe says what was cut off
@@ -34,7 +34,7 @@ std::string clippedWarning(const Inspection& inspection) {
                        : ": the peak is unknown, so a contour lies at a smaller fraction of it than the stated level");
 }
 
-/// The warning about frames whose colours do not tell what is specular (detect.background = colours), with the reasons; "" where there are none.
+/// The warning about frames whose colours do not tell what is specular (detect.background = colours), with the reasons; "" without any.
 std::string notPartedWarning(const Inspection& inspection) {
   std::map<std::string, std::vector<std::string>> frames;
   for (const FrameEvidence& e : inspection.evidence)

@@ -20,8 +20,8 @@ std::string fitWarning(const std::string& model, const std::string& light, const
 /// That of a fit that is poor, before its reason.
 std::string poorWarning(const std::string& reason);
 
-/// What the predictions of held-out frames are scored against: "truth" (--truth), "given contours" (of the scene file) or "own detection" (of at
-/// least one held-out frame).
+/// What the predictions of held-out frames are scored against: "truth" (--truth), "given contours" (of the scene file) or "own
+/// detection" (of at least one held-out frame).
 std::string scoredAgainst(const Inspection& inspection);
 
 }  // namespace glint

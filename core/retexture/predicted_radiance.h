@@ -25,8 +25,8 @@ struct PredictedRadiance {
 
 /// @param model  one that the inspection computed. @param light  id; "" = every light that was predicted in this frame.
 /// @param known  what was learned before; null = learns anew.
-/// The prediction's failure where the model predicts no highlight of these lights in the frame; learnAppearance()'s; NotSupported where no such
-/// light was looked at; NoSurface. std::invalid_argument for a frame or model that does not exist. Stopped.
+/// The prediction's failure where the model predicts no highlight of these lights in the frame; learnAppearance()'s; NotSupported
+/// where no such light was looked at; NoSurface. std::invalid_argument for a frame or model that does not exist. Stopped.
 Outcome<PredictedRadiance> predictedRadiance(const Inspection& inspection, int frame, const std::string& model,
                                              const std::string& light = "", const ProgressFn& progress = {},
                                              LearnedAppearances* known = nullptr);

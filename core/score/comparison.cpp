@@ -46,8 +46,8 @@ bool leavesImage(const Polyline& line, const Camera& camera) {
   return std::any_of(line.points.begin(), line.points.end(), [&](const Pixel& p) { return !isInPhotograph(camera, p); });
 }
 
-/// Standard deviation of what an observed contour has of its own, px: what remains of its distances from the predicted one once the smooth
-/// shapes are taken out by which a whole view may be off. No prediction can know it.
+/// Standard deviation of what an observed contour has of its own, px: what remains of its distances from the predicted one once
+/// the smooth shapes are taken out by which a whole view may be off. No prediction can know it.
 double noiseOf(const std::vector<ContourFoot>& feet) {
   std::vector<Pixel> normals;
   std::vector<double> arcs;

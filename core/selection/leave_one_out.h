@@ -47,8 +47,8 @@ struct Answer {
 enum class LeaveOut { Frame, Place };
 /// One per left-out view: at most kMostLeftOut, evenly spread. Valid as long as the inspection.
 std::vector<Fold> foldsOf(const Inspection& inspection, LeaveOut together);
-/// Fits the model to the fold's other views. Fills what is missing in the fold. The model's and the light's failures; NotConverged for a poor fit
-/// where those do not serve.
+/// Fits the model to the fold's other views. Fills what is missing in the fold. The model's and the light's failures;
+/// NotConverged for a poor fit where those do not serve.
 Outcome<ModelFit> fitFold(Fold& fold, const HighlightModel& model, const Settings& settings, PoorFits poor = PoorFits::Refuse,
                           const ProgressFn& progress = {});
 /// Fits the model to the other views, predicts the left-out one and compares. Fills what is missing in the fold.
@@ -68,7 +68,7 @@ struct RankingSoFar {
 /// Leaves out every fold in turn, as long as the model can become the best. @param answers  gets one per fold
 Candidate tryModel(const Inspection& inspection, const HighlightModel& model, std::vector<Fold>& folds,
                    std::vector<Answer>& answers, const RankingSoFar& known, PoorFits poor, const ProgressFn& progress);
-/// Mean over the views that any model answers; NaN when there are none.
+/// Mean over the views that any model answers; NaN without any.
 double rankedPct(const std::vector<Answer>& answers, const std::vector<char>& possible);
 /// How much worse one model is than another, view by view.
 struct ExcessError {

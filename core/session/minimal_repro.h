@@ -10,7 +10,7 @@
 
 namespace glint {
 
-/// What is wrong with one model's answer for one light in one frame: its error, or why there is none.
+/// What is wrong with one model's answer for one light in one frame: its error, or why it is missing.
 struct Fault {
   int frame = -1;
   std::string model, light;

@@ -10,8 +10,8 @@
 
 namespace glint {
 
-/// How an input is read, and where the files of a scene are that are not where it says; the same for every program that reads one. Failures name
-/// the options of the command line.
+/// How an input is read, and where the files of a scene are that are not where it says; the same for every program that reads
+/// one. Failures name the options of the command line.
 struct ScenePlaces {
   bool allowOutside = false;
   std::vector<std::string> photographs;  ///< folders

@@ -119,8 +119,8 @@ Session sessionOf(const Inspection& inspection, const ProgressFn& progress = {})
 /// Of the scene, what it names, and the truth folder of the request.
 std::vector<SessionFile> hashInputs(const Scene& scene, const InspectionRequest& request, const ProgressFn& progress = {});
 
-/// One line "path: changed" or "path: missing" for each input that is not what it was; of a file that the session may not name, a line
-/// that says nothing about it. Stopped.
+/// One line "path: changed" or "path: missing" for each input that is not what it was; of a file that the session may not name, a
+/// line that says nothing about it. Stopped.
 std::vector<std::string> changedFiles(const Session& session, const Relinked& instead = {}, const ProgressFn& progress = {});
 
 /// Summaries of every model, limit angles and light positions; no times.

@@ -72,8 +72,8 @@ Tradeoff readTradeoff(const JsonNode& node);
 /// What trained, for a person: "first:2, 0000, 0001".
 std::string trainedOn(const Tradeoff& tradeoff);
 
-// One number is the error of a setting wherever settings are compared: rankedErrorPct, `error %`. The mean over the highlights that were found,
-// which `evaluate` prints, stands beside it under its own name.
+// One number is the error of a setting wherever settings are compared: rankedErrorPct, `error %`. The mean over the highlights
+// that were found, which `evaluate` prints, stands beside it under its own name.
 /// One sentence that says what both are.
 extern const char* const kTradeoffErrors;
 /// "29 of 54": highlights that were found, of those observed.

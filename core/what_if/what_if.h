@@ -106,7 +106,7 @@ WhatIf switched(WhatIf whatIf, const Scene& scene, int frame, const std::string&
 std::vector<TrueLight> lightsOn(const Scene& scene, const WhatIf& whatIf, int frame);
 
 /// Distance from which sensible shifts of lights and cameras are derived: the mean distance from the cameras to the point that
-/// they look at together (least squares over the optical axes), m; 1 where there is none.
+/// they look at together (least squares over the optical axes), m; 1 without such a point.
 double workingDistance(const Scene& scene);
 
 /// The scene with the changes to poses, and, where contours are synthesised, to lights, surfaces and evidence: `highlights` of
@@ -129,7 +129,7 @@ Highlight changed(Highlight highlight, const HighlightChange& change);
 std::string synthesisKey(const WhatIf& whatIf);
 std::string posesKey(const WhatIf& whatIf);
 std::string highlightsKey(const WhatIf& whatIf);  ///< edits too
-std::string ignoredKey(const WhatIf& whatIf);     ///< of its edits those that ignore; "" where there is none
+std::string ignoredKey(const WhatIf& whatIf);     ///< its edits that ignore a highlight; "" without any
 std::string lightsOffKey(const WhatIf& whatIf);
 
 }  // namespace glint

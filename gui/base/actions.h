@@ -34,7 +34,7 @@ class Actions : public QObject {
   /// Takes an action that exists already (undo, the toggle of a dock) into the list, at the end of a menu.
   QAction* adopt(const QString& id, QMenu* menu, QAction* action, const Look& look);
 
-  QAction* find(const QString& id) const;  ///< null when there is none
+  QAction* find(const QString& id) const;  ///< null for an unknown id
   QList<QAction*> all() const { return actions_; }
   static QString id(const QAction* action);
   /// "View › Layout › Debug": where the menus have it.

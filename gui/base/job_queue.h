@@ -135,9 +135,9 @@ class JobQueue : public QObject, private QRunnable {
   }
 
   const Rank rank_;
-  std::vector<std::shared_ptr<Job>> jobs_;  ///< asked for, and their end not told; owner's thread only
+  std::vector<std::shared_ptr<Job>> jobs_;  ///< asked for, their end not yet reported; owner's thread only
   bool toldBusy_ = false;
-  std::mutex mutex_;  ///< of what follows
+  std::mutex mutex_;  ///< guards the members below
   std::condition_variable rested_;
   std::deque<std::shared_ptr<Job>> waiting_;
   bool running_ = false;

@@ -56,8 +56,8 @@ class Document : public QObject {
   /// A number that no gesture had before.
   int newGesture() { return ++gesture_; }
 
-  /// What every view shows: the newest results, or the pinned ones while those are flipped to; null before the first. They may belong to
-  /// an older request: see stale().
+  /// What every view shows: the newest results, or the pinned ones while those are flipped to; null before the first. They may
+  /// belong to an older request: see stale().
   std::shared_ptr<const Inspection> inspection() const { return pinnedShown_ ? pinned_ : inspection_; }
   /// The newest results, whatever is shown: what files are written from.
   std::shared_ptr<const Inspection> computed() const { return inspection_; }
@@ -69,7 +69,7 @@ class Document : public QObject {
   RowsPtr pinnedRows() const { return rowsOf(pinned_); }
   /// Views show the pinned results. A change of the request ends that.
   bool pinnedShown() const { return pinnedShown_; }
-  /// Pins the newest results; false while there are none.
+  /// Pins the newest results; false before any exist.
   bool pin();
   void unpin();
   void showPinned(bool shown);
@@ -108,7 +108,7 @@ class Document : public QObject {
 
   /// Replaces everything; the undo history starts anew. A training specification that does not fit the scene throws InputError.
   void open(const Opened& opened);
-  /// Path of the session file, "" while there is none.
+  /// Path of the session file, "" without a file.
   const QString& sessionFile() const { return sessionFile_; }
   const QString& inputFile() const { return inputFile_; }
   Opened toSave() const;
@@ -196,7 +196,7 @@ class Document : public QObject {
   std::shared_ptr<const Influence> influence_;
   InspectionRequest influenceFor_;
   bool stale_ = false;
-  bool unsaved_ = false;  ///< opened as it is stored nowhere: recovered, or with its scene in another place
+  bool unsaved_ = false;  ///< opened in a state that no file holds: recovered, or with its scene moved
   int gesture_ = 0;
   QUndoStack undo_;
 };

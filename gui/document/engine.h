@@ -74,7 +74,7 @@ struct Engine {
       tradeoff;
   /// As glint::measureInfluence: throws Stopped.
   std::function<Influence(const Inspection&, const ProgressFn&)> influence;
-  /// The convention report, with the check of cameras by their highlights; may be empty: then there is none. Throws Stopped and
+  /// The convention report, with the check of cameras by their highlights; empty without any findings. Throws Stopped and
   /// InputError.
   std::function<ConventionReport(const Scene&, const ProgressFn&)> check;
   /// What `glint lights` finds in a scene; may be empty: then nothing is found. Throws Stopped and InputError.

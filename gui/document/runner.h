@@ -66,8 +66,8 @@ class Runner : public QObject {
 
   /// @param instead  where inputs are now that are not where the session or scene says.
   void open(const std::string& path, const Relinked& instead = {});
-  /// Answers with finished(), and before it, where the engine can, with frameFinished(): twice where the first look at quick models is worth
-  /// a step.
+  /// Answers with finished(), and before it, where the engine can, with frameFinished(): twice where the first look at quick
+  /// models is worth a step.
   /// @param previous  earlier results on the same scene, so that unchanged stages are not repeated; may be null.
   /// @param frame  what the user looks at: computed first; -1 = none.
   void inspect(std::shared_ptr<const Scene> scene, const InspectionRequest& request, InspectionPtr previous, int frame = -1);

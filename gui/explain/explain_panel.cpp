@@ -342,7 +342,7 @@ void ExplainPanel::showText() {
   text_->verticalScrollBar()->setValue(at);
 }
 
-/// Where there is none the text says why, and has the room.
+/// Without a walk the text says why, and takes its room.
 void ExplainPanel::showWalk() {
   walkView_->setVisible(step() >= 0 && showsWalk(explainTexts().steps[step()]) && walk_->problem().isEmpty());
   fitSteps();

@@ -30,8 +30,8 @@ class WalkView;
 
 /// The guided way from the photograph to the prediction, on whatever is open: one step at a time, with its equation, its numbers
 /// of the selected highlight, and what breaks here. A step shows its layers alone; leaving gives back those that were shown
-/// before. In a lesson (option "explain/lesson") it begins with what there is to see, goes through the lesson's own steps with its
-/// remarks, and ends with questions, their answers and the next lesson.
+/// before. In a lesson (option "explain/lesson") it begins with what there is to see, goes through the lesson's own steps with
+/// its remarks, and ends with questions, their answers and the next lesson.
 class ExplainPanel : public QWidget {
   Q_OBJECT
  public:

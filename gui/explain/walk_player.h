@@ -19,7 +19,7 @@ class WalkPlayer : public QObject {
  public:
   explicit WalkPlayer(Document& document, QObject* parent = nullptr);
   std::shared_ptr<const viz::WalkStory> story() const { return story_; }  ///< null = none
-  const QString& problem() const { return problem_; }                     ///< why there is none; "" when nobody asked
+  const QString& problem() const { return problem_; }                     ///< why there is no walk; "" when nobody asked
   int step() const;
   bool playing() const { return timer_.isActive(); }
   bool busy() const { return job_.busy(); }

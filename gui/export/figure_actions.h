@@ -61,8 +61,8 @@ QString suggestedFile(const Document& document, const QString& what, const QStri
 QString notUpToDate();
 /// Something was exported as `file`.
 void rememberExport(const Document& document, const QString& file);
-/// Asks for a file to write; the chosen filter's ending is added where the name has none. Files of the input are refused, and asked again.
-/// "" = given up.
+/// Asks for a file to write; the chosen filter's ending is added where the name has none. Files of the input are refused, and
+/// asked again. "" = given up.
 QString askForFile(QWidget* window, const Document& document, const QString& title, const QString& suggestion,
                    const QString& filters);
 

@@ -20,8 +20,8 @@ namespace glint::gui {
 
 class FrameCanvas;
 
-/// Ignores, merges, splits and grows observed highlights of the selected frame, at the place where the mouse is or was last in the
-/// photograph. One edit is one step of undo; they are part of the what-if (core/inspect/hand_edits.h).
+/// Ignores, merges, splits and grows observed highlights of the selected frame, at the place where the mouse is or was last in
+/// the photograph. One edit is one step of undo; they are part of the what-if (core/inspect/hand_edits.h).
 class HighlightEdits : public QObject {
   Q_OBJECT
  public:

@@ -38,7 +38,7 @@ class RetextureBar : public QWidget {
   /// What is said about the picture; the owner places it below the bar.
   QWidget* words() const;
   void setMostWords(int height);  ///< px; the rest scrolls
-  /// The picture of the state on screen; null where there is none, or a newer one is on its way.
+  /// The picture of the state on screen; null without one, or while a newer one is on its way.
   std::shared_ptr<const Retextured> result() const { return busy() ? nullptr : answer_.result; }
   void setOn(bool on);
 

@@ -30,8 +30,8 @@ struct RetextureAnswer {
   QString failure;  ///< one line; "" = none
 };
 
-/// Retextures frames off the interface thread. What runs for the same frame goes on to its end, so that pictures follow a slider that is
-/// being dragged; of what is asked for meanwhile, the newest is next.
+/// Retextures frames off the interface thread. What runs for the same frame goes on to its end, so that pictures follow a slider
+/// that is being dragged; of what is asked for meanwhile, the newest is next.
 class RetextureMaker : public QObject {
   Q_OBJECT
  public:

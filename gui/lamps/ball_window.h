@@ -26,7 +26,7 @@ class BallWindow : public QWidget {
  public:
   explicit BallWindow(const Engine& engine, QWidget* parent = nullptr);
   ~BallWindow() override;
-  /// Photographs of a folder, or of its folders where it has none itself. False, with a problem, where there are none.
+  /// Photographs of a folder, or of its folders where it has none itself. False, with a problem, without any photograph.
   bool open(const QString& folder);
   /// Opens the folder and shows what is asked, for measure(). False, with a problem, where it has no photographs; InputError.
   bool ask(const BallQuestion& question);

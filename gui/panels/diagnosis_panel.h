@@ -23,9 +23,9 @@ class QTreeWidgetItem;
 
 namespace glint::gui {
 
-/// What is wrong: models without an answer with their reasons, frames whose highlights are missed or far off; and, when asked, what to do about
-/// it, as `glint diagnose` says it: one verdict for the model on screen, at most three remedies, and folded below what they stand on. A click on a
-/// frame or highlight selects it; "Try" makes the change as one step of undo.
+/// What is wrong: models without an answer with their reasons, frames whose highlights are missed or far off; and, when asked,
+/// what to do about it, as `glint diagnose` says it: one verdict for the model on screen, at most three remedies, and folded
+/// below what they stand on. A click on a frame or highlight selects it; "Try" makes the change as one step of undo.
 class DiagnosisPanel : public QWidget {
   Q_OBJECT
  public:
@@ -66,7 +66,7 @@ class DiagnosisPanel : public QWidget {
   void fillAdvice();
   void fillDiagnosis(const ModelDiagnosis& model);
   void tellRuns();
-  /// The line of a model below the verdict, made with this text where there is none.
+  /// The line of a model below the verdict, made with this text if missing.
   QTreeWidgetItem* itemOf(const std::string& model, const QString& otherwise);
   void addRemedy(QTreeWidgetItem* top, const Remedy& remedy);
   void enableTries();

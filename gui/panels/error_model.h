@@ -64,7 +64,7 @@ class ErrorModel : public QAbstractTableModel {
 
  private:
   void rebuild();
-  /// The pinned row of the same highlight; null where there is none, or nothing to compare with.
+  /// The pinned row of the same highlight; null without one, or without pinned results.
   const HighlightRow* pinnedOf(int row) const;
   QString cell(int row, int column) const;
   QVariant sorted(int row, int column) const;

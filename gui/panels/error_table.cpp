@@ -44,8 +44,8 @@ constexpr int kLeastLetters = 6;                      // of a choice of rows; it
 constexpr int kColumnGapPx = 5;                       // of the summary
 constexpr double kWorstPct = 1000;                    // ten times the highlight's size: how far astray beyond that says nothing
 constexpr int kIou = 4, kMissed = 6, kSpurious = 7;   // columns of its values
-// What the errors leave out comes before their tails: without it, a mean over few matched highlights looks too good. The last ones
-// are left out first.
+// What the errors leave out comes before their tails: without it, a mean over few matched highlights looks too good. The last
+// ones are left out first.
 constexpr int kColumnOrder[] = {0, 1, kMissed, kSpurious, 2, 3, kIou, 5};
 }  // namespace
 
@@ -359,7 +359,7 @@ void ErrorTable::fitSummary() {
   }
   const int all = int(std::size(kColumnOrder));
   const QMargins margins = layout()->itemAt(0)->layout()->contentsMargins();
-  // Also where there are none: they come and go with each recomputation.
+  // Room for warnings even without any: they come and go with each recomputation.
   const int beside = warnings_->fontMetrics().horizontalAdvance(tr("%1 warnings").arg(99)) + 3 * kHeadGapPx;
   const int room = width() - margins.left() - margins.right() - beside;
   const int first = nameWidth() + 20;

@@ -45,13 +45,13 @@ class Chip : public QAbstractButton {
 };
 
 /// The conditioning strip of one light (tabs choose where there are several, and say how each one is): one column per model, one
-/// row per quantity, the held-out errors of the selected model, the reason in words below (of the chip under the mouse, else the worst of the model that is selected).
-/// Follows every inspection. A click selects the chip's model.
+/// row per quantity, the held-out errors of the selected model, the reason in words below (of the chip under the mouse, else the
+/// worst of the model that is selected). Follows every inspection. A click selects the chip's model.
 class ConditioningPanel : public QWidget {
   Q_OBJECT
  public:
   explicit ConditioningPanel(Document& document, QWidget* parent = nullptr);
-  /// The chip of a model and quantity ("gap"), null when there is none.
+  /// The chip of a model and quantity ("gap"), null without one.
   Chip* chip(const std::string& model, const std::string& finding) const;
   QString reason() const;
 

@@ -448,7 +448,7 @@ void ScenePanel::goToNextView() {
 }
 
 void ScenePanel::removeView(const QString& name) {
-  // An option cannot be taken away; an empty one is none.
+  // An option cannot be taken away; an empty one has no effect.
   document_.setOption(kSavedView + name.toStdString(), std::string(), tr("Delete %1").arg(shownText(name)));
 }
 

@@ -33,8 +33,8 @@ class WhatIfPanel : public QScrollArea {
   Q_OBJECT
  public:
   explicit WhatIfPanel(Document& document, QWidget* parent = nullptr);
-  /// Brings a knob by its key, "synthesise" or "lobe" in sight and gives it the keyboard; where it counts only for synthesised
-  /// contours and there are none, what switches them on gets the keyboard. False for an unknown key.
+  /// Scrolls to the knob of this key, "synthesise" or "lobe", and gives it the keyboard. If the knob needs synthesised contours
+  /// and they are off, the switch that makes them gets the keyboard. False for an unknown key.
   bool showKnob(const std::string& key);
 
  private:

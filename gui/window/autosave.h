@@ -28,7 +28,7 @@ class Autosave : public QObject {
     QString of;  ///< session or scene that it is about; "" when the file does not tell
     QDateTime when;
   };
-  /// The newest file that a program left behind that does not run any more; its own is none.
+  /// The newest file left behind by a program that runs no more; this program's own file does not count.
   std::optional<Found> leftBehind() const;
   static void discard(const Found& found);
   /// Waits until the newest state is written. For tests and for the end of the program.

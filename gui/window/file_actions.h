@@ -24,7 +24,7 @@ class FileActions : public QObject {
   FileActions(const Engine& engine, Document& document, Runner& runner, QWidget* window);
   void addActions(Actions& actions, QMenu* menu);
   QStringList recent() const;
-  /// The path of the first local file of a drop; "" when there is none.
+  /// The path of the first local file of a drop; "" without one.
   static QString dropped(const QMimeData* data);
   /// True when nothing is lost, or the user says so. Waits for a save that is under way.
   bool mayDiscard();
@@ -44,8 +44,8 @@ class FileActions : public QObject {
   void open(const QString& path);
   /// What a program left behind that died. @param of  the session or scene that it is about.
   void openRecovered(const QString& file, const QString& of);
-  /// Opens what was refused, because a person says that its folder may be read. That is remembered, for this file and this folder; a
-  /// file cannot say it itself.
+  /// Opens what was refused, because a person says that its folder may be read. That is remembered, for this file and this
+  /// folder; a file cannot say it itself.
   void allow(const glint::gui::OutsidePtr& outside);
   /// Opens a session or scene of which a file lies elsewhere now. False when the user gave up.
   bool openRelinked(const QString& path, const glint::Relinked& instead);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Killed or asked to stop, at every call that writes and at random moments: every output is old, absent or complete, and the same command
-// runs again and leaves nothing over. GLINT_KILLS is the number of random kills of the whole program, GLINT_SEED their seed
-// (tests/run_kills); with fewer than a hundred only some of the calls are tried.
+// Killed or asked to stop, at every call that writes and at random moments: every output is old, absent or complete, and the same
+// command runs again and leaves nothing over. GLINT_KILLS is the number of random kills of the whole program, GLINT_SEED their
+// seed (tests/run_kills); with fewer than a hundred only some of the calls are tried.
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <signal.h>

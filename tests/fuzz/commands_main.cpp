@@ -4,7 +4,7 @@
 // Number n of a seed is always the same damage and command. A finding is: a signal; more than 20 s of the processor or a minute's silence; more
 // than 1 GB; an exit code other than 0, 2, 3 (1 for replay); a failure without its one line, or more than one line on standard error; a line of more
 // than 400 characters; control characters or bytes that are no UTF-8 on the terminal; a file written, changed or removed outside of out/; a
-// JSON file that is none. Ends with 1 when there was one. Each is kept in FOLDER/n: the folder as it was, and CMD.
+// invalid JSON file. Ends with 1 when there was one. Each is kept in FOLDER/n: the folder as it was, and CMD.
 #include <fcntl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>

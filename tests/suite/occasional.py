@@ -3,7 +3,7 @@
 """Groups of tests that run when their code changed: occasional.txt names their entries and paths, occasional.stamps what the paths held when the
 group last passed. tests/run_nightly runs all of them.
 
-  tests/suite/occasional.py changed [GROUP...]   the groups (of these) that are to run; exit code 1 where there are none
+  tests/suite/occasional.py changed [GROUP...]   the groups (of these) that are to run; exit code 1 without any
   tests/suite/occasional.py stamp [GROUP...]     they (all) passed with the files as they are now; commit occasional.stamps
 
 Content counts, not history: a clone without history, or one whose files were changed, decides alike."""

@@ -12,7 +12,7 @@
 namespace glint::viz {
 namespace {
 
-constexpr double kFarLamp = 4;       ///< in scene sizes, as of estimates: beyond, an arrow shows the direction
+constexpr double kFarLamp = 4;       ///< in scene sizes, as for estimates: beyond, an arrow shows the direction
 constexpr double kWideCone = 0.25;   ///< radians: a wider one is drawn by its rim alone, or it would cover the scene
 constexpr int kConeLines = 12;       ///< along a cone: it reads as one, and what lies inside stays visible
 constexpr double kLeastAxis = 1e-3;  ///< of the longest: a thinner ellipsoid has no normals to be lit by

@@ -52,7 +52,7 @@ def pictures_of(scene, request):
 
 
 def picture_of(scene, request, pictures, frame):
-    """(path of the picture to copy or None, why there is none). A .blend file may come from others, and the export may be passed on: what it
+    """(path of the picture to copy or None, why it is missing). A .blend file may come from others, and the export may be passed on: what it
     names is copied only where it is a picture and lies in the folder of the .blend file, or where the user says that it may lie anywhere."""
     path = images.behind(scene.camera, frame) if request.pictures == "BACKGROUND" else pictures.get(frame)
     if not path:

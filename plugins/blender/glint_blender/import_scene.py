@@ -165,7 +165,7 @@ class Importer:
         return rows
 
     def _picture(self, frame):
-        """Path of the picture of a frame, None where there is none (or none to show)."""
+        """Path of the picture of a frame, None without one (or without one to show)."""
         for key in ("image", "radiance"):
             if isinstance(frame[key], str) and frame[key]:
                 file = scene_file.inside(os.path.dirname(os.path.abspath(self.path)), frame[key], self.path, f"frames.{key}")

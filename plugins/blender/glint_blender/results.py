@@ -125,7 +125,7 @@ def check_index(row, frames, file, place):
 
 
 def fit_for(results, model, light, surface):
-    """The fit that predicts a light on a surface; None where there is none."""
+    """The fit that predicts a light on a surface; None without one."""
     rows = [f for f in results.fits.get(model, []) if f["light"] == light and f["status"] in ("ok", "poor")]
     own = [f for f in rows if f["surface"] == surface and surface is not None]
     return (own or [f for f in rows if f["surface"] is None] or [None])[0]

@@ -405,7 +405,7 @@ def tradeoff(scene: Union[Scene, Session], models: Union[None, str, _abc.Sequenc
     Parameters
     ----------
     scene, models, train, exclude, level, source
-        As of `inspect`; without models the session's are compared, of a scene all.
+        The parameters of `inspect`. Without models, compares those of the session, or all of them for a scene.
     budget_us : float
         Choose the most accurate setting within this many microseconds per frame.
     max_error_pct : float

@@ -32,7 +32,7 @@ using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
 Doubles doublesFrom(py::handle given, const std::vector<py::ssize_t>& shape, const std::string& name, bool finite = true);
 /// Whole numbers of 32 bits, N x 3. TypeError for other numbers; ValueError for another shape, or a number that does not fit.
 std::vector<Eigen::Vector3i> trianglesFrom(py::handle given, const std::string& name);
-/// H x W or H x W x C. Not finite where `finite` is false: depth maps say so where there is none.
+/// H x W or H x W x C. Not finite where `finite` is false: depth maps mark pixels without depth so.
 Image imageFrom(py::handle given, const std::string& name, bool finite);
 
 template <int N>
@@ -59,7 +59,7 @@ Eigen::Matrix<double, Rows, Columns> matrixFrom(py::handle given, const std::str
 /// What stands for a number that there is not.
 inline constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
-/// A rigid pose from a 4 x 4 matrix; ValueError where it is none.
+/// A rigid pose from a 4 x 4 matrix; ValueError for any other matrix.
 Eigen::Isometry3d poseFrom(py::handle given, const std::string& name);
 
 /// Memory of `owner`, which lives as long as the array; read-only.

@@ -9,7 +9,7 @@
 
 namespace glint::python {
 
-/// A request as a caller of Python states it: what is None is the session's, else the default. Parameters as of inspectAsAsked().
+/// A request as a caller of Python states it: what is None is the session's, else the default. The parameters are those of inspectAsAsked().
 InspectionRequest requestAsAsked(const SceneHandle& scene, const RequestHandle* request,
                                  const std::optional<std::vector<std::string>>& models, const std::optional<std::string>& train,
                                  const std::optional<std::string>& exclude, const std::optional<std::string>& level,

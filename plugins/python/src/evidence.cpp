@@ -103,7 +103,7 @@ void declareFrameEvidence(py::module_& module) {
       .def_readonly("highlights", &FrameEvidence::highlights, "List of Highlight.")
       .def_property_readonly(
           "failure", [](const FrameEvidence& e) { return messageOrNone(e.failure ? &*e.failure : nullptr); },
-          "Why there are none, or None.")
+          "Why they are missing, or None.")
       .def_property_readonly(
           "rejected",
           [](const FrameEvidence& e) {

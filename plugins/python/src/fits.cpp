@@ -122,7 +122,7 @@ void declarePrediction(py::module_& module) {
       .def_property_readonly("highlights", &Prediction::highlights, "List of PredictedHighlight; empty where there is a failure.",
                              py::return_value_policy::reference_internal)
       .def_property_readonly(
-          "failure", [](const Prediction& p) { return messageOrNone(p.failure()); }, "Why there are none, or None.")
+          "failure", [](const Prediction& p) { return messageOrNone(p.failure()); }, "Why they are missing, or None.")
       .def_readonly("time_us", &Prediction::timeUs, "Microseconds.")
       .def("__len__", [](const Prediction& p) { return p.highlights().size(); })
       .def(

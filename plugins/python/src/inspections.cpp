@@ -179,7 +179,7 @@ void declareParts(py::class_<InspectionHandle>& inspection) {
           },
           "ModelResult by the model's id.")
       .def("lights", &lightsOf, py::arg("frame") = 0,
-           "By light id: the LightEstimate that serves a frame, or why there is none, in words. It is the light with which one "
+           "By light id: the LightEstimate that serves a frame, or why it is missing, in words. It is the light with which one "
            "limit angle\n"
            "explains the contours best; on wide highlights that is not the lamp's place: `glint.lights` measures lamps.");
 }

@@ -114,7 +114,7 @@ void declareModels(py::module_& module) {
       "All models, from simple to rich.");
   module.def(
       "model", [](const std::string& id) { return ModelHandle{&modelByName(id)}; }, py::arg("id"),
-      "The model of this name. InputError, with the known names, when there is none.");
+      "The model of this name. InputError, with the known names, if it is unknown.");
   py::class_<LightEstimate>(module, "LightEstimate", "The light of some views, with what the contours say of it.")
       .def(py::init(&knownLight), py::arg("light"), py::arg("limit_angle") = 0.0,
            "A light that is known already. limit_angle : rad, of its contours.")

@@ -17,7 +17,7 @@
 namespace glint::python {
 namespace {
 
-constexpr int kMostRepeats = 1000;  // as of the command line
+constexpr int kMostRepeats = 1000;  // the command line's limit
 
 struct TradeoffHandle {
   Tradeoff tradeoff;

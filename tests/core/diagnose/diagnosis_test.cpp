@@ -88,8 +88,8 @@ TEST(Diagnosis, AMovedContourIsNamedAndItsExclusionIsARemedy) {
   EXPECT_LT(left->after.pct(), kExactPct) << "what is left is exact";
 }
 
-/// The bound of the whole: whatever is on screen, no remedy leaves the table of errors worse than it is, and the one that stands first leaves the
-/// smallest error of all models as they are, or a smaller one.
+/// The bound of the whole: whatever is on screen, no remedy leaves the table of errors worse than it is, and the one that stands
+/// first leaves the smallest error of all models as they are, or a smaller one.
 TEST(Diagnosis, RemediesAreWhatTheTableThenShows) {
   const Inspection inspection = inspected(withMovedContour(2), {"primal", "dual", "canonical", "limit-angle"});
   std::string least;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Bands of predictions: the estimator of what whole views are off by against simulated residuals whose variances are known, and the whole
-// pipeline against exact contours of scenes in which poses, scale and peaks are wrong.
+// Bands of predictions: the estimator of what whole views are off by against simulated residuals whose variances are known, and
+// the whole pipeline against exact contours of scenes in which poses, scale and peaks are wrong.
 #include <gtest/gtest.h>
 
 #include <Eigen/QR>
@@ -139,8 +139,8 @@ double insideOnBumps(int views, double noise, double shift, int trials, bool pla
   return in / (double(trials) * kPoints);
 }
 
-// With some of these seeds (1 and 5) round-off once made a shift that all views share, which no residual can show, the likeliest: nothing was left
-// for single views.
+// With some of these seeds (1 and 5) round-off once made a shift that all views share, which no residual can show, the likeliest:
+// nothing was left for single views.
 TEST(ViewEffects, FindsTheSizesOfNoiseAndOfShifts) {
   for (unsigned seed = 1; seed <= 12; ++seed) {
     const ViewEffects e(simulated(60, 0.3, 0.5, seed).views, 10);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// detect.background = colours on path-traced sequences under other paint: contours against those of the specular radiance, which another program traced, and
-// models that are fitted on them. docs/make_real.py reads the printed rows.
+// detect.background = colours on path-traced sequences under other paint: contours against those of the specular radiance, which
+// another program traced, and models that are fitted on them. docs/make_real.py reads the printed rows.
 #include "tests/core/fit/coloured_cycles.h"
 
 #include <algorithm>

@@ -69,8 +69,8 @@ std::optional<BandCase> bandCase(const Lobe& lobe, double share, unsigned seed) 
                   h.skirt->sigmaPx};
 }
 
-/// What docs/real.md shows. Errors of a lobe's shape are the same in every picture of it, so each lobe must lie within two standard deviations everywhere, and
-/// all of them together within one as often as a standard deviation says.
+/// What docs/real.md shows. Errors of a lobe's shape are the same in every picture of it, so each lobe must lie within two
+/// standard deviations everywhere, and all of them together within one as often as a standard deviation says.
 TEST(ClippedBand, NoiseTheTruthLiesInItAtTheStatedProbability) {
   constexpr unsigned kSeeds = 4;
   int cases = 0, withinOne = 0;

@@ -132,8 +132,8 @@ TEST(DetectHighlights, Noise) {
   EXPECT_LT(peak, 0.3);
 }
 
-// Noise turns cells of the grid into saddles. A contour through one was lost, and the highlight with it. The area is that of the exact level set: noise
-// of 3 % moves the contour to and fro by about 1 px, and its area by far less than 3 %.
+// Noise turns cells of the grid into saddles. A contour through one was lost, and the highlight with it. The area is that of the
+// exact level set: noise of 3 % moves the contour to and fro by about 1 px, and its area by far less than 3 %.
 TEST(DetectHighlights, AContourThroughSaddlesIsOneContour) {
   Blob blob;
   blob.a = blob.b = 26;

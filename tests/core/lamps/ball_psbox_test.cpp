@@ -99,8 +99,8 @@ struct Mirror {
   }
 };
 
-/// By how many pixels of the first ball the two rays miss each other: (p2 - p1).(d1 x d2) over its gradient by the first peak. It does not depend
-/// on how far the lamp is. The whole difference is put on one peak: with equal errors each has 0.7 of it.
+/// By how many pixels of the first ball the two rays miss each other: (p2 - p1).(d1 x d2) over its gradient by the first peak. It
+/// does not depend on how far the lamp is. The whole difference is put on one peak: with equal errors each has 0.7 of it.
 double across(const Mirror& a, const Mirror& b, const Eigen::Vector2d& peakA, const Eigen::Vector2d& peakB) {
   const auto miss = [&](const Eigen::Vector2d& p) {
     const auto [p1, d1] = a.ray(p);

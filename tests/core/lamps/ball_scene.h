@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Mirror balls before a camera, in 64-bit long doubles and by Fermat's principle: the light takes the shortest way. It shares nothing with
-// the reflection law that the program solves.
+// Mirror balls before a camera, in 64-bit long doubles and by Fermat's principle: the light takes the shortest way. It shares
+// nothing with the reflection law that the program solves.
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>

@@ -213,8 +213,8 @@ TEST(Plausible, EllipsoidsOfContoursThatContradictEachOtherArePoorOrRefused) {
     }
 }
 
-/// Every second contour smaller by `share` of its radius, the others larger, and the light of these. Plain least squares: a robust scale in
-/// pixels would leave open where between the two sizes the limit angle lies.
+/// Every second contour smaller by `share` of its radius, the others larger, and the light of these. Plain least squares: a
+/// robust scale in pixels would leave open where between the two sizes the limit angle lies.
 FitInput inTwoSizes(double share, Settings& settings) {
   settings.set("light.robust_px", 100.0);
   FitInput input = fitInput(ellipsoidScene(), settings);
@@ -257,8 +257,8 @@ TEST(Plausible, LimitAngleIsNeverOkOnContoursThatContradictEachOther) {
     }
 }
 
-// A tenth of every contour runs twice as far out, as along a reflection beside the highlight. The rest is exact, and the fit keeps to it; the
-// RMS of all points is more than a tenth of the radius.
+// A tenth of every contour runs twice as far out, as along a reflection beside the highlight. The rest is exact, and the fit
+// keeps to it; the RMS of all points is more than a tenth of the radius.
 TEST(Plausible, LimitAngleAnswersWhereATenthOfTheContourIsWild) {
   Settings settings;
   settings.set("light.bundle_points", 72);
@@ -304,8 +304,8 @@ TEST(Plausible, LimitAngleKnowsItsResidualsAndTheConditionOfItsLight) {
   }
 }
 
-// Noise of 2 px makes the bundle try other starts. What it says of the best one is what the noise leaves across the contours, 72 points a view:
-// it held corrections that a start far off had left, and then said 25 px.
+// Noise of 2 px makes the bundle try other starts. What it says of the best one is what the noise leaves across the contours, 72
+// points a view: it held corrections that a start far off had left, and then said 25 px.
 TEST(Plausible, LimitAngleLeavesTheNoiseWhicheverStartsWereTried) {
   for (const int views : {4, 5, 6})
     for (const double noise : {1.0, 2.0, 3.0})

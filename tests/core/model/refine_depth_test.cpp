@@ -14,8 +14,8 @@ namespace {
 
 using namespace test;
 
-/// What a depth camera with a smooth error reports of a shape: along each of its view rays the stored depth is the true one divided by the correction.
-/// Normals are those of the reported depth, by differences. Knows only rays from its own camera.
+/// What a depth camera with a smooth error reports of a shape: along each of its view rays the stored depth is the true one
+/// divided by the correction. Normals are those of the reported depth, by differences. Knows only rays from its own camera.
 class WrongDepth : public Surface {
  public:
   WrongDepth(std::shared_ptr<const Surface> truth, const Camera& camera, const DepthCorrection& error)

@@ -118,8 +118,8 @@ TEST(Reflectance, FindsWideBeckmannLobes) {
       }
 }
 
-// Contours at 0.3, 0.5 and 0.7 with independent noise of one pixel, the peak's once, tell a microfacet lobe from every other; the one at
-// 0.5 alone leaves it open (method.md section 15).
+// Contours at 0.3, 0.5 and 0.7 with independent noise of one pixel, the peak's once, tell a microfacet lobe from every other; the
+// one at 0.5 alone leaves it open (method.md section 15).
 TEST(Reflectance, SeveralLevelsNameTheLobe) {
   const auto noisy = [](const Polyline& contour, unsigned seed) {
     std::mt19937_64 engine(seed);

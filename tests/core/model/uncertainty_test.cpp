@@ -15,8 +15,8 @@ namespace {
 
 using namespace test;
 
-// Camera at height d straight above the plane, value = distance from the axis, level r: moving the level by s metres moves the circle by
-// s f / d pixels everywhere.
+// Camera at height d straight above the plane, value = distance from the axis, level r: moving the level by s metres moves the
+// circle by s f / d pixels everywhere.
 TEST(LevelSetSigma, OfACircleSeenFromAbove) {
   const Camera camera = lookAt({0, 0, 4}, {0, 0, 0}, 800);
   const auto surface = makeAnalytic(plane());
@@ -214,8 +214,8 @@ TEST(Band, IsEmptyWhereNothingIsKnown) {
   }
 }
 
-// The covariance of the refined ellipsoid against the spread of 150 noisy fits: the ratio of two standard deviations from 150 trials has a
-// standard error of 6 %.
+// The covariance of the refined ellipsoid against the spread of 150 noisy fits: the ratio of two standard deviations from 150
+// trials has a standard error of 6 %.
 TEST(RefinedUncertainty, AgreesWithTheSpreadOfNoisyFits) {
   Eigen::Isometry3d place = pose(0.7, {0.2, -0.1, 0.3});
   const Ellipsoid truth(place, {0.5, 0.35, 0.2});

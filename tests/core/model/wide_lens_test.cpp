@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Highlights far from the axis of a fisheye lens, against those that an ordinary camera at the same place sees when it is turned towards
-// them: the same rays, far inside of its image.
+// Highlights far from the axis of a fisheye lens, against those that an ordinary camera at the same place sees when it is turned
+// towards them: the same rays, far inside of its image.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -25,8 +25,8 @@ enum class Quantity { Light, LimitAngle, Roughness, Centre, Shape, ContourPx, Pe
 constexpr int kQuantities = 10;
 const char* nameOf(Quantity quantity);
 
-/// Largest differences, by model and quantity. Lights (by distance), limit angles, roughness and ellipsoids (centre by distance, shape by size)
-/// are relative, contours, peaks and errors in px of the first scene.
+/// Largest differences, by model and quantity. Lights (by distance), limit angles, roughness and ellipsoids (centre by distance,
+/// shape by size) are relative, contours, peaks and errors in px of the first scene.
 struct Differences {
   struct Worst {
     double difference = 0;

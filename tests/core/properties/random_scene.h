@@ -25,8 +25,8 @@ struct Draw {
   unsigned seed = 1;
   std::string text() const;
 };
-/// The scene with this number: any ten from a multiple of ten on hold every kind with one and with two lights, exact and noisy; any twenty
-/// hold every kind with both contours too.
+/// The scene with this number: any ten from a multiple of ten on hold every kind with one and with two lights, exact and noisy;
+/// any twenty hold every kind with both contours too.
 Draw draw(int number, unsigned seed);
 
 /// A scene whose frames give their highlights, with a mesh as a file beside it.
@@ -52,8 +52,8 @@ RandomScene mirrored(const RandomScene& s, const std::filesystem::path& folder);
 RandomScene zoomed(const RandomScene& s, int zoom);
 /// Frames in the order of `order`.
 RandomScene reordered(const RandomScene& s, const std::vector<int>& order);
-/// With one more frame "ID again" for each of `frames`, which trains where the frame does. @param turned  its contours start at another vertex:
-/// the same evidence, but not the same numbers.
+/// With one more frame "ID again" for each of `frames`, which trains where the frame does. @param turned  its contours start at
+/// another vertex: the same evidence, but not the same numbers.
 RandomScene repeated(const RandomScene& s, const std::vector<int>& frames, bool turned = false);
 
 }  // namespace glint::testing_support

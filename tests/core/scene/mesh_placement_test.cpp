@@ -103,8 +103,8 @@ TEST(PlaceMesh, FindsWhatIsOnlyTurnedShiftedOrScaled) {
   }
 }
 
-/// 200 points that scatter by 0.5 % of the size determine a corner to some 0.2 % of it: less than a pixel of images in which the mesh is 120 px
-/// large. Points of a floor and walls do no harm.
+/// 200 points that scatter by 0.5 % of the size determine a corner to some 0.2 % of it: less than a pixel of images in which the
+/// mesh is 120 px large. Points of a floor and walls do no harm.
 TEST(PlaceMesh, NoiseAndOtherThingsInTheCloud) {
   TriangleMesh mesh = body(lump);
   const double size = 2.4;  // of the lump's box

@@ -500,8 +500,8 @@ TEST(WriteScene, EveryKindOfSurfaceLightAndHighlightComesBack) {
   EXPECT_EQ(readScene(folder / "three.json").frames.size(), 2u);
 }
 
-/// Rotations are written with nine digits as often as with all of them. At 1e6 m the tenth digit is a millimetre: the camera must stay where
-/// R c + t = 0 says, not where -R^T t does.
+/// Rotations are written with nine digits as often as with all of them. At 1e6 m the tenth digit is a millimetre: the camera must
+/// stay where R c + t = 0 says, not where -R^T t does.
 TEST(ReadSceneJson, ARotationOfNineDigitsKeepsItsCameraInPlace) {
   const Eigen::Vector3d centre(1e6, -6e5, 3e5);
   Eigen::Matrix3d r = (Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, -1).normalized())).toRotationMatrix();

@@ -141,8 +141,8 @@ TEST(DepthFit, Degenerate) {
   for (const float z : fittedDepth(Image(160, 120, 1), camera, 0.05).depth.data) ASSERT_EQ(z, 0.f);
 }
 
-// Three standard deviations and the rounding of the published model: 351.3 / z is whole, and its error a sixth of a pixel before rounding:
-// together the variance 1/36 + 1/12.
+// Three standard deviations and the rounding of the published model: 351.3 / z is whole, and its error a sixth of a pixel before
+// rounding: together the variance 1/36 + 1/12.
 TEST(DepthNoise, AsPublished) {
   for (const double z : {1.0, 3.0}) {
     Image depth(160, 120, 1, static_cast<float>(z));
