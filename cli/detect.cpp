@@ -24,7 +24,7 @@
 namespace glint::cli {
 namespace {
 
-/// A contour that may be off by more than this, in percent of the diameter, is pointed out: predictions from exact contours are better.
+/// Points out contours that may be off by more than this, % of the diameter: predictions from exact contours are better.
 constexpr double kWorthSayingPct = 0.25;
 
 constexpr std::size_t kRejectedLines = 3;  // of a frame in the table; the JSON has them all
@@ -70,7 +70,7 @@ struct Seen {
   std::optional<Parting> parting;
 };
 
-/// What is not known of a contour on the specular part: its noise, and what diffuse light is left. No tail passes for background there.
+/// The uncertainty of a contour on the specular part: noise and leftover diffuse light. No tail passes for background there.
 void qualityOfParted(const Parting& parting, Seen& seen) {
   for (std::size_t i = 0; parting.parted && i < seen.quality.size(); ++i) {
     seen.quality[i].noisePx = movedBy(parting.regions[i].noise, seen.evidence.highlights[i]);

@@ -43,7 +43,7 @@ struct InspectionArguments {
 /// `--exclude` of a command that trains.
 inline constexpr const char* kExcludeHelp =
     "Frames to exclude from training and scoring: numbers, ids or ranges (default: the session's, else none)";
-/// Puts the frames of --exclude into the request; the request's own stay where the text is empty. InputError for one that names no frame, or all.
+/// Puts the frames of --exclude into the request; an empty text keeps the request's own. InputError if it names no frame, or all.
 void exclude(const std::string& spec, const Scene& scene, InspectionRequest& request);
 
 /// Every KEY=VALUE of --set, in its order. InputError for a text of another form, an unknown key or a value out of range.

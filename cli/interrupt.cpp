@@ -67,7 +67,7 @@ void waitForSignals() {
   ::_exit(130);
 }
 
-// Before the constructors of the libraries and of this program: a signal that comes while they run ends the program as any other does.
+// Runs before the constructors of the libraries and of this program: a signal during these ends the program as any other does.
 __attribute__((section(".preinit_array"), used)) void (*const earliest)() = handleBySignal;
 
 }  // namespace
@@ -115,7 +115,7 @@ InterruptGuard::~InterruptGuard() {
   }
   pthread_kill(waiter.native_handle(), SIGUSR1);
   waiter.join();
-  // The rest is the end of the process. It may wait for whoever reads the output, so that a signal has to end it as it did before main.
+  // The rest is the end of the process. It may wait for the reader of the output, so a signal has to end it as before main.
   const sigset_t set = stopSignals();
   pthread_sigmask(SIG_UNBLOCK, &set, nullptr);
 }

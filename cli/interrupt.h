@@ -17,13 +17,13 @@ class InterruptGuard {
 /// True after the first Ctrl-C, unless the command was done before it.
 bool interrupted();
 
-/// The command is done and only its result remains to be said: a Ctrl-C from now on changes nothing more. False when one came before.
+/// The command is done, only its result remains to be said: a Ctrl-C changes nothing from now on. False if one came before.
 bool finish();
 
 /// Says once that the program was stopped: the thread and the command may both come to it. It has been said when this returns.
 void sayStopped();
 
-/// Ends an interrupted process without waiting for destructors, which may take longer than is promised; unfinished writes are removed.
+/// Ends an interrupted process without waiting for destructors, which may take too long. Removes unfinished writes.
 [[noreturn]] void leaveAtOnce(int exitCode);
 
 }  // namespace glint::cli

@@ -116,7 +116,7 @@ int run(int argc, char** argv) {
   QApplication::setAttribute(Qt::AA_EnableHighDpiScaling);
   QApplication::setAttribute(Qt::AA_UseHighDpiPixmaps);
 #endif
-  // What Qt notes for programmers (a folder that the system did not set, a style without a font) is no line for the user; a fatal one is.
+  // Qt's notes for programmers (a folder that the system lacks, a style without a font) are not for the user; a fatal one is.
   qInstallMessageHandler([](QtMsgType type, const QMessageLogContext&, const QString& text) {
     if (type != QtFatalMsg) return;
     printErrorLine(text.toStdString());

@@ -17,7 +17,7 @@ struct CloudContent {
   std::size_t without = 0;               ///< points of the file without a place: NaN where a sensor saw nothing (PCD)
 };
 
-/// Whether a file that begins so is a cloud: a PCD file, or a PLY file whose header names no faces. A header that ends beyond `start` does not count.
+/// Whether a file with this start is a cloud: a PCD file, or a PLY file whose header, all of it within `start`, names no faces.
 bool looksLikeCloud(std::string_view start);
 inline constexpr std::size_t kCloudHeader = 4096;  // bytes that tell; a longer header is that of a mesh with many properties
 

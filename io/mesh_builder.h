@@ -59,7 +59,7 @@ class Fan {
   int first_ = 0, last_ = 0;
 };
 
-/// Coordinates that cannot be used, with their places: a fault only where a triangle uses them. Programs write NaN for what a sensor did not see.
+/// Unusable coordinates with their places: a fault only if a triangle uses them. Programs write NaN for what a sensor missed.
 class BadVertices {
  public:
   void note(std::size_t vertex, std::size_t place) { found_.push_back({vertex, place}); }

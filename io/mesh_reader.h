@@ -25,7 +25,7 @@ MeshContent readMeshContent(const std::filesystem::path& file);
 MeshContent parseMesh(std::string_view bytes, const std::filesystem::path& file);
 
 /// One format each; `parseMesh` chooses. PLY: ascii and binary of both byte orders, any scalar types, further properties and
-/// elements are skipped. Faces are the element "face", or "tristrips" with -1 between strips. @see G. Turk, The PLY Polygon File Format, 1994.
+/// elements are skipped. Faces are the element "face", or "tristrips", -1 between strips. @see Turk, The PLY File Format, 1994.
 MeshContent parsePly(std::string_view bytes, const std::string& file);
 /// OBJ: v, vn, vt and f are read (also negative indices, v//n, mixed corners, lines that go on after a backslash), other
 /// statements are skipped. A vertex with two different normals becomes two. @see Wavefront, Object Files (.obj), Appendix B1.

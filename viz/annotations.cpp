@@ -181,7 +181,7 @@ struct Annotations::Impl {
     }
     actor->SetInput(shorter(fits).c_str());
   }
-  /// Entries that may be left out share rows where one for each would take too much of the picture, and are left out in a low one.
+  /// Optional entries share rows if one for each would take too much of the picture. A low picture leaves them out.
   enum class LegendRows { Own, Shared, Fewer };
   LegendRows legendRows(double rowHeight, int height) const {
     const auto rows = [&](double each) {

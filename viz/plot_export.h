@@ -20,7 +20,7 @@ struct PlotCaption {
 Image plotImage(const PlotData& plot, const PlotStyle& style, const Selection& selection, int width, int height,
                 const PlotCaption& caption = {});
 
-/// The same as SVG, as SvgPainter writes it, the caption as text and as description. Written as a whole or not at all. InputError when it cannot be written.
+/// The same as SVG by SvgPainter, the caption as text and description; all or nothing. InputError if it cannot be written.
 void writePlotSvg(const PlotData& plot, const PlotStyle& style, const Selection& selection, int width, int height,
                   const std::string& file, const PlotCaption& caption = {});
 

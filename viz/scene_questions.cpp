@@ -202,7 +202,7 @@ std::optional<Framing> highlightFraming(const LayerInput& in, int highlight, Hig
     if (across.dot(toCamera) < 0) across = -across;
     place.back = (0.42 * p.normal + 0.75 * across + 0.5 * side).normalized();
   }
-  // A vase stands: where the highlight is on its side, upwards is the world's. All cameras together tell it, also where one alone is shown.
+  // A vase stands: with the highlight on its side, up is the world's up. All cameras together tell it, even if only one is shown.
   std::vector<int> cameras(in.inspection->scene->frames.size());
   std::iota(cameras.begin(), cameras.end(), 0);
   if (look != HighlightLook::Camera)

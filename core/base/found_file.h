@@ -24,7 +24,7 @@ class FileFinder {
   /// FOLDER/b/c.ply, then FOLDER/c.ply), exactly; else as `at`. Empty = none.
   std::filesystem::path under(const std::filesystem::path& folder, const std::string& file, Ending ending = Ending::AsNamed);
 
-  /// "8 files have other names ..., the first: 'a.png' is 'a.PNG'": those that were found in spite of case, form or ending. "" = none.
+  /// "8 files have other names ..., the first: 'a.png' is 'a.PNG'": the files found in spite of case, form or ending. "" = none.
   std::string differences() const;
 
  private:

@@ -208,7 +208,7 @@ struct TiffTags {
 
 constexpr const char* kRaw = "the file is a raw file of a camera: develop it to TIFF or PNG first";
 
-/// @see TIFF 6.0, 2: a directory of entries (tag, type, count, value). @see AWare Systems, The BigTIFF File Format Proposal, 2008.
+/// @see TIFF 6.0, 2: entries (tag, type, count, value). @see AWare Systems, The BigTIFF File Format Proposal, 2008.
 ImageHeader tiffHeader(std::string_view bytes, ImageHeader h) {
   const NumbersInBytes in(bytes, startsWith(bytes, "MM"));
   constexpr std::uint64_t kBigTiff = 43;

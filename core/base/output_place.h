@@ -34,7 +34,7 @@ class OpenFolder {
 void expectOutput(const std::filesystem::path& path, std::function<bool()> stillAllowed);
 
 /// Called with the folder that is written into, after it was opened. Does nothing for a path that nobody expected.
-/// @throw InputError (file) when a link on the way to the path appeared or changed since `expectOutput`, or what is there is not allowed
+/// @throw InputError (file) if a link on the way to the path appeared or changed since `expectOutput`, or its target is forbidden
 void requireAsExpected(const std::filesystem::path& path, const OpenFolder& folder);
 
 /// The write is done: the next one of this path is another one.

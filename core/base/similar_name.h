@@ -6,8 +6,8 @@
 
 namespace glint {
 
-/// Insertions, deletions, replacements and swaps of neighbours that turn one text into the other, byte by byte, no part edited twice (optimal
-/// string alignment). @see Damerau, A technique for computer detection and correction of spelling errors, CACM 1964.
+/// Insertions, deletions, replacements and swaps of neighbours that turn one text into another, byte by byte (optimal string
+/// alignment: edits no part twice). @see Damerau, A technique for computer detection and correction of spelling errors, 1964.
 int editDistance(const std::string& a, const std::string& b);
 
 /// The known name that was most likely meant: the nearest one, where at most a third of the given name is wrong; the first of

@@ -121,7 +121,7 @@ void requireWords(const Row& row, std::size_t words, const std::string& file) {
                      "needs " + std::to_string(words) + " entries, has " + std::to_string(row.words.size()) + " (a cut line?)");
 }
 
-/// Our pose of Bundler's, whose camera has y up and looks along -z. As typedPose: a rotation of few digits is replaced by the nearest one.
+/// Our pose of Bundler's, whose camera has y up and looks along -z. typedPose repairs a rotation of few digits.
 Eigen::Isometry3d bundlerPose(const Eigen::Matrix3d& r, const Eigen::Vector3d& t, const std::string& file,
                               const std::string& place, std::vector<std::string>& repaired) {
   const TypedPose typed = typedPose(r, t);
@@ -186,7 +186,7 @@ BundlerPoint bundlerPoint(BundlerWords& words, const std::string& what, std::siz
   return point;
 }
 
-/// Reads the points, which follow the cameras. A bad point ends the reading where the lines do not tell where the next one begins.
+/// Reads the points, which follow the cameras. A bad point ends the reading if the lines do not tell where the next one begins.
 void readBundlerPoints(BundlerWords& words, std::uint64_t points, const std::string& file, BundlerModel& model) {
   capture::BadLines bad;
   for (std::uint64_t i = 0; i < points; ++i) {
@@ -237,7 +237,7 @@ BundlerModel readBundler(const fs::path& path) {
 }
 
 /// The list of images of a file: named after it ("model.out.list.txt" of "model.out"), or alike ("list.txt" of "bundle.out",
-/// "scene.list.txt" of COLMAP's "scene.bundle.out"), else "list.txt" beside it, else in the folder around `bundle/`, where Bundler was started. Empty = none.
+/// "scene.list.txt" of COLMAP's "scene.bundle.out"), else "list.txt" beside it or in the folder around `bundle/`. Empty = none.
 fs::path bundlerListOf(const fs::path& file) {
   const fs::path folder = file.parent_path();
   std::vector<fs::path> places{folder / "list.txt"};

@@ -99,7 +99,7 @@ class CaptureReader {
   /// What `recognise` would return for a folder if a file that it needs were there, so that `read` can say which; "" = nothing.
   /// Asked where no reader recognises the folder.
   virtual std::filesystem::path incomplete(const std::filesystem::path& folder) const;
-  /// Reads what `recognise` returned. InputError with file, place ("line 12", "frames[3].transform_matrix", "byte 120") and reason.
+  /// Reads what `recognise` found. InputError (file, place: "line 12", "frames[3].transform_matrix" or "byte 120", reason).
   virtual Capture read(const std::filesystem::path& file, const CaptureOptions& options) const = 0;
   /// The sparse points of what `read` returned; empty where the program has none. InputError as `read`.
   virtual std::vector<CaptureTrack> tracks(const Capture& capture, const CaptureOptions& options) const;

@@ -234,7 +234,7 @@ std::array<int, 2> nerfSize(const NerfKeys& keys, const fs::path& image, capture
   return size;
 }
 
-/// Focal length along x or y from the angle that the whole image spans: size / 2 = f tan(angle / 2). Nothing without such an angle.
+/// Focal length along x or y from the angle across the image: size / 2 = f tan(angle / 2). Nothing without such an angle.
 std::optional<double> nerfFocalOfAngle(const NerfKeys& keys, char axis, int sizePx) {
   std::optional<JsonNode> node = keys.find(std::string("camera_angle_") + axis);
   double unit = 1;

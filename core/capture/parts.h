@@ -14,7 +14,7 @@
 
 namespace glint::capture {
 
-/// Added to a coordinate whose origin is the corner of the first pixel (COLMAP, nerfstudio) gives ours, whose origin is its centre.
+/// Turns coordinates from the corner of the first pixel (COLMAP, nerfstudio) into ours, from its centre, when added.
 inline constexpr double kFromCorner = -0.5;
 
 /// Rotation of a quaternion of any length but 0. A length that is off by more than 1e-3 was hardly meant as one: `warnings` says

@@ -15,7 +15,7 @@
 
 namespace glint {
 
-/// A camera of a sequence: of a live stream, a video, a folder of photographs. Two kinds of lines, told apart by their first sign:
+/// A camera of a live stream, a video or a folder of photographs. The first sign of a line tells its kind:
 ///   {"id": "0007", "time": 1.23, "camera_from_world": [4x4], "camera": {optional}}      JSON, keys as in scene files
 ///   1305031102.1758 tx ty tz qx qy qz qw                                                TUM: camera to world, quaternion w last
 /// Times in seconds (others: capture::secondsOf); lengths in the unit of the scene.
@@ -52,7 +52,7 @@ class PoseLineReader {
   /// The next pose; nothing at the end. After a throw about a line, the next call reads the line behind it.
   /// @throw LostPose    for a line that says that there is no pose
   /// @throw CutPose     for a line with fewer numbers than a pose, or of JSON that the end of the file cuts
-  /// @throw InputError  (name, "line 7" or "line 7: camera_from_world[0]") for a line that states no pose, is longer than kLongestPoseLine,
+  /// @throw InputError  (name, "line 7" or "line 7: camera_from_world[0]") for a line without pose, longer than kLongestPoseLine,
   ///                    or whose pose is not rigid (core/geometry/pose_json.h); with the name alone where the file cannot be read
   std::optional<PoseLine> next();
 

@@ -17,8 +17,8 @@ double secondsOf(double time);
 /// The index that means "no partner".
 inline constexpr std::size_t kNoPair = static_cast<std::size_t>(-1);
 
-/// For each time (s) the index of the one among `others` that belongs to it, else kNoPair: again and again the two closest that are
-/// left become a pair, as long as they are at most kApart apart. That is what TUM's associate.py does with the table of all pairs.
+/// For each time (s) the index of the one among `others` that belongs to it, else kNoPair: again and again the two closest that
+/// are left become a pair, as long as they are at most kApart apart, as TUM's associate.py does with the table of all pairs.
 ///
 /// On the line of time the two closest of different kind stand side by side (one between them would be closer to one of them),
 /// so neighbours are all that has to be looked at: the table is quadratic where a file repeats a time.

@@ -31,7 +31,7 @@ struct VideoContent {
 /// count, because they name other files. False if the file cannot be read.
 bool looksLikeVideo(const std::filesystem::path& file);
 
-/// Goes through all pictures, without converting them. InputError: no video (looksLikeVideo), nothing decodes, more than kMostPictures,
+/// Visits all pictures without converting them. InputError: no video (looksLikeVideo), nothing decodes, more than kMostPictures,
 /// a picture of more than the limit of pixels, pictures of several sizes, times that do not rise. CodecsMissing, as videoPicture.
 VideoContent readVideoContent(const std::filesystem::path& file);
 inline constexpr int kMostPictures = 200'000;  // two hours at 25 per second

@@ -24,7 +24,7 @@ class CodecsMissing : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Loads what the functions below need, unless that was done. Call it where an exception of theirs would be taken for a damaged file.
+/// Loads what the functions below need, once. Call it where an exception of theirs would be taken for a damaged file.
 void loadCodecs();
 
 /// All channels in OpenCV's order (blue first), in the file's own depth, as cv::imdecode with IMREAD_UNCHANGED gives them. TIFF

@@ -12,8 +12,8 @@ class Mat;
 
 namespace glint {
 
-/// BigTIFF; TIFF with half floats, with an orientation of a quarter turn (not applied, while OpenCV does), or with more than 8 bits in separate planes, of which OpenCV 4.6 makes three narrow pictures.
-/// @param reason  takes why a file of this kind is refused; the picture is then empty
+/// BigTIFF; TIFF with half floats, with an orientation of a quarter turn (not applied, while OpenCV does), or with over 8 bits in
+/// separate planes (OpenCV 4.6 makes three narrow pictures). @param reason  says why a file is refused; the picture is then empty
 /// @return blue first, 1 or 3 channels, half floats as floats; nothing: a file for OpenCV
 /// @throws std::runtime_error  damaged data
 std::optional<cv::Mat> decodeTiff(const std::string& bytes, std::string& reason);
@@ -25,7 +25,7 @@ std::optional<cv::Mat> decodeTiff(const std::string& bytes, std::string& reason)
 /// @throws std::exception  damaged data
 std::optional<cv::Mat> decodeExrLayer(const std::string& bytes, std::string& reason);
 
-/// The channel of depth of an EXR file: Z or V without a layer, else the one of a layer (the one named Depth, where there are several).
+/// The channel of depth of an EXR file: Z or V without a layer, else that of a layer (named Depth, if there are several).
 /// @param reason  says why the picture is empty. @throws std::exception  damaged data
 cv::Mat depthOfExr(const std::string& bytes, std::string& reason);
 

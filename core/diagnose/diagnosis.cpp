@@ -147,7 +147,7 @@ class Adviser {
     }
   }
 
-  /// What may help the best model, and others that are not far from it: their first changes first. Where none answers, that of the present one.
+  /// What may help the best model and those close to it, their first changes first. If none answers, the present one.
   std::vector<CandidateChange> changesWorthATrial() {
     std::vector<std::pair<double, std::string>> bases;
     for (const auto& [model, of] : results_) {
@@ -200,7 +200,7 @@ class Adviser {
     tell();
   }
 
-  /// It has seen the training frames alone, so that it may choose another model than held-out frames do. No question where one model answers.
+  /// It sees training frames only, so it may choose another model than held-out frames do. Not asked if one model answers.
   void askAuto() {
     const auto answers = std::count_if(results_.begin(), results_.end(),
                                        [&](const auto& entry) { return errorOf(d_, entry.first)->matched() > 0; });

@@ -30,7 +30,7 @@ struct HighlightEvidence {
 /// @param inspection  with evidence, views, and the lights if the model needs one
 std::vector<HighlightEvidence> highlightEvidence(const Inspection& inspection, const HighlightModel& model);
 
-/// Two highlights of one light whose limit angles lie so far apart that one limit angle cannot fit both; null without such a pair.
+/// Two highlights of one light whose limit angles lie too far apart for one limit angle to fit both; null without such a pair.
 struct LimitConflict {
   const HighlightEvidence* wide = nullptr;
   const HighlightEvidence* narrow = nullptr;

@@ -8,8 +8,8 @@
 
 namespace glint {
 
-/// What a model, with its settings and training frames, gets wrong in views that its fit did not see: the held-out frames, as every table of errors
-/// counts them; where none of them shows a highlight, the training views, each predicted by a fit without its place (core/selection).
+/// A model's error, with its settings and training frames, in views that its fit did not see: the held-out frames, as in every
+/// table of errors. If none shows a highlight: training views, each predicted by a fit without its place (core/selection).
 struct UnseenError {
   /// One light in one frame.
   struct View {

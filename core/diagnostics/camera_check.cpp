@@ -310,7 +310,7 @@ class Check {
     return sum;
   }
 
-  /// The shift of the mesh after which mirrored rays pass one lamp best: steps along the axes and between them, halved where none helps.
+  /// The shift of the mesh after which mirrored rays pass one lamp best: steps along and between the axes, halved if none helps.
   Eigen::Vector3d shiftByRays(double size) const {
     constexpr double kLast = 0.002;  // of the size
     constexpr int kMostTries = 1500, kWays = 27;

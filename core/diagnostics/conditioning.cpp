@@ -68,7 +68,7 @@ std::vector<ConicView> outlinesOf(const HighlightModel& model, const std::vector
   return conics;
 }
 
-/// Where each view looks for the thing that is reconstructed: along its reflected ray, or straight on for a model that knows no mirror.
+/// Where each view looks for the reconstructed thing: along its reflected ray, or straight on for a model without a mirror.
 std::vector<Eigen::Vector3d> raysOf(const HighlightModel& model, const std::vector<TrainingView>& views) {
   std::vector<Eigen::Vector3d> rays;
   for (const TrainingView& v : views) {

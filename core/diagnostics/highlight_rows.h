@@ -69,7 +69,7 @@ inline const RowColumn& columnOf(RowValue value) { return highlightColumns()[std
 /// RowValue::Count when no column has this id.
 RowValue rowValueOf(const std::string& id);
 
-/// One row of an evaluation: a matched, missed or spurious highlight under one model, or a prediction that failed where nothing was observed.
+/// One row of an evaluation: a matched, missed or spurious highlight under one model, or a failed prediction of nothing observed.
 struct HighlightRow {
   int frame = -1, observed = -1, predicted = -1;  ///< as in FrameComparison::Row
   std::string model, light;                       ///< ids
@@ -81,7 +81,7 @@ struct HighlightRow {
   double value(RowValue which) const { return values[std::size_t(which)]; }
 };
 
-/// Every row of every model, by frame, then by model from simple to rich. What the evaluation holds; nothing is asked of surfaces or images.
+/// Every row of every model, by frame, then by model from simple to rich. Reads the evaluation only, no surface or image.
 std::vector<HighlightRow> highlightRows(const Inspection& inspection);
 
 /// What names a row within an inspection, also after it was computed again.

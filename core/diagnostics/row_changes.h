@@ -15,7 +15,7 @@ namespace glint {
 std::vector<int> counterparts(const Inspection& before, const std::vector<HighlightRow>& rowsBefore, const Inspection& after,
                               const std::vector<HighlightRow>& rowsAfter);
 
-/// How one model's errors in held-out frames changed. Only highlights with an error in both, held out in both, are in the means; the rest is counted.
+/// How one model's errors in held-out frames changed. The means hold highlights with an error in both runs; the rest is counted.
 struct ErrorChange {
   std::string model;
   int highlights = 0, frames = 0;        ///< in the means

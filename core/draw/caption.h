@@ -15,7 +15,7 @@ struct Caption {
   double height = 0;  ///< px, with the room above and below the lines; 0 = no caption
 };
 
-/// Breaks a caption at blanks; a word that is wider than the page is cut. What does not fit into `mostHeight` ends in an ellipsis.
+/// Breaks a caption at blanks; a word that is wider than the page is cut. What exceeds `mostHeight` ends in an ellipsis.
 /// @param painter  measures
 /// @param width    px of the whole picture
 Caption captionOf(const Painter& painter, const std::string& text, double sizePx, double width, double mostHeight);

@@ -11,7 +11,7 @@ namespace glint::draw {
 /// @param highlight  index into FrameEvidence::scored(); -1 = the first
 void addLobes(const FrameSamples& samples, int highlight, FrameOverlay& overlay);
 
-/// Of the level: low enough to tell a long tail, high enough to lie within what LobeOptions::reach samples (GGX: 1.95 of 2.2 times the contour).
+/// Share of the level: low enough to tell a long tail, high enough for LobeOptions::reach (GGX: 1.95 of 2.2 times the contour).
 inline constexpr double kTailShare = 0.3;
 
 }  // namespace glint::draw

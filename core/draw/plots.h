@@ -57,7 +57,7 @@ PlotData errorPlot(const Inspection& inspection, const ErrorPlotOptions& options
 /// log(I/K') against alpha of one highlight's pixels, the lobe fitted to them and the model's own. @param highlight  -1 = the
 /// first.
 PlotData lobePlot(const FrameSamples& samples, int highlight);
-/// Radiance over its peak against alpha: means and spread of the pixels of one highlight, and every lobe fitted to them, with roughness
+/// Radiance over its peak against alpha: mean and spread of one highlight's pixels, and every lobe fitted to them, with roughness
 /// and residual. @param highlight  -1 = the first.
 PlotData lobesPlot(const FrameSamples& samples, int highlight);
 /// The samples of one highlight; -1 = the first; null without samples.

@@ -13,7 +13,7 @@ namespace glint::draw {
 
 // What has no partner: observed highlights that a model misses, and predicted ones that nobody saw (spurious).
 
-/// Whether a predicted highlight of a comparison is spurious. What lies outside of the image or where a person ignores a highlight is not.
+/// Whether a predicted highlight of a comparison is spurious. Not outside of the image, or where a person ignores a highlight.
 bool isSpurious(const FrameComparison& comparison, int predicted);
 /// Which of the models miss an observed highlight, from simple to rich. A model that predicts nothing anywhere is left out: its
 /// fit says why.

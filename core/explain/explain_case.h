@@ -40,7 +40,7 @@ struct Case {
 bool reached(const Case& c, ExplainStep& step);
 /// What a model takes the surface for.
 ModelTraits::Assumes assumes(const std::string& model);
-/// How many of 72 points of the contour, equally spaced, lie where the surface ends as the camera sees it: its edge cuts the highlight.
+/// How many of 72 equally spaced contour points lie where the camera sees the surface end: its edge cuts the highlight.
 int endsAtEdge(const TrainingView& view);
 
 void virtualCameraStep(const Case& c, ExplainStep& step);

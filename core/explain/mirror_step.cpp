@@ -47,7 +47,7 @@ std::optional<std::array<End, 2>> endsAlong(const TrainingView& v, const Surface
 
 double angleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
-/// Largest angle between the normal at P_B and those along the contour, of its points that lie on the surface, rad; 0 without any.
+/// Largest angle between the normal at P_B and those at contour points on the surface, rad; 0 without any.
 double largestTurn(const TrainingView& v, const Surface& surface) {
   const Eigen::Vector3d eye = v.camera.centreInWorld();
   double most = 0;

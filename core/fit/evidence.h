@@ -23,16 +23,16 @@ struct SeparateLights {
 DetectOptions detectOptionsFor(const Frame& frame, FrameSource source, const Settings& settings);
 
 /// The image that detection sees, as evidence. FrameUnreadable.
-/// @param parted  how highlights of the frame were parted (FrameEvidence::parted): each pixel then holds the specular part by the combination of the
-///                nearest one, counted in its footprints, below 0 where noise says so. Empty: the mean of the channels
+/// @param parted  how the frame's highlights were separated (FrameEvidence::parted): each pixel then holds the specular part by
+///                the nearest one's combination, in footprints; below 0 where noise says so. Empty: the mean of the channels
 Outcome<LinearPixels> pixelsOf(const Frame& frame, FrameSource source, const Settings& settings,
                                const std::vector<PartedRegion>& parted = {});
 
-/// Contours at other levels, to the highlight of the same light whose peak they enclose. One around several peaks is evidence once.
+/// Contours at other levels, to the highlight of the same light whose peak they enclose. One around several peaks counts once.
 void addOtherLevels(const std::vector<Highlight>& given, std::vector<Highlight>& highlights);
 
-/// Highlights of one frame in ideal pixels: those that the scene gives, else detected (each at the level of its own peak where the frame states
-/// several lights). The light is set where the frame says which one is on (one light: its id; none stated: "light").
+/// Highlights of one frame in ideal pixels: those that the scene gives, else detected ones (each at the level of its own peak if
+/// the frame states several lights). Sets the light if the frame says which one is on (one light: its id; none stated: "light").
 FrameEvidence gatherEvidence(const Scene& scene, int frame, FrameSource source, const Settings& settings,
                              const SeparateLights& lights = {});
 

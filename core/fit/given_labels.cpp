@@ -16,7 +16,7 @@
 #include "core/fit/evidence.h"
 #include "core/geometry/distortion.h"
 
-// COCO's object detection format (Lin et al., Microsoft COCO: Common objects in context, ECCV 2014; cocodataset.org, "Data format").
+// COCO's object detection format (Lin et al., Microsoft COCO: Common objects in context, ECCV 2014; cocodataset.org).
 
 namespace glint {
 namespace {

@@ -16,7 +16,7 @@ class PanelDepths;
 enum class MotionUse { Off, Flag, Reject };
 MotionUse motionUse(const Settings& settings);
 
-/// What other views say about a bright spot: paint stays on its point of the surface, a highlight moves over the surface with the camera.
+/// What other views say about a bright spot: paint stays on its surface point, a highlight moves over it with the camera.
 struct MotionVerdict {
   enum class Kind {
     Unremarkable,  ///< it is elsewhere in other views, or nothing speaks for paint
@@ -43,13 +43,13 @@ std::vector<std::vector<int>> motionPanels(const Scene& scene, const SurfaceCach
 /// Tells paint from highlights by their motion over the surface (method.md section 1, "Motion").
 /// With P the surface point under the middle of a contour, every other view that sees P answers by the two places
 ///   paint:      the contour, carried over on the surface
-///   highlight:  predicted brightest points of lamps along the mirrored ray at P, from a fifth of the camera's distance to infinity, which stand
-///               still in the world or with the camera (so an object that is turned before a still camera is served as well)
-/// It speaks for paint where a candidate of like size and strength lies on the first and the second is farther away than twice what such a match
-/// leaves open, 4 px at least; against it where the spot would be strong enough to be found at the first and is not. Paint: at least two views speak for it, three
-/// times as many as speak against it, views within one degree of each other counted once, and what is left of the motion towards the second
-/// place is less than a lamp at a fiftieth of the camera's distance would cause. Nearer lamps cannot be told from paint, nor can relief that
-/// the surface does not have: the text says so.
+///   highlight:  predicted brightest points of lamps along the mirrored ray at P, from a fifth of the camera's distance to
+///               infinity, at rest in the world or with the camera (which serves an object that is turned before a still camera
+/// as well) It speaks for paint if a candidate of like size and strength lies on the first, and the second is farther away than
+/// twice the match's tolerance, at least 4 px; against it if the spot would be strong enough to be found at the first and is not.
+/// Paint needs two views for it, three times as many as against it (views within one degree count once), and a remaining motion
+/// towards the second place below what a lamp at a fiftieth of the camera's distance would cause. Nearer lamps look like paint,
+/// and so does relief that the surface lacks: the text says so.
 /// @param frame     whose highlights are judged; spots that the image or the silhouette cuts, or that are seen edge-on, are not
 /// @param panel     see motionPanels()
 /// @param evidence  of all frames, as detected; `frame` < 0 = not searched yet
@@ -60,7 +60,7 @@ std::vector<MotionVerdict> motionVerdicts(const Scene& scene, int frame, const s
                                           const std::vector<FrameEvidence>& evidence, const Surface* surface,
                                           const Settings& settings, const PanelDepths* depths = nullptr);
 
-/// Takes the highlights that are paint out of the evidence: into `rejected` with the reason, and into `textures`. NoHighlight where none is left.
+/// Moves paint from the evidence to `rejected`, with the reason, and to `textures`. NoHighlight if none is left.
 /// @param camera    of the frame: `rejected` holds measured pixels
 /// @param verdicts  one for each highlight
 void withholdTextures(FrameEvidence& evidence, const std::vector<MotionVerdict>& verdicts, const Camera& camera);

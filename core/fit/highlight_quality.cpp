@@ -101,7 +101,7 @@ void lookAtSilhouette(const Highlight& h, const Camera& camera, const Surface& s
     q.flags.push_back(formatted("at the silhouette: %.0f %% of the contour", 100 * q.silhouetteShare));
 }
 
-/// By how much two mirrored rays miss a common lamp, rad: seen from the nearer of the two places, or between them where they part.
+/// By how much two mirrored rays miss a common lamp, rad: seen from the nearer of the two places, or halfway where they diverge.
 double disagreement(const ReflectedRay& a, const ReflectedRay& b) {
   const double apart = std::atan2(a.direction.cross(b.direction).norm(), a.direction.dot(b.direction));
   const Eigen::Vector3d between = b.origin - a.origin;

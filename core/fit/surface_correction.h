@@ -10,7 +10,7 @@
 
 namespace glint {
 
-/// What the contours of a light say of the surface that they lie on. At most one of the two: a frame sees its own depth map or a mesh.
+/// What a light's contours say of their surface. At most one of the two: a frame sees its own depth map or a mesh.
 struct SurfaceCorrection {
   std::optional<DepthCorrection> depth;   ///< light.refine_depth: of every frame's own depth map
   std::optional<RefinedNormals> normals;  ///< light.refine_normals: of one mesh

@@ -46,7 +46,7 @@ DualConic outline(const DualQuadric& quadric, const Projection& projection);
 Outcome<Ellipse> outlineEllipse(const Ellipsoid& ellipsoid, const Projection& projection);
 
 /// Counts of positive and negative eigenvalues, flipped so that (3,3) of the quadric is positive. By Sylvester's law they are
-/// those of (3,3) and of -S, zero below 1e-12 of the largest of S: independent of the unit of length; "hyperboloid", "ellipsoid", "cone" ... for messages.
+/// those of (3,3) and of -S, zero below 1e-12 of the largest of S: independent of the unit of length. Messages use its name.
 struct Signature {
   int positive = 0, negative = 0, zero = 0;
 };

@@ -37,8 +37,8 @@ struct EpipolarTangents {
 /// Where they are not, no ellipsoid has both ellipses as outlines.
 ///
 /// @param p1,p2  pixels from world; mirrored for virtual cameras.  @param e1,e2  ellipses in ideal pixels.
-/// @return  NotAnEllipse when an epipole lies inside its ellipse (the baseline meets the object: no real tangents); as fundamentalMatrix.
-/// @see Hartley & Zisserman, 2nd ed., result 9.5 (transfer); Porrill and Pollard, Curve matching and stereo calibration, IVC 1991 (epipolar tangency).
+/// @return  NotAnEllipse if an epipole lies in its ellipse (the baseline meets the object: no tangents); as fundamentalMatrix.
+/// @see Hartley & Zisserman, result 9.5; Porrill and Pollard, Curve matching and stereo calibration, IVC 1991 (tangency).
 Outcome<EpipolarTangents> epipolarTangents(const Projection& p1, const Ellipse& e1, const Projection& p2, const Ellipse& e2);
 
 }  // namespace glint

@@ -41,7 +41,7 @@ Outcome<Eigen::Vector3d> dualPoint(const Plane& plane, const Reciprocal& chart);
 /// The dual quadric of an ellipsoid in the chart: where the dual points of its tangent planes lie. About its centre it is the
 /// ellipsoid with the same axes and semi-axes radius^2 / a. With centre c (seen from the chart's) and shape S:
 /// y^T (S - c c^T) y + 2 radius^2 c.y = radius^4.
-/// NotAnEllipsoid where the dual is another quadric: the chart's centre lies outside of the ellipsoid or on it, or the ellipsoid is flat.
+/// NotAnEllipsoid if the chart's centre lies outside of the ellipsoid or on it, or if the ellipsoid is flat.
 /// @see Coxeter, The Real Projective Plane, ch. 8 (polarity); Hartley & Zisserman, 2nd ed., sec. 3.2.3 (dual quadrics).
 Outcome<Ellipsoid> reciprocal(const Ellipsoid& ellipsoid, const Reciprocal& chart);
 

@@ -47,8 +47,8 @@ Background fitBackground(const Image& image, const std::vector<char>& usable, co
 Background fitBackground(const Image& image, const std::vector<char>& usable, const Footprint& footprint, double fallback,
                          const std::function<double(double rho2)>& fall);
 
-/// By how much a contour may be off because the lobe's tail is unknown: the background is fitted with both tails. Where GGX's explains
-/// the surroundings at least nearly as well, the difference at the highlight counts; a Gaussian tail that fits clearly better leaves none.
+/// How far a contour may be off because the lobe's tail is unknown: fits the background with both. If GGX's explains the
+/// surroundings at least nearly as well, the difference at the highlight counts; none if a Gaussian fits clearly better.
 /// @param footprint  of the highlight at its level. @param peakValue  above the background
 /// @return change of the contour's radius, in percent of its diameter; 0 where the surroundings tell nothing (few pixels)
 double backgroundUncertaintyPct(const Image& image, const std::vector<char>& usable, const Footprint& footprint,

@@ -225,7 +225,7 @@ const char* notOfTheSame(const SkirtLevel& now, const std::vector<SkirtLevel>& a
   if (above.empty()) return nullptr;
   const SkirtLevel &first = above.front(), &last = above.back();
   if (!(now.areaPx2 > last.areaPx2)) return "contours do not grow as the level falls";
-  // Near the top of a lobe areas grow fast; the logarithm of the area grows ever slower with that of the value, and ends at that of the tail.
+  // Near the top of a lobe areas grow fast; the logarithm of the area grows ever slower with the value's, down to the tail's.
   if (above.size() > 1) {
     const SkirtLevel& before = above[above.size() - 2];
     const double expected = std::max(1.0, std::log(last.areaPx2 / before.areaPx2) / std::log(before.value / last.value));

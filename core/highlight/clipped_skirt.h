@@ -60,11 +60,11 @@ struct ClippedSkirt {
   double sigmaPx = 0;
 };
 
-/// Fits the profile to the areas of several levels. log K, A0, p and an offset of the background are fitted for each of nine beta; the answers are averaged by
-/// how well they explain the levels, and their scatter is part of the uncertainty. A narrow peak of its own on top of the core, of which the skirt shows nothing, is in no skirt.
-/// @param samples          at least five, any order. @param backgroundSigma  standard deviation of the background that was taken off
-/// @return TooFewPoints; NotFinite (a value or an area is not positive and finite); NotConverged (areas do not grow as values fall, or so little that the slope
-///         does not show how high it rises)
+/// Fits the profile to the areas of the levels: log K, A0, p and an offset of the background per beta, nine of them. Averages the
+/// answers by how well they explain the levels; their scatter adds to the uncertainty. Misses a narrow peak on top of the core
+/// of which the flank shows nothing. @param samples  at least five, any order. @param backgroundSigma  as in SkirtView
+/// @return TooFewPoints; NotFinite (a value or an area is not positive and finite); NotConverged (areas do not grow as values
+///         fall, or so little that the slope does not show how high it rises)
 Outcome<SkirtPeak> peakFromSkirt(std::span<const SkirtSample> samples, double backgroundSigma);
 
 /// Pixels around one clipped highlight; all maps have the size of `corrected`, one entry per pixel.
@@ -77,8 +77,8 @@ struct SkirtView {
   double minAreaPx2 = 12;
 };
 
-/// Traces the slope at up to eleven levels, from just below the clipped core down to the noise, streaks cut off, as long as the contours are those of one
-/// highlight (one around the other, of like shape, growing no faster than a lobe's, on usable pixels, within the view), and estimates the peak.
+/// Traces the slope at up to eleven levels, from just below the clipped core down to noise, without streaks, while the contours
+/// belong to one highlight (nested, alike, growing no faster than a lobe's, on usable pixels, in view). Estimates the peak.
 ClippedSkirt traceSkirt(const SkirtView& view);
 
 /// The contour at `level` of the estimated peak lies outside of the clipped core, and the peak is relied on.

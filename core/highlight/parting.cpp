@@ -110,7 +110,7 @@ Colours coloursAround(const Image& image, const std::vector<char>& usable, doubl
   return c;
 }
 
-/// The combination w: w . middle is the lobe there, and around the highlight w . I differs least from its tail, a mixture of a Gaussian and a GGX one.
+/// The combination w: w . middle is the lobe there; around the highlight w . I differs least from its tail, Gaussian plus GGX.
 struct Combination {
   Eigen::Vector3d w;
   double rms;  ///< of what differs

@@ -12,8 +12,8 @@
 
 namespace glint {
 
-/// How the specular part of a colour image is told around one highlight: s = channels . I, a combination of the channels in which the diffuse colours of the
-/// surroundings vanish. It is linear, so pixels on the edge of two colours are parted as well as others.
+/// The specular part of a colour image around one highlight: s = channels . I, the combination of channels in which the
+/// surrounding diffuse colours vanish. It is linear, and so separates pixels on the edge of two colours as well.
 struct PartedRegion {
   Eigen::Vector3d channels{0, 0, 0};    ///< of linear R, G, B; s is the specular radiance, averaged over the channels
   Eigen::Vector3d lampColour{1, 1, 1};  ///< of the specular part; mean 1
@@ -33,15 +33,15 @@ struct Parting {
   std::vector<PartedRegion> regions;  ///< one per highlight, in their order, where parted
 };
 
-/// Finds the combination of channels for one highlight, by the dichromatic model: I = m_d D + m_s S with D of at most two diffuse colours around the highlight
-/// (m_d and where they lie are free) and S the lamp's. Among all combinations that are 1 at the highlight's middle it is the one that differs least from a lobe's tail around it,
-/// by least squares; that also weighs the noise against what diffuse light is left. S need not be known: an error of it along D changes nothing.
+/// Finds the combination of channels for one highlight, by the dichromatic model: I = m_d D + m_s S, with D of at most two
+/// diffuse colours around the highlight (with any m_d, anywhere) and S the lamp's. Of all combinations that are 1 at the
+/// highlight's middle it differs least from a lobe's tail around it, by least squares, which also weighs noise against leftover
+/// diffuse light. S need not be known: an error of it along D changes nothing.
 /// @param linear  3 channels. @param usable  one per pixel. @param clipValue  0 = none
-/// @param highlight  measured pixels. @param others  highlights that the surroundings leave out
-/// @return NotSupported with the reason in words: a grey image, clipped pixels, no diffuse light around (metal, black), a diffuse colour like the lamp's, more
-///         than two colours around, too much noise; TooFewPoints; NotAnEllipse.
-/// @see Shafer, Using color to separate reflection components, Color Research and Application 1985; the combination: Frost, An algorithm for linearly constrained
-///      adaptive array processing, Proc. IEEE 1972.
+/// @param highlight  measured pixels. @param others  highlights that the surroundings leave out. @return NotSupported, in words:
+/// grey image, clipped pixels, no diffuse light (metal, black), a diffuse colour like the lamp's, over two colours, noise;
+/// TooFewPoints; NotAnEllipse. @see Shafer, Using color to separate reflection components, Color Research and Application 1985;
+/// the combination: Frost, An algorithm for linearly constrained adaptive array processing, Proc. IEEE 1972.
 Outcome<PartedRegion> partColours(const Image& linear, const std::vector<char>& usable, double clipValue,
                                   const Highlight& highlight, const std::vector<Highlight>& others);
 

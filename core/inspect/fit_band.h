@@ -10,7 +10,7 @@ namespace glint {
 /// lobe of its pixels where it is of all of these views.
 FitInput fitInputOf(const Inspection& inspection, const HighlightModel& model, const FitKey& key);
 
-/// The band of a fit that an inspection computed; without one, and without words, where the fit failed or no training view is its own.
+/// The band of an inspection's fit; empty, without words, if the fit failed or no training view is its own.
 FittedBand bandOf(const Inspection& inspection, const HighlightModel& model, const ModelResult::Fit& fit);
 
 }  // namespace glint

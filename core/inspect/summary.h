@@ -47,7 +47,7 @@ struct ComparisonTally {
     double contourErrorPct = 0, contourErrorPx = 0, ellipseErrorPct = 0, hausdorffPx = 0, peakOffsetPx = 0, coverage = 0;
   };
   std::vector<Measured> measured;  ///< of each highlight with metrics
-  /// Sum over its highlights: contour errors, each at most kMissedPct, kMissedPct for each other observed one, kSpuriousPct for each spurious one.
+  /// Sum over highlights: contour errors of at most kMissedPct, kMissedPct per other observed one, kSpuriousPct per spurious one.
   double wrongPct() const;
   std::vector<BandScore> bands;  ///< of each matched highlight with a band
 };

@@ -43,8 +43,8 @@ struct BallEdge {
 /// Linear light of photographs with 8-bit sRGB values, 0 to 255, mean of the channels.
 std::vector<Image> linearLight(std::span<const Image> photographs);
 
-/// Edges that continue through neighbouring sectors: steepest places of linear light along lines across the outline, within `reach` of it.
-/// @param linear  one channel. @param blurPx  of the derivative's Gaussian. @param slant  by how much an edge may move from one sector to the next, px
+/// Edges that continue through neighbouring sectors: steepest places of linear light on lines across the outline, within `reach`.
+/// @param linear  one channel. @param blurPx  of the Gaussian's derivative. @param slant  an edge's largest step between sectors
 std::vector<BallEdge> ballEdges(std::span<const Image> linear, const OutlineModel& outline, double reach, double blurPx,
                                 double slant);
 

@@ -192,8 +192,9 @@ std::vector<Candidate> candidates(const BallView& view, double level, const cv::
   return found;
 }
 
-/// Whether this place on a ball shows another one, for a distant camera and balls at the same depth. In radii of the ball, D away, the other's centre is
-/// reflected at s from the ball's centre: D (1 - 2 s^2) + s = 0, s = (1 + sqrt(1 + 8 D^2)) / (4 D); it appears half as large as its angle, times cos.
+/// Whether a place on a ball shows another one, for a distant camera and equal depths. In radii, D away, the other's centre
+/// is reflected at s from the ball's: D (1 - 2 s^2) + s = 0, s = (1 + sqrt(1 + 8 D^2)) / (4 D); half as large as its angle, times
+/// cos.
 bool showsAnotherBall(const Eigen::Vector2d& place, std::span<const BallOutline> balls, std::size_t which) {
   const BallOutline& own = balls[which];
   for (std::size_t j = 0; j < balls.size(); ++j) {

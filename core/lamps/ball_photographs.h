@@ -63,7 +63,7 @@ struct PhotographLamps {
 /// @param camera,focalAlone  see BallPhotographs
 /// @param givenSigmaPx  of centre and radius of an outline that is taken as typed
 /// @throw InputError where a ball lies outside of its photographs; Stopped
-/// @return  without any answer where no shot shows a highlight. FrameUnreadable where no shot can be read; what fitBallLamps() says
+/// @return  no answers if no shot shows a highlight. FrameUnreadable if no shot can be read; failures of fitBallLamps()
 Outcome<PhotographLamps> lampsOfShots(const BallShots& shots, const std::optional<Camera>& camera, bool focalAlone,
                                       const std::optional<double>& ballRadius, Outlines outlines, double givenSigmaPx,
                                       const ProgressFn& progress);

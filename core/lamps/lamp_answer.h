@@ -46,7 +46,7 @@ struct LampSighting {
   std::optional<Eigen::Vector2d> leftOutPx;
 };
 
-/// Where a lamp is, or why that is not known. Directions are unit vectors from `from`; world frame (photographs of balls: the camera's).
+/// Where a lamp is, or why that is unknown. Directions are unit vectors from `from`; world frame (of balls: the camera's).
 struct LampAnswer {
   std::string id;
   std::vector<std::string> frames;            ///< ids
@@ -60,7 +60,7 @@ struct LampAnswer {
   double residualPx = 0;                ///< root mean square over the highlights; 0 where nothing is redundant
   double degreesOfFreedom = 0;          ///< behind the residual; 0 where nothing is redundant or nothing is known of it
   int highlights = 0;                   ///< used
-  /// Photographs of balls: the share of what is known of all outlines that this photograph's highlights bring; the edges bring the rest to 1.
+  /// Photographs of balls: the share that this photograph's highlights add to all outlines; the edges add the rest, up to 1.
   std::optional<double> outlineShare;
   std::vector<DroppedSighting> dropped;
   std::vector<LampSighting> sightings;  ///< photographs of balls only

@@ -43,7 +43,7 @@ std::vector<EdgePoint> edgesOf(const RefinedOutline& outline) {
   return edges;
 }
 
-/// Normal equations of the cone through the points. Three well separated numbers of an image: the square of the condition does no harm.
+/// Normal equations of the cone through the points. The three unknowns are well separated: a squared condition does no harm.
 struct OutlineEquations {
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero(),
                   circle = Eigen::Matrix3d::Zero();  ///< the second one of centre and radius of a circle

@@ -46,8 +46,8 @@ struct AimedLamp {
 MirrorBall ballOf(const BallProjection& view, const Eigen::Vector3d& parameters);
 
 /// Those numbers and their covariance from the outline of the ball. With a camera the outline is the cone of rays that touch the
-/// ball, sin(angle to its centre) = radius / distance, fitted to the points of the edge, or to the circle where there are none;
-/// the covariance has the excess that the outline's own has over independent points.
+/// ball, sin(angle to its centre) = radius / distance, fitted to the points of the edge, or without any to the circle. The
+/// covariance is larger than that of independent points by the same excess as the outline's own.
 /// @return  NotConverged where no ball before the camera has this outline; NotFinite.
 struct BallParameters {
   Eigen::Vector3d value = Eigen::Vector3d::Zero();
@@ -71,7 +71,7 @@ Outcome<MirrorRay> mirrorRay(const BallProjection& view, const MirrorBall& ball,
 /// camera and lamp, t the angle of the normal there (Alhazen's problem). Nothing where the lamp lies behind the ball.
 std::optional<Pixel> mirrorPixel(const BallProjection& view, const MirrorBall& ball, const AimedLamp& lamp);
 
-/// The lamp that the rays of several balls meet at, or their common direction: least squares of the sine of the angles, homogeneous.
+/// The lamp where the rays of several balls meet, or their common direction: least squares of the angles' sines, homogeneous.
 /// @param reference  of the answer. @param scale  a length of the arrangement, such as the distance of the balls.
 AimedLamp lampOfRays(std::span<const MirrorRay> rays, const Eigen::Vector3d& reference, double scale);
 

@@ -109,7 +109,7 @@ Eigen::Vector3d middleOf(const std::vector<TrainingView>& views) {
   return sum / static_cast<double>(views.size());
 }
 
-/// Direction and inverse distance of a light as seen from a point, with the covariance of (two tangent coordinates, inverse distance).
+/// Direction and inverse distance of a light from a point, with the covariance of (two tangent coordinates, inverse distance).
 struct SeenLight {
   Eigen::Vector3d direction;
   double inverse = 0;
@@ -131,9 +131,9 @@ SeenLight seenFrom(const Eigen::Vector3d& from, const Light& light, const Eigen:
   return seen;
 }
 
-/// Covariance of (two tangent coordinates, inverse distance) by leaving parts of the views out in turn: (k - 1) / k times the sum of squares about
-/// the mean (Efron, The Jackknife, the Bootstrap and Other Resampling Plans, 1982, 3.1). It holds what whole views have wrong, which no residual within a
-/// view shows: poses, bumps, a lobe that does not quite fit. Zero where fewer than four parts have an answer.
+/// Covariance of (two tangent coordinates, inverse distance) by leaving out parts of the views in turn: (k - 1) / k times the sum
+/// of squares about the mean (Efron, The Jackknife, 1982, 3.1). It holds the errors of whole views, which no residual within a
+/// view shows: poses, bumps, a lobe that does not quite fit. Zero if fewer than four parts have an answer.
 /// @param without  the light of the views that are true
 Eigen::Matrix3d leftOutCovariance(const Eigen::Vector3d& from, const SeenLight& seen, std::size_t views,
                                   const std::function<std::optional<Light>(const std::vector<bool>&)>& without) {
@@ -278,7 +278,7 @@ class SceneLamp {
     return most;
   }
 
-  /// Of (two tangent coordinates, inverse distance) where each view is off by kViewErrorPx on its own: what a few views cannot show themselves.
+  /// Covariance (as above) if each view is off by kViewErrorPx on its own: what a few views cannot show themselves.
   Eigen::Matrix3d assumedCovariance(const SeenLight& seen) const {
     Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
     for (const TrainingView& v : views_) {

@@ -21,7 +21,7 @@ struct LoadedPlugin {
 /// another version, has the name of a loaded one, adds what is there already or what is wrong (a lobe whose derivatives are), or
 /// throws. Then nothing of it is kept.
 void loadPlugin(const std::filesystem::path& file);
-/// Folders from which programs load every `*.so`: those in GLINT_PLUGIN_PATH (separated by colons), and `glint/plugins` beside libglint-core.
+/// Folders whose `*.so` programs load: those in GLINT_PLUGIN_PATH (with colons), then `glint/plugins` beside libglint-core.
 std::vector<std::filesystem::path> pluginFolders();
 /// Loads the plugins of `named`, then those in pluginFolders(), each folder in the order of names.
 /// @throw InputError for one of `named`. @return one line for each in a folder that was refused, with its file and the reason:

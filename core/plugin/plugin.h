@@ -16,7 +16,7 @@
 ///     glint.add(std::make_unique<FlatMirror>());
 ///   })
 ///
-/// and links Glint::core. Programs load it with --plugin FILE, or from the folders of GLINT_PLUGIN_PATH. A plugin is part of the program: it
+/// and links Glint::core. Programs load it by --plugin FILE, or from GLINT_PLUGIN_PATH's folders. It is part of the program: it
 /// can do what the user can do, and a fault in it ends the program. docs/cpp.md is the walkthrough, plugins/example an example.
 namespace glint {
 

@@ -27,7 +27,7 @@ std::string text(const SettingValue& value) {
   return shortest(std::get<double>(value));
 }
 
-/// Whether a file lies where the command would not look without permission. The inspector remembers permissions, a command does not.
+/// Whether a file lies where the command needs permission to look. The inspector remembers permissions, a command does not.
 bool namesFilesOutside(const Scene& scene) {
   if (scene.allowOutsidePaths) return true;
   std::vector<std::filesystem::path> named{std::filesystem::absolute(scene.file).parent_path()};

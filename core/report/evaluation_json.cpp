@@ -137,7 +137,7 @@ Json fitJson(const Inspection& inspection, const ModelResult::Fit& entry) {
   }
   const bool isSolved = quadric && !quadric->singularValues.empty();
   j["gap_ratio"] = isSolved ? numberOrNull(quadric->gapRatio) : Json(nullptr);
-  // Largest over smallest: of the linear system where there is one, else of the rays that fix the light (whose ratio is of squares).
+  // Largest over smallest of the linear system, if any, else of the rays that fix the light (whose ratio is of squares).
   if (isSolved)
     j["condition"] = numberOrNull(f.condition);
   else

@@ -26,7 +26,7 @@ struct LampsReport {
   std::vector<std::string> warnings;  ///< in words
 };
 
-/// One line for each frame of a scene in which exactly one lamp is on that has an answer, direction from the middle of the object. The others become a warning.
+/// One line per frame with exactly one lamp on and an answer, its direction from the object's middle. Warns of the others.
 /// @param lamps  of lampsOfScene()
 std::vector<LampLine> lampLinesOf(const Scene& scene, const std::vector<LampAnswer>& lamps, std::vector<std::string>& warnings);
 

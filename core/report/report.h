@@ -21,7 +21,7 @@ struct ReportContext {
   std::vector<std::string> advice;     ///< of a diagnosis: its verdict, then its remedies, in words; empty = nobody asked
 };
 
-/// The answered model with the smallest held-out error (ModelSummary::wrongPct), among those whose fit is not poor where one is not.
+/// The answered model with the smallest held-out error (ModelSummary::wrongPct), if possible with a fit that is not poor.
 struct BestModel {
   std::string model;  ///< "" = none answered
   std::string why;    ///< one sentence; "" = none answered

@@ -34,7 +34,7 @@ std::string clippedWarning(const Inspection& inspection) {
                        : ": the peak is unknown, so a contour lies at a smaller fraction of it than the stated level");
 }
 
-/// The warning about frames whose colours do not tell what is specular (detect.background = colours), with the reasons; "" without any.
+/// The warning about frames whose colours do not tell what is specular (detect.background = colours), with reasons; or "".
 std::string notPartedWarning(const Inspection& inspection) {
   std::map<std::string, std::vector<std::string>> frames;
   for (const FrameEvidence& e : inspection.evidence)

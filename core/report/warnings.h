@@ -9,8 +9,8 @@
 
 namespace glint {
 
-/// What makes the answers of a run doubtful, in words, one sentence each, the same for text, JSON and HTML: clipped highlights with their frames,
-/// frames in which highlights of several lights are one, and the remarks of every fit after its model and light.
+/// What makes a run's answers doubtful, one sentence each, the same for text, JSON and HTML: clipped highlights with their
+/// frames, frames in which highlights of several lights are one, and the remarks of every fit after its model and light.
 std::vector<std::string> warningsOf(const Inspection& inspection);
 
 /// One remark of a fit as such a sentence.

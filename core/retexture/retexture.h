@@ -58,8 +58,8 @@ struct Retextured {
 /// The predicted highlight of a frame over another picture of it (retexturing), or the frame without it.
 ///
 ///   Background  I = B + H        in linear light per channel, H of predictedRadiance()
-///   Texture     I = T shade / A + H   on the surface, T the texture's albedo, A the mean of the texture (or `albedo`); the frame elsewhere
-///   Removed     I filled inside of the mask from around it (Telea's method); where a light is known, I over the Lambert shading is filled, so
+///   Texture     I = T shade / A + H   on the surface, T the texture's albedo, A its mean (or `albedo`); the frame elsewhere
+///   Removed     I filled inside of the mask from around it (Telea's method); with a known light, I over the Lambert shading, so
 ///               that shading goes on underneath
 /// The mask: where H changes a code by kVisibleCodes or more, and the predicted contour, both dilated by marginPx.
 /// The frame's own mask, where there is one, bounds what is changed.

@@ -59,7 +59,7 @@ std::pair<MapPoint, std::string> naturalMap(const AnalyticSpec& s) {
   return {};
 }
 
-/// The two world coordinates across the largest component of the normal, each side with the image's right and top as seen from outside.
+/// The two world coordinates across the normal's largest component; each side has the image's right and top as seen from outside.
 Eigen::Vector2d onBox(const SurfacePoint& p, const Eigen::Vector3d& origin, double side) {
   const Eigen::Vector3d q = (p.position - origin) / side;
   Eigen::Index axis = 0;

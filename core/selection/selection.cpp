@@ -350,7 +350,7 @@ Selection Search::run() {
     if (!tried_[m].eligible || c.answered < c.views || !(c.meanPct <= kNegligiblePct) ||
         model->traits().surface != ModelTraits::Assumes::Plane)
       continue;
-    // On a plane such a model is exact; where its predictions are reproduced as well, nothing can be better by what contours resolve.
+    // On a plane such a model is exact; if its predictions are reproduced as well, contours can resolve nothing better.
     checkAssumption(m, shapeUnder(m));
     if (!tried_[m].confirmed) continue;
     if (!views_.empty()) compareOutlooks({m});

@@ -20,8 +20,8 @@ struct Candidate {
   double standardErrorPct = 0;  ///< of that mean; NaN with fewer than two views
   double timeUs = 0;     ///< all fits and predictions; light and canonical contours count for the first model that needed them
   double predictUs = 0;  ///< median of one prediction
-  /// What the rule compares, and what it is made of, % of the diameter over the views to predict: root mean square of `spread` (how
-  /// far the left-out fits, or the model's band, scatter) and `disagreement` (with richer models that explain the training views).
+  /// What the rule compares, and what it is made of, % of the diameter over the views to predict: rms of `spread` (how
+  /// far the left-out fits, or the model's band, scatter) and `disagreement` (with richer models that explain training views).
   double outlookPct = std::nan(""), spreadPct = std::nan(""), disagreementPct = std::nan("");  ///< NaN where not computed
   /// Contour error to expect in the views to predict: what leaving one out shows, less the noise of the left-out contours, where
   /// they lie inside the training views; that and `outlookPct` where they lie outside. NaN where not computed.

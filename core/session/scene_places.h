@@ -26,7 +26,7 @@ struct ScenePlaces {
   Scene read(const std::string& input) const;
   OpenedSession openSession(const std::string& file) const;
   Replay replay(Session session, const ProgressFn& progress) const;
-  /// A session whose request is taken over, without its scene. OutsidePath as `openSession` where the request names a truth folder.
+  /// A session whose request is used without its scene. OutsidePath as `openSession` if the request names a truth folder.
   Session readRequestOf(const std::string& file, bool withItsTruth) const;
 
  private:

@@ -101,11 +101,12 @@ class MissingScene : public InputError {
 struct OpenedSession {
   Session session;
   std::shared_ptr<const Scene> scene;
-  std::string
-      warning;  ///< what was given instead is another file than the session was made with; plugins that it was saved with and are not loaded; "" = neither
+  std::string warning;  ///< another file was given than the session was made with, or its plugins are not loaded; "" = neither
 };
-/// Reads a session and its scene. InputError, also where a model of the request is from a plugin that is not loaded; MissingScene, MissingMesh, OutsidePath. Does not check the files' contents: see `changedFiles`.
-/// @param instead  where inputs are now that are not where the session says. The session then names them.
+/// Reads a session and its scene, not the files' contents (see `changedFiles`). InputError, also for a model of a plugin that is
+/// not
+/// loaded; MissingScene, MissingMesh, OutsidePath. @param instead  where inputs are now, if elsewhere; the session then names
+/// them.
 OpenedSession openSession(const std::filesystem::path& file, const Relinked& instead = {});
 OpenedSession openSession(Session session, const Relinked& instead = {});
 
@@ -140,7 +141,7 @@ struct Replay {
 /// Recomputes a session and compares: key results agree when they differ by at most 1e-9 relatively (or 1e-12 absolutely,
 /// the round-off of numbers of order one).
 /// @param instead  of it only the folders that a person named
-/// @throw InputError when the session has no results, or an input changed or is missing (the first is named); OutsidePath; Stopped.
+/// @throw InputError if the session has no results, or (naming the first) an input changed or is missing; OutsidePath; Stopped.
 Replay replay(const Session& session, const Relinked& instead = {}, const ProgressFn& progress = {});
 
 }  // namespace glint

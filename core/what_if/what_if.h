@@ -31,8 +31,8 @@ struct HighlightChange {
   friend bool operator==(const HighlightChange&, const HighlightChange&) = default;
 };
 
-/// One change by hand to which highlights a frame shows. Highlights are named by a place inside of their contour, so that a change
-/// outlives other settings of detection; where no highlight is there any more it changes nothing. core/inspect/hand_edits.h makes them.
+/// One change by hand to which highlights a frame shows. A place inside of its contour names a highlight, so that a change
+/// outlives other settings of detection; without a highlight there it changes nothing. core/inspect/hand_edits.h makes them.
 struct HighlightEdit {
   enum class Kind {
     Ignore,  ///< places[0]: neither trains nor is scored

@@ -67,7 +67,7 @@ class InputRules : public QObject {
 
  private:
   static void polish(QObject* watched) {
-    // The label of tool tips gets its texts from plainTip and setRichTip. It is known by its class: it is polished before it has a name.
+    // plainTip and setRichTip write the tool tips' label. Its class tells it, because it is polished before it has a name.
     if (auto* label = qobject_cast<QLabel*>(watched);
         label && label->textFormat() == Qt::AutoText && !label->inherits("QTipLabel"))
       label->setTextFormat(Qt::PlainText);

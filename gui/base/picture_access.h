@@ -9,7 +9,7 @@ class QWidget;
 
 namespace glint::gui {
 
-/// Things in a picture that can be chosen one by one, such as the frames of a strip. All are asked only when a screen reader wants to know.
+/// Things in a picture that can be chosen one by one, such as the frames of a strip. Only screen readers ask for them.
 struct PictureParts {
   std::function<int()> count;
   std::function<QString(int part)> name;

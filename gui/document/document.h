@@ -32,7 +32,7 @@ struct ViewState {
 
 /// What is on screen: the undoable state, the scene that it belongs to and the newest results.
 /// Widgets read it, listen to its signals and change it through the actions below; each action is one step of
-/// undo, and steps of one gesture (a slider drag, scrubbing) merge; playing leaves none. An action that changes nothing leaves no step.
+/// undo, and steps of one gesture (a slider drag, scrubbing) merge; playing and actions without a change leave no step.
 class Document : public QObject {
   Q_OBJECT
  public:
@@ -135,7 +135,7 @@ class Document : public QObject {
   /// @param mergeKey  equal texts that are not empty merge into one step.
   void setWhatIf(const glint::WhatIf& whatIf, const QString& text, const QString& mergeKey = {});
   void setRole(int frame, FrameRole role);
-  /// Of a selection that was changed, not made: a spurious highlight stays selected only as long as its frame, model and light do.
+  /// For a selection that was changed, not made: a spurious highlight stays selected only while its frame, model and light do.
   void select(draw::Selection selection, int gesture = 0);
   /// As it is: what was clicked names its spurious highlight itself.
   void selectExactly(const draw::Selection& selection, int gesture = 0);
@@ -153,7 +153,7 @@ class Document : public QObject {
 
  signals:
   void sceneOpened();  ///< another scene
-  /// Results are stale until the next setInspection; not stale where those of this request were still kept: inspectionChanged() follows.
+  /// Results are stale until the next setInspection, unless those of this request were kept: then inspectionChanged() follows.
   void requestChanged();
   void selectionChanged();
   void layersChanged();

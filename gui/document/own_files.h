@@ -15,7 +15,7 @@ QString recoveryFolder();
 QString locksFolder();
 /// Lies in recoveryFolder(): only this program writes there, so that what stands in it may be believed.
 bool isOwnRecovery(const QString& file);
-/// Lessons and sessions that came with the program, installed or in its source tree. They are read only, whatever the file system says.
+/// Lessons and sessions that came with the program, installed or in its source tree: read-only, whatever the file system says.
 bool isShipped(const QString& file);
 /// The open session is a lesson as it came with the program: what is tried out in it is given up without a question.
 bool isOpenLesson(const Document& document);

@@ -96,7 +96,7 @@ class Runner : public QObject {
   void measured(const glint::gui::TradeoffPtr& tradeoff, const glint::gui::OpenedPtr& computedFor);
   void influenceMeasured(const glint::gui::InfluencePtr& influence, const glint::gui::InspectionPtr& inspection);
   void failed(const QString& oneLine);
-  /// An inspection has come to its end: each stage with its time; or the stage in which it ended early. Before finished() or failed().
+  /// An inspection ended: each stage with its time, or the stage in which it ended early. Comes before finished() or failed().
   void timed(const QString& oneLine);
   /// With failed() after it: opening can be tried again with the place of what is missing.
   void inputMissing(const glint::gui::MissingPtr& missing);

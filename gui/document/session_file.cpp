@@ -38,7 +38,7 @@ fs::path sessionAt(const fs::path& path) {
 viz::ViewPoint viewPointOf(const SessionCamera& c) { return {c.position, c.focalPoint, c.up, c.viewAngleDeg, c.parallel}; }
 SessionCamera cameraOf(const viz::ViewPoint& v) { return {v.position, v.focalPoint, v.up, v.viewAngleDeg, v.parallel}; }
 
-/// The frame to show first: a training frame shows how well a model fits, a held-out one what it predicts. 0 where all frames train.
+/// The frame to show first: a training frame shows how well a model fits, a held-out one what it predicts. 0 if all frames train.
 int firstHeldOut(const Scene& scene, const InspectionRequest& request) {
   const std::vector<int> train = parseTrainSpec(request.train, scene).frames;
   for (int i = 0; i < int(scene.frames.size()); ++i)

@@ -24,8 +24,9 @@ struct FigureLook {
   QString caption = {};  ///< stands below the figure, within `size`; "" = none
 };
 
-/// Asks for the size, in px or in mm at a resolution, and the background of a picture or plot. Remembers the last answer of each kind, a typed size in the shape of what
-/// is shown now. Colours are at first those for a light page, whatever the window's are: figures are mostly printed.
+/// Asks for the size (px, or mm at a resolution) and the background of a picture or plot. Remembers the last answer of each kind,
+/// with a typed size in the shape of what is shown now. Colours start for a light page, whatever the window's are: figures are
+/// mostly printed.
 class FigureDialog : public QDialog {
   Q_OBJECT
  public:

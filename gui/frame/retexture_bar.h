@@ -22,10 +22,11 @@ class FrameCanvas;
 class NumberBox;
 class PanelScroll;
 
-/// The predicted highlight of the plotted model over a texture or a background, or the frame without its highlight, in place of the photograph:
-/// left of a line stands what was captured. It follows results, frame, model and every option. Options, all "frame/retexture...": "" (off,
-/// texture, background, removed), "-texture" and "-background" (files, relative to the scene's folder where they lie in it), "-mapping",
-/// "-repeat", "-shading", "-albedo" (0 = the texture's mean), "-margin", "-light" ("" = all), "-compare" (share of the width left of the line).
+/// Shows the plotted model's predicted highlight over a texture or a background, or the frame without its highlight, in place of
+/// the photograph; what was captured stays left of a line. Follows results, frame, model and options. Options, all
+/// "frame/retexture...": "" (off, texture, background, removed), "-texture", "-background" (files, relative to the scene's folder
+/// if inside), "-mapping", "-repeat", "-shading", "-albedo" (0 = the texture's mean), "-margin", "-light" ("" = all), "-compare"
+/// (share of the width on the left).
 class RetextureBar : public QWidget {
   Q_OBJECT
  public:

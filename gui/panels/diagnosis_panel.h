@@ -37,7 +37,7 @@ class DiagnosisPanel : public QWidget {
   void addActions(Actions& actions, QMenu* menu, std::function<void()> show);
 
  public slots:
-  /// Compares the models and measures what helps, off the interface thread; the verdict appears at once and improves. Asked again: stops.
+  /// Compares models and measures what helps, off the interface thread; the verdict appears at once and improves. Twice: stops.
   void diagnose();
   void tryFirst();  ///< the first remedy
   void stop();

@@ -21,8 +21,9 @@ class ErrorModel;
 class StaleBadge;
 class RowFilter;
 
-/// Sortable table of errors with a summary line per model above it; rows are chosen by frame, model, status, words and brush, columns by a
-/// menu. Selecting a row selects its frame, model and highlight everywhere; Ctrl+C copies the selected rows as tab-separated text with a header.
+/// Sortable table of errors with a summary line per model above it. Frame, model, status, words and brush choose rows, a menu
+/// columns. Selecting a row selects its frame, model and highlight everywhere. Ctrl+C copies selected rows as tab-separated text
+/// with a header.
 class ErrorTable : public QWidget {
   Q_OBJECT
  public:

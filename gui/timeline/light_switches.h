@@ -10,7 +10,7 @@ class QMenu;
 
 namespace glint::gui {
 
-/// Lights on and off, frame by frame: what the timeline's rows, its menus and the palette offer. Every change is one step of undo.
+/// Lights on and off, frame by frame: offered by the timeline's rows, its menus and the palette. A change is one step of undo.
 
 /// "on", "switched off by hand", ...
 QString lightStateText(viz::LightState state);

@@ -283,7 +283,7 @@ bool FileActions::saveAsTo(QString path) {
   return answer == SaveRules::Answer::Write && saveTo(path);
 }
 
-/// A session or scene that was written names what is on screen, which a person opened or pointed at: it opens again without a question.
+/// A written session or scene names what is on screen, which a person opened or pointed at: it opens again without a question.
 void FileActions::rememberFoldersOf(const QString& session) {
   const Scene& scene = *document_.scene();
   std::vector<std::filesystem::path> named;

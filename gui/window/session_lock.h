@@ -7,7 +7,7 @@
 
 namespace glint::gui {
 
-/// Tells programs that have the same session open from each other. The lock lies in the program's own folder, not beside the session,
+/// Tells programs that have the same session open from each other. The lock lies in the program's folder, not beside the session,
 /// and is for telling only: nothing is locked. What a program left behind that ended unexpectedly does not count, and is removed.
 class SessionLock {
  public:

@@ -29,7 +29,7 @@ class WindowLayout : public QObject {
   void showAgain();
   /// The user's own arrangement was applied: it stays as it is, whatever size the window gets.
   void setOwn();
-  /// Arranges the window as the layout `dock` does, where that dock is not shown as it should be, and brings the dock to the front.
+  /// Arranges the window as the layout `dock` does, if that dock is not shown as it should be, and brings it to the front.
   /// @param rearrange  else the dock is only brought to the front.
   /// @return whether the views have another size now.
   bool makeRoomFor(const QString& dock, bool rearrange);

@@ -100,7 +100,8 @@ TEST_P(Kills, AskedToStopAtEveryCall) {
       const bool withOld = n % 2 == 0 && !GetParam().before.empty();
       const int signal = n % 2 ? SIGINT : SIGTERM;
       for (const char* how : {"signal", "stuck"}) {
-        // They take turns. Both at the last write: it is that of the process's end, which no longer works but may wait for a reader.
+        // They take turns. Both at the last write: it is that of the process's end, which no longer works but may wait for a
+        // reader.
         if (!all() && call != Call::Write && (int(call) % 2 == 0) == (how[1] == 'i')) continue;
         const Fault fault{kCallNames[int(call)], how + ("=" + std::to_string(signal)), n};
         stage.prepare(withOld);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the lessons claim, on their own sessions, against values from elsewhere: the mirror equation, closed-form surfaces, true lights.
+// What the lessons claim, on their own sessions, against values from elsewhere: the mirror equation, closed-form surfaces, true
+// lights.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -48,7 +48,7 @@ void addRegion(LayerContent& content, const LampAnswer& lamp, const Picked& info
     for (const double side : {-1.0, 1.0}) content.extent.push_back(c + side * a.col(i));
 }
 
-/// An arrow from the object towards the lamp, and the cone that holds the true direction with 95 %, where it is wider than the arrow.
+/// An arrow from the object towards the lamp, and the cone that holds the true direction with 95 %, if wider than the arrow.
 void addArrow(LayerContent& content, const LayerInput& in, const LampAnswer& lamp, const std::string& label, const Picked& info,
               double width) {
   const Eigen::Vector3d middle = in.scale.surfaceBox.center();

@@ -13,8 +13,8 @@
 
 #include "core/base/image.h"
 
-// NumPy arrays in and out. What comes in is checked: its shape, its type of number and, unless said otherwise, that it is finite. What goes out
-// is a view of memory that an object of Glint owns, read-only, and keeps that object alive; small matrices are copied.
+// NumPy arrays in and out. Input is checked: its shape, its type of number and, unless said otherwise, that it is finite. Output
+// is a read-only view of memory that an object of Glint owns, and keeps that object alive; small matrices are copied.
 namespace glint::python {
 
 namespace py = pybind11;
@@ -28,7 +28,7 @@ class ArrayLike : public py::object {
 /// A caller's array as doubles in row order: the array itself where it is that already, else a copy.
 using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
-/// @param shape  -1 = any number. TypeError unless the values are real numbers; ValueError for another shape, or a value that is not finite.
+/// @param shape  -1 = any. TypeError unless the values are real numbers; ValueError for another shape or values not finite.
 Doubles doublesFrom(py::handle given, const std::vector<py::ssize_t>& shape, const std::string& name, bool finite = true);
 /// Whole numbers of 32 bits, N x 3. TypeError for other numbers; ValueError for another shape, or a number that does not fit.
 std::vector<Eigen::Vector3i> trianglesFrom(py::handle given, const std::string& name);

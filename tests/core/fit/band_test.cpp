@@ -185,9 +185,11 @@ TEST(ViewEffects, BandsHoldAViewFarAwayOnABumpySurface) {
   EXPECT_GT(insideOnBumps(20, 0.1, 0.3, 100, true), 0.88);
 }
 
-// --- how far errors go together ---------------------------------------------------------------------------------------------------
+// --- how far errors go together
+// ---------------------------------------------------------------------------------------------------
 
-/// Views along a line, two shapes each, whose errors follow the recursion of an autoregressive process of order 1, no parameters to take any.
+/// Views along a line, two shapes each, whose errors follow the recursion of an autoregressive process of order 1, no parameters
+/// to take any.
 std::vector<ViewCoefficients> line(int views, double sigma, double alike, double noise, unsigned seed) {
   std::mt19937_64 engine(seed);
   std::normal_distribution<double> gauss;
@@ -278,7 +280,8 @@ TEST(ViewEffects, DegenerateInputsStayFinite) {
   EXPECT_THROW(ViewEffects({}, 1), std::invalid_argument);
 }
 
-// --- the whole pipeline -----------------------------------------------------------------------------------------------------------
+// --- the whole pipeline
+// -----------------------------------------------------------------------------------------------------------
 
 InspectionRequest request(double noise) {
   InspectionRequest q;

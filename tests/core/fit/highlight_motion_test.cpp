@@ -161,7 +161,8 @@ TEST(HighlightMotion, ATurningObjectUnderALampThatStandsWithTheCamera) {
   EXPECT_GE(j.count(true, Kind::Texture), j.all(true) - 2);
 }
 
-/// A turntable between camera and lamp: the highlight on its axis stays on its point, and a lamp that stood still in the object's frame would move it.
+/// A turntable between camera and lamp: the highlight on its axis stays on its point, and a lamp that stood still in the object's
+/// frame would move it.
 TEST(HighlightMotion, AHighlightOnTheAxisOfATurntable) {
   Painted p = paintedBall();
   p.paint.clear();

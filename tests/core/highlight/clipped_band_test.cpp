@@ -10,7 +10,8 @@
 #include "core/highlight/highlight.h"
 #include "highlight_images.h"
 
-/// Does the truth lie in the band that is stated around the contour of a clipped core? Lobes by their formulas over the angle, drawn here pixel by pixel.
+/// Does the truth lie in the band that is stated around the contour of a clipped core? Lobes by their formulas over the angle,
+/// drawn here pixel by pixel.
 namespace glint::clipped_band_tests {
 namespace {
 

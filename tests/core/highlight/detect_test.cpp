@@ -54,7 +54,8 @@ TEST(DetectHighlights, Nominal) {
   }
 }
 
-/// Lights of unequal strength: each contour lies at the level of its own peak, the weaker of two peaks of one light at that of the stronger.
+/// Lights of unequal strength: each contour lies at the level of its own peak, the weaker of two peaks of one light at that of
+/// the stronger.
 TEST(DetectHighlights, SeparatePeaksHaveTheirOwnLevels) {
   Blob strong, weak, weaker;
   strong.centre = {70, 80};

@@ -146,7 +146,8 @@ TEST(PartHighlights, DegenerateScenesAreRefusedInWords) {
   };
   refused({blob(), [](const Pixel& p) { return Colour(shading(p) * 0.4 * kLamp); }, {}}, "the diffuse colour is the lamp's");
   refused({blob(), [](const Pixel&) { return Colour(0.001, 0.001, 0.002); }, {}}, "no diffuse light around");
-  // Paint of the lamp's colour beside a red one, and four paints: the second has no combination, the first none that is free of white.
+  // Paint of the lamp's colour beside a red one, and four paints: the second has no combination, the first none that is free of
+  // white.
   refused({blob(), [](const Pixel& p) { return Colour(leftPaint(p) * kRed + (1 - leftPaint(p)) * 0.4 * kLamp); }, {}},
           "the lamp's");
   refused({blob(),

@@ -100,7 +100,8 @@ TEST(WithoutTongues, DegenerateShapesStayAsTheyAre) {
   }
 }
 
-/// A clipped blob with a streak and a piece of another beside it: the streak is no part of the highlight, the piece none of its own.
+/// A clipped blob with a streak and a piece of another beside it: the streak is no part of the highlight, the piece none of its
+/// own.
 TEST(DetectHighlights, StreaksOfAClippedCoreAreCutOffAndNamed) {
   test::Blob blob;
   blob.a = 40, blob.b = 30, blob.angle = 0, blob.height = 4, blob.centre = {100, 80};

@@ -70,8 +70,9 @@ struct Mirror {
       centre << c / o.radius, 0;
       return;
     }
-    // The outline's points in the plane through the optical axis and the ball lie at tan(theta -+ alpha); half their distance and the half axis across
-    // give its mean radius. Solved by a fixed point: the circle of these two half axes has the radius measured.
+    // The outline's points in the plane through the optical axis and the ball lie at tan(theta -+ alpha); half their distance and
+    // the half axis across give its mean radius. Solved by a fixed point: the circle of these two half axes has the radius
+    // measured.
     double alpha = std::atan(o.radius / f), theta = std::atan(c.norm() / f);
     for (int i = 0; i < 50; ++i) {
       const double far = f * std::tan(theta + alpha), near = f * std::tan(theta - alpha);
@@ -174,7 +175,8 @@ TEST(BallPsbox, ThePeaksOfTheTwoBallsAgreeAcrossTheirLine) {
   const Agreement published = agreement(balls.clicked, balls.published, 0);
   EXPECT_NEAR(published.rms, 3.5, 0.1);
   EXPECT_NEAR(published.rest, 1.7, 0.1);
-  // The focal length is not known: one unknown, so 11 degrees of freedom are left of 12. Measured 0.64 px at 27300 px, 1.16 px for a distant camera.
+  // The focal length is not known: one unknown, so 11 degrees of freedom are left of 12. Measured 0.64 px at 27300 px, 1.16 px
+  // for a distant camera.
   double best = 1e300, bestFocal = 0;
   for (double focal = 8000; focal < 200000; focal *= 1.02)
     if (const double rms = agreement(refined, peaks, focal).rms; rms < best) best = rms, bestFocal = focal;

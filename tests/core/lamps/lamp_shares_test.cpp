@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What each ball's highlights leave free, and what each photograph says of the outlines. Truths: noise that is drawn here, and identities of least squares.
+// What each ball's highlights leave free, and what each photograph says of the outlines. Truths: noise that is drawn here, and
+// identities of least squares.
 #include <gmock/gmock.h>
 
 #include "core/lamps/lamp_fit.h"

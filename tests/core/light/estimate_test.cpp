@@ -281,7 +281,8 @@ class Faceted : public TestSphere {
   double radius_;
 };
 
-// Every contour is exact but for a facet around its eighth point that holds about a fifth of it. The other points lie on their level set.
+// Every contour is exact but for a facet around its eighth point that holds about a fifth of it. The other points lie on their
+// level set.
 TEST(BundleLight, PointsWhereAlphaIsFlatAreNotWhatIsLeft) {
   Scene s = makeScene(Light::at(kLight), 6, 2.0);
   std::vector<Faceted> surfaces;

@@ -11,7 +11,8 @@
 
 namespace glint::testing_support {
 
-/// How the answer of a changed scene is brought back: world point -> scale (linear point + shift), pixel -> (sign u, v) / zoom + offset.
+/// How the answer of a changed scene is brought back: world point -> scale (linear point + shift), pixel -> (sign u, v) / zoom +
+/// offset.
 struct Back {
   Eigen::Matrix3d linear = Eigen::Matrix3d::Identity();
   Eigen::Vector3d shift = Eigen::Vector3d::Zero();
@@ -36,7 +37,8 @@ struct Differences {
   std::map<std::string, int> fits, contours;  ///< by model, how many were compared
 };
 
-/// Compares the answer for a scene with that for a changed one; what one of them answers and the other refuses is a test failure. Frames
+/// Compares the answer for a scene with that for a changed one; what one of them answers and the other refuses is a test failure.
+/// Frames
 /// are found by their ids. @param models  only these; empty = all
 void compare(const Inspection& a, const Inspection& b, const Back& back, const std::string& scene, Differences& differences,
              const std::vector<std::string>& models = {});

@@ -90,7 +90,8 @@ constexpr double kSame = 1e-9, kSamePx = 641e-9;
 /// lobe when a round moves light and log roughness by as much; the round that they do not take would move them by about as much
 /// again. Distances of a light that is farther than the scene's size, and the next stages, magnify that a few times.
 constexpr double kStopped = 1e-8;
-/// What the stopping tolerance of the light leaves in the shape of an ellipsoid about it, whose thin axis the contours hardly see.
+/// What the stopping tolerance of the light leaves in the shape of an ellipsoid about it, whose thin axis the contours hardly
+/// see.
 constexpr double kStoppedShape = 1e-6;
 /// In a picture 641 px wide.
 constexpr double kStoppedPx = 641 * kStopped;
@@ -160,8 +161,9 @@ TEST_F(Properties, UnitOfTheWorld) {
   }
 }
 
-/// A mean over a contour is taken at samples half a pixel apart from its first vertex on. In the mirror the walks start at another
-/// direction and go the other way round, so other points are sampled; what that does falls with the square of the distance.
+/// A mean over a contour is taken at samples half a pixel apart from its first vertex on. In the mirror the walks start at
+/// another direction and go the other way round, so other points are sampled; what that does falls with the square of the
+/// distance.
 constexpr double kSampledPx = 2e-3, kSampledPct = 2e-3;
 TEST_F(Properties, Mirror) {
   Differences d;

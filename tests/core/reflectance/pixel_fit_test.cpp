@@ -394,7 +394,8 @@ TEST(ContourWithLobe, ALobeThatExplainsNothingIsRefused) {
                                BackgroundKind::None, DetectOptions{}));
 }
 
-// Clipped at a third of the peak: the contour at half the peak lies in clipped pixels, and the highlight says at which level it was found.
+// Clipped at a third of the peak: the contour at half the peak lies in clipped pixels, and the highlight says at which level it
+// was found.
 TEST(ContourWithLobe, AClippedHighlightKeepsItsContourAndNamesItsLevel) {
   Scene s;
   s.clip = 0.35;

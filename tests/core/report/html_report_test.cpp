@@ -124,7 +124,8 @@ TEST(HtmlReport, AFrameWithAMissHasACrossAndNoErrorInThePlot) {
   EXPECT_THAT(html, HasSubstr("<title>frame v4 (held out)\ndual  "));
 }
 
-/// The legend of the plot, the table and the sentence speak of the same highlights: those that were found, and it says how many were not.
+/// The legend of the plot, the table and the sentence speak of the same highlights: those that were found, and it says how many
+/// were not.
 TEST(HtmlReport, LegendTableAndSentenceHaveOneMean) {
   InspectionRequest q;
   q.models = {"dual"};

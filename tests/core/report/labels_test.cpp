@@ -113,7 +113,8 @@ TEST(EdgeShareOf, TheSilhouetteOfASphereIsAnEdgeAndItsSlopeIsNone) {
   EXPECT_EQ(edgeShareOf(circle(0.95 * silhouette), above(0.01), *sphere), 0);
 }
 
-/// Five frames; the first one's image is cut so that it shows the left part of its highlight alone, the last one's shows none of it.
+/// Five frames; the first one's image is cut so that it shows the left part of its highlight alone, the last one's shows none of
+/// it.
 struct Cut {
   Inspection inspection;
   double cutAt = 0;

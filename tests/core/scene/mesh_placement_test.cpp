@@ -19,7 +19,8 @@ using testing::IsEmpty;
 constexpr int kCameras = 24;
 constexpr const char* kElsewhere = "the surface passes through 3 of the 200 sparse points that it should";
 
-/// A capture whose mesh is in a frame and unit of its own: `truth` takes it to the cameras' world. The report has what was found before.
+/// A capture whose mesh is in a frame and unit of its own: `truth` takes it to the cameras' world. The report has what was found
+/// before.
 struct Misplaced {
   testing_support::TemporaryFolder folder;
   TriangleMesh mesh;

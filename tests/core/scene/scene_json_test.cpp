@@ -283,7 +283,8 @@ TEST(ReadScene, AnUnknownKeyThatNestsAsDeepAsAllowedIsKept) {
   EXPECT_EQ(readScene(folder / "again.json").unknownJson, scene.unknownJson);
 }
 
-// K = [80 2.5 31.5; 0 80 23.5; 0 0 1] at (0.2, -0.4, 2) of the camera: u = (80 * 0.2 + 2.5 * -0.4) / 2 + 31.5, v = 80 * -0.4 / 2 + 23.5.
+// K = [80 2.5 31.5; 0 80 23.5; 0 0 1] at (0.2, -0.4, 2) of the camera: u = (80 * 0.2 + 2.5 * -0.4) / 2 + 31.5, v = 80 * -0.4 / 2
+// + 23.5.
 TEST(ReadScene, SkewIsPartOfTheCamera) {
   const TemporaryFolder folder;
   const auto sceneWith = [&](const std::string& more) {
