@@ -29,8 +29,8 @@ class FileFinder {
 
  private:
   struct Folder {
-    std::map<std::u32string, std::vector<std::string>> entries,
-        images;  ///< by the key of the name, of an image's name without ending
+    /// By the key of the name; and by the key of an image's name without ending.
+    std::map<std::u32string, std::vector<std::string>> entries, images;
   };
   const Folder& listed(const std::filesystem::path& folder);
   std::filesystem::path similar(const std::filesystem::path& folder, const std::string& name, Ending ending);

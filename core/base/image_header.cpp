@@ -179,8 +179,8 @@ struct TiffKind {
 
 /// The tags that matter here; the first of each counts, as for the decoder.
 struct TiffTags {
-  std::optional<std::uint64_t> width, height, channels, tileWidth,
-      tileHeight;  // of strips nothing is asked: "all rows" is often 2^32 - 1
+  // Not checked for strips: "all rows" is often 2^32 - 1.
+  std::optional<std::uint64_t> width, height, channels, tileWidth, tileHeight;
   std::optional<std::uint64_t> colours, reduced, make, parts, dng;
   std::optional<std::uint64_t>* at(std::uint64_t tag) {
     switch (tag) {

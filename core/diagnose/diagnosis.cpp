@@ -176,8 +176,8 @@ class Adviser {
     if (d_.now.observed() == 0 || nothingIsLeft()) return;
     const std::vector<CandidateChange> all = changesWorthATrial();
     total_ = done_ + int(all.size() + r_.request.models.size()) + 1;
-    std::vector<std::pair<Change, Results>>
-        onFrames;  // by other training frames, whatever the model: their lobe costs most of a trial
+    // By other training frames, whatever the model: their lobe costs most of a trial.
+    std::vector<std::pair<Change, Results>> onFrames;
     for (const CandidateChange& c : all) {
       const Change frames{.train = c.change.train, .exclude = c.change.exclude};
       const auto known = std::find_if(onFrames.begin(), onFrames.end(), [&](const auto& entry) { return entry.first == frames; });

@@ -49,8 +49,8 @@ struct ModelDiagnosis {
   std::string model;
   std::string status;  ///< of its fits, as every table says it: "ok", "poor", "failed"
   UnseenError error;   ///< as it is now
-  std::vector<std::string>
-      causes;  ///< in words, weightiest first; none where it is ok, misses nothing and is off by at most kLargestExpectedPct
+  /// In words, weightiest first; none if it is ok, misses nothing and is off by at most kLargestExpectedPct.
+  std::vector<std::string> causes;
   std::vector<HighlightEvidence> evidence;
   std::vector<FitTrace> fits;  ///< how they went; none where the status is ok
 };

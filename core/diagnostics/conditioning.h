@@ -30,8 +30,8 @@ struct Conditioning {
   std::string model, light;
   std::optional<std::string> surface;
   std::vector<double> singularValues;  ///< of the linear system for Q*, descending; empty for models without one
-  std::string
-      quadricKind;  ///< describe() of the linear solution's Q*: "ellipsoid", "hyperboloid of two sheets", ...; "" without one
+  /// describe() of the linear solution's Q*: "ellipsoid", "hyperboloid of two sheets", ...; "" without one.
+  std::string quadricKind;
   std::vector<Finding> findings;
   Verdict worst() const;  ///< of the findings; Unknown when none is known
 };

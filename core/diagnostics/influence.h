@@ -19,11 +19,11 @@ namespace glint {
 /// plane) shows no influence of any frame: its changes are 0.
 struct ModelInfluence {
   std::optional<double> leftOutPct;  ///< contour error on the frame itself, predicted from the others, mean over its highlights
-  std::optional<double>
-      heldOutPct;  ///< mean contour error on the probes without the frame; what is not predicted counts as kNoPredictionPct
+  /// Mean contour error on the probes without the frame; a missing prediction counts as kNoPredictionPct.
+  std::optional<double> heldOutPct;
   std::optional<double> changePct;  ///< of that mean against all training frames: positive = the frame helps, negative = it harms
-  std::optional<double>
-      lightShift;  ///< m, between the light (or the ellipsoid's centre) with and without the frame; none at infinity
+  /// m, between the light (or the ellipsoid's centre) with and without the frame; none at infinity.
+  std::optional<double> lightShift;
   std::optional<double> axesChange;  ///< largest relative change of a semi-axis
   std::optional<Failure> failure;    ///< why there is no fit without it
 };

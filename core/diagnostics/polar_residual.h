@@ -49,8 +49,8 @@ struct AngleByDirection {
   std::optional<double> limitAngle;       ///< of the model or of the light's estimate, rad
   bool extended = false;                  ///< that is of a point: the lamp's extent changes it with the direction
   std::vector<DirectionSample> measured;  ///< alpha on the observed contour, rad
-  std::vector<DirectionSample>
-      predicted;  ///< alpha on the predicted contour; empty when nothing was predicted for this highlight
+  /// Alpha on the predicted contour; empty if nothing was predicted for this highlight.
+  std::vector<DirectionSample> predicted;
 };
 
 /// The light that a model's fit of this light and frame predicts with: its own, the one estimated for all models, or its

@@ -22,8 +22,8 @@ struct ErrorChange {
   double meanBefore = 0, meanAfter = 0;  ///< %; NaN where `highlights` is 0
   int better = 0, worse = 0;             ///< of `highlights`; the others stay as they were, to nine digits
   int lost = 0, gained = 0;              ///< held out in both, with an error only before, or only after
-  int withoutBefore = 0,
-      withoutAfter = 0;  ///< observed highlights of held-out frames that have no error: missed, failed or refused
+  /// Observed highlights of held-out frames without an error: missed, failed or refused.
+  int withoutBefore = 0, withoutAfter = 0;
   int spuriousBefore = 0, spuriousAfter = 0;
   int elsewhere = 0;  ///< highlights with an error in both that are not held out in both: they do not count
 };

@@ -70,8 +70,8 @@ struct PlotData {
   std::string id;  ///< "error", "lobe", ...
   std::string title;
   std::string empty;  ///< one sentence in place of a plot that there is not
-  bool dial =
-      false;  ///< y by direction x (rad) around a circle, 0 = right and pi/2 = down as in the photograph; the circle is y = 0
+  /// y by direction x (rad) around a circle, 0 = right and pi/2 = down as in the photograph; the circle is y = 0.
+  bool dial = false;
   PlotAxis x, y;
   std::vector<PlotSeries> series;
   std::vector<PlotShade> shades;

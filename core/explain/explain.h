@@ -38,8 +38,8 @@ struct Explanation {
   int frame = -1;
   int highlight = -1;        ///< index in the frame's evidence; -1 = it has none
   std::string light, model;  ///< "" without one
-  std::optional<TrainingView>
-      view;  ///< of this highlight, with its canonical contour where a light is known, whether the frame trains or not
+  /// Of this highlight, with its canonical contour if a light is known, whether the frame trains or not.
+  std::optional<TrainingView> view;
   std::optional<Light> lightUsed;  ///< for the canonical contour
   std::vector<ExplainStep> steps;  ///< all of `explainSteps()`, in that order
 };

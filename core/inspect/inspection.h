@@ -85,8 +85,8 @@ struct Inspection {
   InspectionRequest request;
   TrainSpec train;
   std::vector<FrameEvidence> evidence;  ///< one per frame; `frame` is -1 where inspectOneFrame() did not look
-  std::map<int, FrameEvidence>
-      evidenceBefore;  ///< of frames whose highlights the what-if moved or whose lights it switched off: as found
+  /// As found, of frames whose highlights the what-if moved or whose lights it switched off.
+  std::map<int, FrameEvidence> evidenceBefore;
   /// Where a lobe's background replaced the smooth one (detect.background = lobe): the evidence as first detected; else empty.
   std::vector<FrameEvidence> detected;
   std::vector<TrainingView> views;           ///< one per training highlight; on the corrected surface where there is a correction

@@ -42,8 +42,8 @@ Outcome<RefinedOutline> refineBallOutline(std::span<const Image> photographs, co
 struct OutlineChoice {
   RefinedOutline outline;
   std::string refused;  ///< why the one of the edges does not; empty = it does
-  double withinPx =
-      0;  ///< by how much it lies inside of the given one all around, where that is more than its standard deviation says; else 0
+  /// How far it lies inside of the given one all around, if more than its standard deviation; else 0.
+  double withinPx = 0;
 };
 
 /// The outline of the edges where these tell it better than the one that is given is known. Where it lies inside of that all

@@ -212,8 +212,8 @@ class ShotReader {
   double givenSigmaPx_;
   const ProgressFn& progress_;
   std::map<std::size_t, Image> size_;  ///< of each ball's photographs, without pixels
-  std::optional<OutlineCamera>
-      outlineCamera_;  ///< none where a lens bends outlines: its ellipse is then found from the edge points alone
+  /// None if a lens bends outlines: the edge points alone then tell the ellipse.
+  std::optional<OutlineCamera> outlineCamera_;
   std::vector<BallOutline> found_;
   std::vector<StillReflections> still_;  ///< of each ball
   std::vector<bool> unmoved_;            ///< of each ball: nothing on it was seen to move, so nothing tells a lamp from a window

@@ -17,8 +17,8 @@ struct DroppedSighting {
   std::optional<std::size_t> ball;  ///< index; none in a scene
   Pixel place{0, 0};                ///< px, measured
   std::string reason;               ///< in words
-  std::optional<Eigen::Vector3d> direction =
-      {};  ///< unit, towards the lamp if this reflection is the lamp's after all; nothing where it cannot be
+  /// Unit, towards the lamp if this reflection is the lamp's after all; nothing if it cannot be.
+  std::optional<Eigen::Vector3d> direction = {};
 };
 
 /// How large a reflection makes its lamp appear from the ball.

@@ -37,8 +37,8 @@ struct FittedBall {
 };
 
 struct BallLamps {
-  std::vector<LampAnswer>
-      lamps;  ///< one for each photograph that something was seen in, in the order of `seen`; the id is left to the caller
+  /// One for each photograph that shows something, in the order of `seen`; the caller sets the id.
+  std::vector<LampAnswer> lamps;
   std::vector<FittedBall> balls;
   double noiseFactor = 1;  ///< the residuals over what their covariances promise, at least 1; all covariances contain its square
   int degreesOfFreedom = 0;  ///< of that

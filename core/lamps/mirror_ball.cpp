@@ -45,8 +45,8 @@ std::vector<EdgePoint> edgesOf(const RefinedOutline& outline) {
 
 /// Normal equations of the cone through the points. The three unknowns are well separated: a squared condition does no harm.
 struct OutlineEquations {
-  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero(),
-                  circle = Eigen::Matrix3d::Zero();  ///< the second one of centre and radius of a circle
+  /// `circle` is that of centre and radius of a circle.
+  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero(), circle = Eigen::Matrix3d::Zero();
   Eigen::Vector3d right = Eigen::Vector3d::Zero();
 };
 OutlineEquations outlineEquations(const BallProjection& view, const Eigen::Vector3d& at, const std::vector<EdgePoint>& edges) {

@@ -24,8 +24,8 @@ struct LabelShape {
 
 /// The labels of one model.
 struct LabelSet {
-  std::vector<std::string>
-      lights;  ///< with a fit, whether a frame shows them or not: categories do not depend on the frames chosen
+  /// With a fit, whether a frame shows them or not: categories do not depend on the frames chosen.
+  std::vector<std::string> lights;
   std::vector<LabelShape> shapes;      ///< by frame, light and highlight
   std::map<int, std::string> reasons;  ///< of frames without a shape
 };

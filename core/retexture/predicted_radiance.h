@@ -11,8 +11,8 @@ namespace glint {
 /// What a model predicts that the highlights of a frame add to its picture.
 struct PredictedRadiance {
   Image radiance;  ///< 3 channels, linear light (1 = the largest code), at the camera's measured pixels
-  std::vector<char>
-      extrapolated;  ///< per pixel: where neither prediction nor training pixels reach: gaps of the contour, clipped cores
+  /// Per pixel: neither prediction nor training pixels reach it: gaps of the contour, clipped cores.
+  std::vector<char> extrapolated;
   std::vector<Polyline> contours;  ///< predicted, ideal pixels
   std::vector<double> coverage;    ///< of each contour, share of its directions that were predicted
   struct OfLight {

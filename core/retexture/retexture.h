@@ -34,8 +34,8 @@ struct RetextureRequest {
   Image picture = {};  ///< linear, 3 channels: background (of the frame's size) or texture
   TextureMapping mapping = TextureMapping::Natural;
   double repeat = 1;  ///< textures across the surface, > 0
-  std::optional<double>
-      albedo;  ///< of the surface as it was, (0, 1]: a texture's values are then albedos; else its mean takes the place of it
+  /// Of the surface as it was, (0, 1]: a texture's values are then albedos; else its mean replaces it.
+  std::optional<double> albedo;
   ShadingSource shading = ShadingSource::Auto;
   double marginPx = 4;  ///< Removed, Frame: beyond where the highlight can be seen, >= 0
 };

@@ -103,10 +103,9 @@ struct OpenedSession {
   std::shared_ptr<const Scene> scene;
   std::string warning;  ///< another file was given than the session was made with, or its plugins are not loaded; "" = neither
 };
-/// Reads a session and its scene, not the files' contents (see `changedFiles`). InputError, also for a model of a plugin that is
-/// not
-/// loaded; MissingScene, MissingMesh, OutsidePath. @param instead  where inputs are now, if elsewhere; the session then names
-/// them.
+/// Reads a session and its scene; `changedFiles` checks the files' contents. InputError, also for a model of a plugin that is not
+/// loaded; MissingScene, MissingMesh, OutsidePath.
+/// @param instead  where inputs are now, if elsewhere; the session then names these places.
 OpenedSession openSession(const std::filesystem::path& file, const Relinked& instead = {});
 OpenedSession openSession(Session session, const Relinked& instead = {});
 
@@ -135,8 +134,8 @@ struct Replay {
   std::string firstChanged;              ///< the first stage whose results differ, in words; "" = none
   bool digestAgrees = false;
   int compared = 0;  ///< key results
-  double largestDifference =
-      0;  ///< of a key result, relative to its size (and to 1e-3 where that is smaller): what 1e-9 is compared with
+  /// Of a key result, relative to its size (and to 1e-3 if that is smaller): what 1e-9 is compared with.
+  double largestDifference = 0;
 };
 /// Recomputes a session and compares: key results agree when they differ by at most 1e-9 relatively (or 1e-12 absolutely,
 /// the round-off of numbers of order one).

@@ -17,8 +17,8 @@ struct TradeoffOptions {
   TradeoffBound bound;
   int repeats = 5;  ///< of every timed prediction
   SearchOptions search;
-  std::filesystem::path
-      workFile;         ///< interrupted work is resumed from here; the caller removes it once the result is safe; empty = none
+  /// Interrupted work resumes from here; the caller removes it once the result is safe; empty = none.
+  std::filesystem::path workFile;
   std::string program;  ///< version: work of another one is not resumed
 };
 

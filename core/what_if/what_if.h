@@ -54,8 +54,8 @@ std::size_t placesOf(HighlightEdit::Kind kind);  ///< how many it has
 /// results. Everything on its default = the scene as it was captured.
 struct WhatIf {
   std::map<int, PoseChange> poses;  ///< by frame
-  std::map<std::pair<int, int>, HighlightChange>
-      highlights;                    ///< by frame and index in its evidence, as found; of evidence that is not there: no effect
+  /// By frame and index in its evidence, as found; no effect without that evidence.
+  std::map<std::pair<int, int>, HighlightChange> highlights;
   std::vector<HighlightEdit> edits;  ///< in the order in which they were made; before `highlights`, which may move what they made
   /// By frame and light id: on or off, whatever was captured. What is off makes no highlight there: none trains, none is
   /// predicted, none is scored. On counts where contours are synthesised; no photograph shows a light that was off.
@@ -64,8 +64,8 @@ struct WhatIf {
   /// Observed contours are synthesised from the scene's true lights and analytic surfaces instead of being detected; then light,
   /// surface and material below count, and a moved camera takes its contours with it.
   bool synthesise = false;
-  std::map<std::string, Eigen::Vector3d>
-      lightsBy;  ///< by id of a true light: shift of its position, m (of its unit direction, for one at infinity)
+  /// By id of a true light: shift of its position, m (of its unit direction, for one at infinity).
+  std::map<std::string, Eigen::Vector3d> lightsBy;
   std::map<std::string, double> surfaces;  ///< by surface id: the value of its shape parameter, see `shapeOf`
   Lobe lobe = Lobe::TorranceSparrow;
   double roughness = 0.1;  ///< m of the lobe, > 0

@@ -26,8 +26,8 @@ struct ViewState {
   InspectionRequest request;
   draw::Selection selection;
   std::map<std::string, bool> layers;  ///< scene layers by their name, frame overlays as "frame/NAME"
-  std::map<std::string, std::string>
-      options;  ///< how views show things, as "VIEW/NAME": "frame/gamma", "scene/colour-by"; absent = default
+  /// How views show things, as "VIEW/NAME": "frame/gamma", "scene/colour-by"; absent = default.
+  std::map<std::string, std::string> options;
 };
 
 /// What is on screen: the undoable state, the scene that it belongs to and the newest results.
@@ -159,8 +159,8 @@ class Document : public QObject {
   void layersChanged();
   void optionsChanged();  ///< ViewState::options
   void inspectionChanged();
-  void
-  pinnedChanged();  ///< other results are pinned, or none, or views flipped to them or back; inspectionChanged() follows a flip
+  /// Other results are pinned, or none, or views flipped to them or back; inspectionChanged() follows a flip.
+  void pinnedChanged();
   void brushedChanged();
   void frameInspectionChanged();  ///< results for the selected frame came first; inspectionChanged() follows later
   void staleChanged(bool stale);

@@ -37,9 +37,8 @@ class FrameCanvas : public QWidget {
   void setPicture(const FramePicture& picture);  ///< keeps the view where the size stays the same
   void setPhotograph(const QImage& photograph);  ///< a picture without numbers
   void setMessage(const QString& message);       ///< instead of a photograph
-  /// Draws another picture of the same frame in the photograph's place, from a column on, or all of it without a photograph; the
-  /// line
-  /// between them can be dragged. A picture without pixels ends it. @param left, right  texts of the chips beside the line
+  /// Draws another picture of the frame in the photograph's place, from a column on (all of it without a photograph). The user can
+  /// drag the line between them. A picture without pixels ends it. @param left, right  texts of the chips beside the line
   void setCompared(const FramePicture& other, int from, const QString& left, const QString& right);
   bool comparing() const { return !other_.shown.isNull(); }
   /// What is drawn is another frame's photograph until the next picture or message: where that takes a moment, it is drawn faint,
@@ -93,8 +92,8 @@ class FrameCanvas : public QWidget {
   void clicked(double x, double y);  ///< photograph pixel
   void zoomChanged(double zoom);
   void viewMoved();  ///< the user zoomed or panned
-  void dividerMoved(double share,
-                    bool begins);  ///< the line between photograph and compared picture is dragged; share of the width
+  /// The user drags the line between photograph and compared picture; share of the width.
+  void dividerMoved(double share, bool begins);
 
  protected:
   void paintEvent(QPaintEvent*) override;

@@ -47,8 +47,8 @@ class HighlightEdits : public QObject {
     std::function<void()> run;  ///< makes it
   };
   Plan ignore();  ///< at the place, else the selected highlight; what is ignored there is taken back
-  Plan
-  merge();  ///< the selected highlight with the one at the place; where these are one, with the nearest other one of its light
+  /// The selected highlight with the one at the place; if these are one, with the nearest other one of its light.
+  Plan merge();
   Plan split();
   Plan grow();
   Plan undoAll();  ///< takes all edits of the frame back

@@ -17,8 +17,8 @@ namespace fs = std::filesystem;
 struct Workload {
   std::string name;
   std::vector<std::string> arguments;  ///< IN stands for the folder of the inputs; outputs are relative to the current folder
-  std::vector<std::string>
-      before;                     ///< the same command with other results under the same names; empty: nothing replaces anything
+  /// The same command with other results under the same names; empty: nothing replaces anything.
+  std::vector<std::string> before;
   std::string program = "glint";  ///< or "glint-save"
 };
 inline void PrintTo(const Workload& w, std::ostream* out) { *out << w.name; }

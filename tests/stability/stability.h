@@ -20,8 +20,8 @@ const char* nameOf(CaseVerdict verdict);
 struct StabilityResult {
   std::string name, stage;
   double parameter = 0;  ///< what was driven to the extreme; its unit is in the name
-  double condition =
-      1;  ///< change of the answer over change of the input, both relative; the largest double where no unique answer exists
+  /// Change of the answer over change of the input, both relative; the largest double without a unique answer.
+  double condition = 1;
   double relativeError = 0;  ///< against a reference of higher precision; 1 where there is no answer
   double tolerance = 0;      ///< of the relative error
   CaseVerdict verdict = CaseVerdict::Wrong;

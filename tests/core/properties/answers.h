@@ -37,9 +37,8 @@ struct Differences {
   std::map<std::string, int> fits, contours;  ///< by model, how many were compared
 };
 
-/// Compares the answer for a scene with that for a changed one; what one of them answers and the other refuses is a test failure.
-/// Frames
-/// are found by their ids. @param models  only these; empty = all
+/// Compares the answer for a scene with that for a changed one; what only one of them answers is a test failure. Ids find the
+/// frames. @param models  only these; empty = all
 void compare(const Inspection& a, const Inspection& b, const Back& back, const std::string& scene, Differences& differences,
              const std::vector<std::string>& models = {});
 
