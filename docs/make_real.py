@@ -42,9 +42,9 @@ def boxes(tests):
 
 def cores(tests):
     """Clipped lobes and coloured surfaces in closed form, as the tests of detection print them."""
-    out = run([tests, "--gtest_filter=ClippedCore.Nominal*:ClippedBand.Noise*:PartHighlights.Nominal*"])
+    out = run([tests, "--gtest_filter=ClippedCore.Nominal*:ClippedBand.Noise*:SeparateHighlights.Nominal*"])
     rows = re.findall(r"clipped core: (\w+), ([\d.]+): peak ([\d.]+) \+- (\d+) %, (\w+), ([\d.]+) px, stated ([\d.]+) px, at half the clip value ([\d.]+) px", out)
-    parts = re.findall(r"parted: (.+): ([\d.]+) px, parted ([\d.]+) px", out)
+    parts = re.findall(r"separated: (.+): ([\d.]+) px, separated ([\d.]+) px", out)
     bands = re.findall(r"clipped band: ([^|\n]+)\|([\d.]+)\|(\d+)\|(\d+)\|([\d.]+)\|([\d.]+)\|(\d+)\n", out)
     if len(rows) != 12 or len(parts) != 4 or len(bands) != 20:
         sys.exit(f"{tests}: printed {len(rows)} of 12 clipped cores, {len(bands)} of 20 bands and {len(parts)} of 4 coloured surfaces")
@@ -55,8 +55,8 @@ def cores(tests):
     for lobe, share, outside, seeds, off, stated, within in bands:
         band += f"| {lobe} | {share} | {outside} of {seeds} | {off} | {stated} | {within} of {seeds} |\n"
     other = "| surface | contour off by, px | on the specular part, px |\n" + "| --- " * 3 + "|\n"
-    for surface, plain, parted in parts:
-        other += f"| {surface} | {plain} | {parted} |\n"
+    for surface, plain, separated in parts:
+        other += f"| {surface} | {plain} | {separated} |\n"
     return text, band, other
 
 
@@ -67,9 +67,9 @@ def coloured(tests):
     models = re.findall(r"coloured model: ([^|\n]+)\|(\w+)\|(\d+)\|(\d+)\|([\d.]+|nan)\|([\d.]+|nan)\n", out)
     if len(rows) != 24 or len(models) != 9:
         sys.exit(f"{tests}: printed {len(rows)} of 24 sequences and {len(models)} of 9 models (is the data there?)")
-    text = "| sequence | paint | parted | smooth, all frames | smooth, parted frames | colours, parted frames | why not the others |\n" + "| --- " * 7 + "|\n"
-    for sequence, paint, frames, parted, smooth, there, colours, why in rows:
-        text += f"| {sequence} | {paint} | {parted} of {frames} | {smooth} | {there} | {colours} | {why} |\n"
+    text = "| sequence | paint | separated | smooth, all frames | smooth, separated frames | colours, separated frames | why not the others |\n" + "| --- " * 7 + "|\n"
+    for sequence, paint, frames, separated, smooth, there, colours, why in rows:
+        text += f"| {sequence} | {paint} | {separated} of {frames} | {smooth} | {there} | {colours} | {why} |\n"
     model = "| paint | background | frames predicted | mean, % of the diameter | max, % |\n" + "| --- " * 5 + "|\n"
     for paint, background, frames, predicted, mean, largest in models:
         model += f"| {paint} | {background} | {predicted} of {frames} | {mean} | {largest} |\n"
@@ -273,8 +273,8 @@ axes change by at most {gaussian:.1f} % and the contours overlap by at least {io
 {gymball}
 - The contour lies on the slope around the saturated core, at a level of the clipped maximum: the true peak is not known, so the true level is lower than the one named.
 - The highlight ends at the silhouette, where no level set does: the ellipse through such a contour reaches beyond the ball. It says where the highlight is, not what shape a lobe has.
-- Along the silhouette and the ball's grooves the contour has tongues, which join or leave the highlight between levels. They are cut off, and pieces of them beside the highlight are rejected (`withoutTongues`,
-  `core/highlight/tongues.h`). Without that the ellipse of C2_S3 moved by 6.5 px between these levels.
+- Along the silhouette and the ball's grooves the contour has streaks, which join or leave the highlight between levels. They are cut off, and pieces of them beside the highlight are rejected (`withoutStreaks`,
+  `core/highlight/streaks.h`). Without that the ellipse of C2_S3 moved by 6.5 px between these levels.
 - Other highlights in the count are on the ball's stand and in its grooves. No mask was given.
 
 ## Two chrome balls
@@ -302,7 +302,7 @@ Captures without bright texture that anybody knows of, by `glint detect`: none o
 
 CORES = """## Clipped cores
 Lobes in closed form, 60 x 36 px at 1/e, over a sloping background, noise of 0.5 % of the clip value, clipped at a share of the peak. The slope is traced at up to eleven levels; the
-areas of its contours tell the peak (`traceSkirt`, `core/highlight/clipped_skirt.h`). Truth: the lobe's own contour at half of its peak.
+areas of its contours tell the peak (`traceFlank`, `core/highlight/clipped_flank.h`). Truth: the lobe's own contour at half of its peak.
 
 {clipped}
 - Where level 0.5 lies inside the core, the contour stays at half of the clip value, and `glint detect` says so. It is then too large by about what the last column says, and the
@@ -318,9 +318,9 @@ The same with lobes by their formulas over the angle, two sizes, four places and
 
 ## Coloured surfaces
 A lobe of 44 x 30 px at 1/e under a yellowish lamp, over diffuse paint in closed form. `--separate auto` finds the combination of the channels in which the diffuse colours around the highlight vanish
-(`partHighlights`, `core/highlight/parting.h`), and takes contours on it.
+(`separateHighlights`, `core/highlight/specular_separation.h`), and takes contours on it.
 
-{parted}
+{separated}
 - It is refused, in words, for grey images, clipped pixels, metal and black, paint of the lamp's colour, more than two colours, and where noise would be above 5 % of the peak.
 """
 
@@ -334,12 +334,12 @@ distance of the contours, mean and worst, px. `detect.background` = `smooth` or 
 - It does not help where pixels are noisy: the combination of the channels amplifies their noise, and at 0.5 % of the clip value the contour is worse than over the smooth background. Average several exposures, or stay with another background.
 - It is refused where paint has the lamp's colour (grey, or a mixture of paints that is grey on the whole), where there are three paints, and on the vase in three frames or more of eight: too much of what surrounds one of their highlights is left.
   The frames keep the smooth background, with its error.
-- On the vase a parted contour can still be off by more than a pixel (waves): the limits on noise and on what is left do not see every failure.
+- On the vase a separated contour can still be off by more than a pixel (waves): the limits on noise and on what is left do not see every failure.
 
-Models that are fitted on pixels (`reflectance`) take the specular part as well in frames that were parted. Sphere, twelve frames, `--train spread:6`, the other six scored against the same truth:
+Models that are fitted on pixels (`reflectance`) take the specular part as well in frames that were separated. Sphere, twelve frames, `--train spread:6`, the other six scored against the same truth:
 
 {models}
-Without the parted pixels the row *colours* would be nearly as poor as the others: contours alone would be right, and the lobe fitted to what the paint has changed. `lobe` takes the light of
+Without the separated pixels the row *colours* would be nearly as poor as the others: contours alone would be right, and the lobe fitted to what the paint has changed. `lobe` takes the light of
 one smooth paint for background; blocks have no smooth part.
 """
 
@@ -355,8 +355,8 @@ def main():
     parser.add_argument("--coloured-tests", default="build/release/bin/test_core_coloured_cycles")
     parser.add_argument("--cores", action="store_true", help="print the sections that need no data, and stop")
     a = parser.parse_args()
-    clipped, bands, parted = cores(a.highlight_tests)
-    sections = CORES.format(clipped=clipped, bands=bands, parted=parted)
+    clipped, bands, separated = cores(a.highlight_tests)
+    sections = CORES.format(clipped=clipped, bands=bands, separated=separated)
     if a.cores:
         sys.stdout.write(sections)
         return

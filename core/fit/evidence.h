@@ -7,7 +7,7 @@
 
 #include "core/base/settings.h"
 #include "core/fit/frame_evidence.h"
-#include "core/highlight/parting.h"
+#include "core/highlight/specular_separation.h"
 #include "core/reflectance/pixel_patch.h"
 #include "core/scene/scene.h"
 
@@ -23,10 +23,10 @@ struct SeparateLights {
 DetectOptions detectOptionsFor(const Frame& frame, FrameSource source, const Settings& settings);
 
 /// The image that detection sees, as evidence. FrameUnreadable.
-/// @param parted  how the frame's highlights were separated (FrameEvidence::parted): each pixel then holds the specular part by
+/// @param separated  FrameEvidence::separated: each pixel then holds the specular part by
 ///                the nearest one's combination, in footprints; below 0 where noise says so. Empty: the mean of the channels
 Outcome<LinearPixels> pixelsOf(const Frame& frame, FrameSource source, const Settings& settings,
-                               const std::vector<PartedRegion>& parted = {});
+                               const std::vector<SeparatedRegion>& separated = {});
 
 /// Contours at other levels, to the highlight of the same light whose peak they enclose. One around several peaks counts once.
 void addOtherLevels(const std::vector<Highlight>& given, std::vector<Highlight>& highlights);
@@ -36,10 +36,11 @@ void addOtherLevels(const std::vector<Highlight>& given, std::vector<Highlight>&
 FrameEvidence gatherEvidence(const Scene& scene, int frame, FrameSource source, const Settings& settings,
                              const SeparateLights& lights = {});
 
-/// Traces the detected highlights of a frame again on their specular part alone, where its colours allow it (`partHighlights`).
-/// Highlights that the scene gives stay as they are.
+/// Traces the detected highlights of a frame again on their specular part alone, where its colours allow it
+/// (`separateHighlights`). Highlights that the scene gives stay as they are.
 /// @return what came of it; the reason also where the lens distortion has no inverse
-Parting partEvidence(const Scene& scene, int frame, FrameSource source, const Settings& settings, FrameEvidence& evidence);
+SpecularSeparation separateEvidence(const Scene& scene, int frame, FrameSource source, const Settings& settings,
+                                    FrameEvidence& evidence);
 
 /// Contours stored as in data/cycles/*/contours (FOLDER/ID.json) at `level`, for scoring. FrameUnreadable when the frame has no
 /// file. InputError when a file does not parse, does not hold the level or has a contour without area.

@@ -8,7 +8,7 @@
 #include "core/base/median.h"
 #include "core/base/number_text.h"
 #include "core/highlight/background.h"
-#include "core/highlight/clipped_skirt.h"
+#include "core/highlight/clipped_flank.h"
 #include "core/highlight/pixel_noise.h"
 #include "core/light/estimate.h"
 
@@ -79,7 +79,7 @@ void measureContour(const Highlight& h, const Frame& frame, const LinearPixels& 
   }
   if (byNoise.empty()) return;
   q.noisePx = upperMedian(byNoise);
-  if (h.clipped) q.levelPx = h.skirt ? h.skirt->sigmaPx : upperMedian(byLevel);
+  if (h.clipped) q.levelPx = h.flank ? h.flank->sigmaPx : upperMedian(byLevel);
   if (footprint && !h.clipped)
     q.backgroundPx = backgroundUncertaintyPct(pixels.value, pixels.usable, *footprint, h.peakValue) / 100 *
                      std::sqrt(4 / M_PI * std::max(0.0, h.areaPx2));
@@ -124,8 +124,8 @@ std::vector<HighlightQuality> highlightQualities(const Frame& frame, const Linea
     const Highlight& h = highlights[i];
     HighlightQuality& q = qualities[i];
     if (h.contour.points.size() < 3) continue;
-    if (h.clipped) q.flags.push_back(h.skirt ? "clipped core: " + inWords(*h.skirt) : "clipped core");
-    if (h.cutPx2 > kWorthCutPx2) q.flags.push_back(formatted("streaks and narrow tongues cut off: %.0f px2", h.cutPx2));
+    if (h.clipped) q.flags.push_back(h.flank ? "clipped core: " + inWords(*h.flank) : "clipped core");
+    if (h.cutPx2 > kWorthCutPx2) q.flags.push_back(formatted("streaks cut off: %.0f px2", h.cutPx2));
     if (h.touchesBorder) q.flags.emplace_back("cut by the image's edge");
     measureContour(h, frame, pixels, noise, q);
     if (surface) lookAtSilhouette(h, frame.camera, *surface, q);

@@ -13,7 +13,7 @@
 
 namespace glint {
 
-struct ClippedSkirt;
+struct ClippedFlank;
 
 /// A contour of a highlight at one more level.
 struct LevelContour {
@@ -32,11 +32,11 @@ struct Highlight {
   double areaPx2 = 0;
   bool clipped = false;  ///< saturated: the peak is the ellipse centre, or that of a known lobe
   /// A detected clipped one has its slope at several levels, the peak that continues it, and the contour's place on it.
-  std::shared_ptr<const ClippedSkirt> skirt;
+  std::shared_ptr<const ClippedFlank> flank;
   /// Where a known lobe says that the contour lies at another fraction of the true peak than `level`: clipped above the level.
   std::optional<double> trueLevel;
   bool touchesBorder = false;             ///< cut by the image border
-  double cutPx2 = 0;                      ///< area of streaks and other narrow tongues that were cut off; clipped highlights only
+  double cutPx2 = 0;                      ///< area of streaks that were cut off; clipped highlights only
   bool fromScene = false;                 ///< given in the scene file, not detected
   std::string byHand{};                   ///< what a person did to its shape, and what that leaves in doubt; "" = nothing
   std::vector<LevelContour> otherLevels;  ///< beside `contour`, where several levels are evidence (fit.evidence = levels)
@@ -75,8 +75,8 @@ struct DetectOptions {
 /// @param linear  1 or 3 channels (3 are averaged), linear radiance. Non-finite or negative values are not used: where one
 ///                touches a highlight, that highlight fails.
 /// @param mask    optional, non-zero on the glossy object; same size.
-/// The slope around a clipped core tells its peak (`traceSkirt`). The contour lies at `level` of the peak if that is
-/// outside of the core, else at `level` of the clip value. Cuts off narrow streaks (`withoutTongues`), drops narrow pieces.
+/// The slope around a clipped core tells its peak (`traceFlank`). The contour lies at `level` of the peak if that is
+/// outside of the core, else at `level` of the clip value. Cuts off narrow streaks (`withoutStreaks`), drops narrow pieces.
 /// @param rejected  optional: where candidates go that became no highlight, largest first, at most 32.
 /// @return at least one highlight, strongest first. NoHighlight; NotFinite (detail counts the bad pixels); Clipped never fails,
 /// it flags.

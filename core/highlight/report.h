@@ -11,8 +11,8 @@
 #include "core/geometry/camera.h"
 #include "core/highlight/frame_blur.h"
 #include "core/highlight/highlight.h"
-#include "core/highlight/parting.h"
 #include "core/highlight/quality.h"
+#include "core/highlight/specular_separation.h"
 
 namespace glint {
 
@@ -21,10 +21,10 @@ struct DetectedFrame {
   std::string id;
   std::vector<Highlight> highlights;
   std::vector<double> uncertaintyPct;  ///< per highlight: of its contour, in percent of the diameter: the lobe's tail is unknown
-  std::vector<HighlightQuality> quality;    ///< per highlight
-  std::vector<RejectedCandidate> rejected;  ///< ideal pixels
-  std::optional<FrameBlur> blur;            ///< where the frame has edges that show one
-  std::optional<Parting> parting;           ///< where it was asked for
+  std::vector<HighlightQuality> quality;         ///< per highlight
+  std::vector<RejectedCandidate> rejected;       ///< ideal pixels
+  std::optional<FrameBlur> blur;                 ///< where the frame has edges that show one
+  std::optional<SpecularSeparation> separation;  ///< where it was asked for
   std::optional<Failure> failure;
 };
 

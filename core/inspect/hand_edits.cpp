@@ -79,7 +79,7 @@ void describe(Highlight& h) {
   if (h.contour.points.size() >= 5)
     if (const Outcome<Ellipse> e = fitEllipse(h.contour.points)) h.ellipse = *e;
   h.otherLevels.clear();
-  h.skirt = nullptr;  // of the shape as it was seen
+  h.flank = nullptr;  // of the shape as it was seen
   h.trueLevel.reset();
 }
 

@@ -17,7 +17,7 @@
 namespace glint {
 namespace {
 
-constexpr double kRingFrom = 1.6, kRingTo = 2.6;  // of the contour's size: beyond the lobe's skirt, and still its surroundings
+constexpr double kRingFrom = 1.6, kRingTo = 2.6;  // of the contour's size: beyond the lobe's flank, and still its surroundings
 constexpr std::size_t kLeastInside = 6, kLeastRing = 20;  // px: fewer have no mean and no spread
 constexpr double kLeastShown = 0.5;  // of the contour: the rest lies outside of the image or of what may be used
 constexpr double kCorrelated = 3;    // a spread over this is the deviation of a mean: texture has no independent pixels

@@ -37,7 +37,7 @@ class FrameCanvas : public QWidget {
   void setPicture(const FramePicture& picture);  ///< keeps the view where the size stays the same
   void setPhotograph(const QImage& photograph);  ///< a picture without numbers
   void setMessage(const QString& message);       ///< instead of a photograph
-  /// Draws another picture of the frame in the photograph's place, from a column on (all of it without a photograph). The user can
+  /// Draws another picture of the frame in the photograph's place, from a column on; all of it without a photograph. The user can
   /// drag the line between them. A picture without pixels ends it. @param left, right  texts of the chips beside the line
   void setCompared(const FramePicture& other, int from, const QString& left, const QString& right);
   bool comparing() const { return !other_.shown.isNull(); }

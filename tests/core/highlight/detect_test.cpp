@@ -3,7 +3,7 @@
 
 #include <limits>
 
-#include "core/highlight/clipped_skirt.h"
+#include "core/highlight/clipped_flank.h"
 #include "core/highlight/highlight.h"
 #include "highlight_images.h"
 
@@ -231,8 +231,8 @@ TEST(DetectHighlights, ClippedIsFlaggedWithTheEllipseCentre) {
   EXPECT_LT((found->front().peak - blob.centre).norm(), 0.01);
   EXPECT_EQ(found->front().peakValue, 0);
   // The contour is at the level asked for, of the peak that the slope continues.
-  ASSERT_TRUE(found->front().skirt && found->front().skirt->outsideCore);
-  EXPECT_LT(meanDistance(found->front().contour, blob.levelSet(0.5)), 2 * found->front().skirt->sigmaPx);
+  ASSERT_TRUE(found->front().flank && found->front().flank->outsideCore);
+  EXPECT_LT(meanDistance(found->front().contour, blob.levelSet(0.5)), 2 * found->front().flank->sigmaPx);
 }
 
 TEST(DetectHighlights, MaskHidesWhatIsNotGlossy) {
