@@ -68,7 +68,8 @@ def main():
         entry = record.get(key, {}).get(when)
         if not entry:
             return "not measured"
-        return entry["figure"].replace("|", "\\|").replace("\n", " ") + ("" if when == "before" or entry["holds"] else " **missed**")
+        return entry["figure"].replace("|",
+                                       "\\|").replace("\n", " ") + ("" if when == "before" or entry["holds"] else " **missed**")
 
     rows = ["| section | what was checked | bound | before | now |", "| --- | --- | --- | --- | --- |"]
     for l in lines:

@@ -92,7 +92,8 @@ def gymball_scene(data, folder):
         name = f"C{camera}_S{shot}"
         (folder / f"{name}.png").write_bytes((data / f"{name}.png").read_bytes())
         frames.append({"id": name, "image": f"{name}.png", "surface": name, "lights_on": ["sky"],
-                       "camera": {"width": int(w), "height": int(h), "fx": fx, "fy": fy, "cx": cx - float(x0), "cy": cy - float(y0)},
+                       "camera": {"width": int(w), "height": int(h), "fx": fx, "fy": fy, "cx": cx - float(x0),
+                                  "cy": cy - float(y0)},
                        "camera_from_world": [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]})
         x, y, z = (float(v) for v in sphere[:3])
         surfaces[name] = {"analytic": {"type": "sphere", "radius": 0.3,
@@ -117,7 +118,8 @@ def overlap(a, b, step=0.5):
     lowest, highest = min(p[1] for p in a + b), max(p[1] for p in a + b)
     for i in range(int((highest - lowest) / step) + 1):
         y = lowest + (i + 0.5) * step
-        edges = sorted([(x, 1 - 2 * (k % 2), 0) for k, x in enumerate(spans(a, y))] + [(x, 0, 1 - 2 * (k % 2)) for k, x in enumerate(spans(b, y))])
+        edges = sorted([(x, 1 - 2 * (k % 2), 0) for k, x in enumerate(spans(a, y))]
+                       + [(x, 0, 1 - 2 * (k % 2)) for k, x in enumerate(spans(b, y))])
         in_a = in_b = 0
         for (x, da, db), following in zip(edges, edges[1:]):
             in_a, in_b = in_a + da, in_b + db
@@ -163,13 +165,15 @@ def psbox_scene(data, folder):
     for ball in (1, 2):
         probe = data / f"LightProbe-{ball}"
         x, y, radius = (float(v) for v in (probe / "circle_data.txt").read_text().split())
-        directions = [[float(v) for v in line.split()] for line in (probe / "light_directions.txt").read_text().splitlines() if line.strip()]
+        directions = [[float(v) for v in line.split()] for line in (probe / "light_directions.txt").read_text().splitlines()
+                      if line.strip()]
         width, height = [(1100, 1000), (950, 950)][ball - 1]
         cx, cy = x - 1, height - y  # counted from 1, y from the bottom
         depth = 100.0
         focal = radius * math.sqrt(depth * depth - 1)
         surfaces[f"ball{ball}"] = {"analytic": {"type": "sphere", "radius": 1.0,
-                                                "world_from_surface": [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, depth], [0, 0, 0, 1]]}}
+                                                "world_from_surface": [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, depth],
+                                                                       [0, 0, 0, 1]]}}
         for shot in range(1, 13):
             name = f"ball{ball}-{shot:02}"
             (folder / f"{name}.jpg").write_bytes((probe / f"Image_{shot:02}.JPG").read_bytes())
@@ -205,7 +209,8 @@ def psbox(glint, data):
             largest += near[0] is by_area[0]
             rest = [h for h in by_area if h is not near[0]]
             others += len(rest)
-            flagged += sum(any("not the lamp" in f or "silhouette" in f or "off the surface" in f for f in h["flags"]) for h in rest)
+            flagged += sum(any("not the lamp" in f or "silhouette" in f or "off the surface" in f for f in h["flags"])
+                           for h in rest)
         mean = [sum(d[k] for d in off) / max(1, len(off)) for k in (0, 1)]
         rms = math.sqrt(sum(x * x + y * y for x, y in off) / max(1, len(off)))
         left = math.sqrt(sum((x - mean[0]) ** 2 + (y - mean[1]) ** 2 for x, y in off) / max(1, len(off)))
@@ -232,8 +237,10 @@ def motion_captures(glint, data):
         gym, box = pathlib.Path(name) / "gymball", pathlib.Path(name) / "psbox"
         gym.mkdir()
         box.mkdir()
-        captures = [(f"cycles/{c}", data / "cycles" / c / "scene.json", "radiance") for c in ("vase", "sphere", "plane_to_cylinder")]
-        captures += [("gymball", gymball_scene(data / "gymball", gym), "image"), ("psbox", psbox_scene(data / "psbox", box)[0], "image")]
+        captures = [(f"cycles/{c}", data / "cycles" / c / "scene.json", "radiance")
+                    for c in ("vase", "sphere", "plane_to_cylinder")]
+        captures += [("gymball", gymball_scene(data / "gymball", gym), "image"),
+                     ("psbox", psbox_scene(data / "psbox", box)[0], "image")]
         for title, scene, source in captures:
             frames = json.loads(run([glint, "detect", scene, "--source", source, "--json", "-"]))["frames"]
             highlights = [h for f in frames for h in f["highlights"]]
@@ -362,7 +369,8 @@ def main():
         return
     page = PAGE.format(boxes=boxes(a.tests), gymball=gymball(a.glint, pathlib.Path(a.data) / "gymball"),
                        motion=motion(a.motion), captures=motion_captures(a.glint, pathlib.Path(a.data)),
-                       psbox=psbox(a.glint, pathlib.Path(a.data) / "psbox"), near=PSBOX_NEAR_PX, levels=", ".join(map(str, LEVELS)),
+                       psbox=psbox(a.glint, pathlib.Path(a.data) / "psbox"), near=PSBOX_NEAR_PX,
+                       levels=", ".join(map(str, LEVELS)),
                        centre=CENTRE_PCT, gaussian=GAUSSIAN_PCT, iou=GAUSSIAN_IOU) + "\n" + sections
     contours, models = coloured(a.coloured_tests)
     page += COLOURED.format(contours=contours, models=models)

@@ -25,7 +25,8 @@ def main():
     for number, cell in enumerate(notebook.cells):
         cell["id"] = f"cell-{number}"  # the same in every run
     notebook.metadata["kernelspec"] = {"display_name": "Python 3", "language": "python", "name": "python3"}
-    ExecutePreprocessor(timeout=300, kernel_name="python3", record_timing=False).preprocess(notebook, {"metadata": {"path": str(here)}})
+    ExecutePreprocessor(timeout=300, kernel_name="python3",
+                        record_timing=False).preprocess(notebook, {"metadata": {"path": str(here)}})
     nbformat.write(notebook, here / "highlights.ipynb")
 
 

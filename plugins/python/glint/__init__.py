@@ -75,11 +75,15 @@ from ._glint import (
 
 __all__ = [
     "BrightestPoint", "Camera", "CannotAnswer", "CanonicalContour", "ComparisonRow", "ContourMetrics", "Ellipse", "Ellipsoid",
-    "Error", "FitResult", "Frame", "FrameComparison", "FrameEvidence", "Highlight", "Hits", "InputError", "Inspection", "Lamp", "Lamps",
-    "Light", "LightEstimate", "Mesh", "Model", "ModelFit", "ModelResult", "Plane", "PredictedHighlight", "Prediction", "Predictor",
-    "Replay", "Request", "Retextured", "Scene", "Session", "Setting", "Stopped", "Surface", "Tradeoff", "TradeoffPoint", "TrainingView",
+    "Error", "FitResult", "Frame", "FrameComparison", "FrameEvidence", "Highlight", "Hits", "InputError", "Inspection", "Lamp",
+    "Lamps",
+    "Light", "LightEstimate", "Mesh", "Model", "ModelFit", "ModelResult", "Plane", "PredictedHighlight", "Prediction",
+    "Predictor",
+    "Replay", "Request", "Retextured", "Scene", "Session", "Setting", "Stopped", "Surface", "Tradeoff", "TradeoffPoint",
+    "TrainingView",
     "__version__", "compare_contours", "conventions", "depth_map", "detect", "estimate_light", "fit", "inspect", "iou", "lights",
-    "lights_of_balls", "load_plugin", "mesh", "model", "models", "open", "plugins", "predict", "report", "retexture", "scene", "set_limit", "settings", "synth",
+    "lights_of_balls", "load_plugin", "mesh", "model", "models", "open", "plugins", "predict", "report", "retexture", "scene",
+    "set_limit", "settings", "synth",
     "tradeoff", "write_labels",
 ]
 
@@ -189,7 +193,8 @@ def depth_map(depth: ArrayLike, camera: Camera, **settings: Any) -> Surface:
     return Surface._depth_map(depth, camera, settings)
 
 
-def scene(frames: _abc.Sequence[Frame], surfaces: _abc.Mapping[str, Union[Path, _abc.Mapping[str, Any]]], name: str = "") -> Scene:
+def scene(frames: _abc.Sequence[Frame], surfaces: _abc.Mapping[str, Union[Path, _abc.Mapping[str, Any]]],
+          name: str = "") -> Scene:
     """A scene from memory.
 
     Parameters
@@ -322,7 +327,8 @@ def inspect(scene: Union[Scene, Session], models: Union[None, str, _abc.Sequence
     choose = models == "auto"
     wanted = None if models is None or choose else [models] if isinstance(models, str) else list(models)
     result = _glint._inspect(where, request, wanted, choose, good_enough_pct, _spec(train), _spec(exclude),
-                             None if level is None else str(level), source, noise_px, seed, "" if truth is None else _os.fspath(truth),
+                             None if level is None else str(level), source, noise_px, seed,
+                             "" if truth is None else _os.fspath(truth),
                              settings, previous, progress)
     if result._failure is not None and (choose or result.request.models):
         _raise(result._failure, inspection=result)
@@ -331,7 +337,8 @@ def inspect(scene: Union[Scene, Session], models: Union[None, str, _abc.Sequence
 
 def retexture(source: Union[Session, Scene, Inspection], frame: Union[int, str], *, texture: Union[None, Path, ArrayLike] = None,
               background: Union[None, Path, ArrayLike] = None, remove: bool = False, model: str = "", light: str = "",
-              mapping: str = "natural", shading: str = "auto", repeat: float = 1.0, albedo: Optional[float] = None, margin_px: float = 4.0,
+              mapping: str = "natural", shading: str = "auto", repeat: float = 1.0, albedo: Optional[float] = None,
+              margin_px: float = 4.0,
               progress: Optional[Progress] = None, **settings: Any) -> Retextured:
     """Puts a frame's predicted highlight over another texture or background, or removes the observed one, as `glint retexture`.
 
@@ -421,7 +428,8 @@ def tradeoff(scene: Union[Scene, Session], models: Union[None, str, _abc.Sequenc
     """
     where, request = (scene.scene, scene.request) if isinstance(scene, Session) else (scene, None)
     wanted = None if models is None else [models] if isinstance(models, str) else list(models)
-    result: Tradeoff = _glint._tradeoff(where, request, wanted, _spec(train), _spec(exclude), None if level is None else str(level), source,
+    result: Tradeoff = _glint._tradeoff(where, request, wanted, _spec(train), _spec(exclude),
+                                        None if level is None else str(level), source,
                                         budget_us, max_error_pct, repeats, max_trials, settings, progress)
     if result._failure is not None:
         _raise(result._failure, tradeoff=result)
@@ -470,7 +478,8 @@ def lights(scene: Union[Scene, Session], *, exclude: Optional[Frames] = None, so
 
 
 def lights_of_balls(folder: Path, balls: Union[str, _abc.Sequence[str]], *, ball_radius: Optional[float] = None,
-                    camera: Union[None, str, _abc.Sequence[float]] = None, exclude: Optional[Frames] = None, outlines: str = "fitted",
+                    camera: Union[None, str, _abc.Sequence[float]] = None, exclude: Optional[Frames] = None,
+                    outlines: str = "fitted",
                     outline_sigma: float = 1.0, response: str = "", progress: Optional[Progress] = None) -> Lamps:
     """Where the lamps of photographs of mirror balls are, one lamp in each photograph, the camera at the origin.
 
@@ -489,7 +498,8 @@ def lights_of_balls(folder: Path, balls: Union[str, _abc.Sequence[str]], *, ball
         Of a given outline's centre and radius, px.
     """
     return _answered(_glint._lights_of_balls(_os.fspath(folder), [balls] if isinstance(balls, str) else list(balls), ball_radius,
-                                             "" if camera is None else _text(camera), _spec(exclude) or "", outlines, outline_sigma,
+                                             "" if camera is None else _text(camera), _spec(exclude) or "", outlines,
+                                             outline_sigma,
                                              response, progress))
 
 
