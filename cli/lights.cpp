@@ -171,7 +171,7 @@ Command lightsCommand() {
     o.repeated(a->set, "--set", "KEY=VALUE", "Any setting of scenes by its dotted name (`glint settings`); may be repeated");
     o.repeated(a->out, "-o,--out", "FILE", "Write .json, .csv or .lp (RTI), by the ending; may be repeated");
     o.option(a->on, "--on", "FILE",
-             "Of a scene: write which lamps are on in each frame, with confidence, as CSV (- = standard output)");
+             "For a scene, write which lamps are on in each frame, with confidence, as CSV (- = standard output)");
     o.option(a->json, "--json", "FILE", "Write JSON to this file (- = standard output, replaces the table)");
     a->places.declare(o);
   };

@@ -98,7 +98,7 @@ class Maker:
         return a
 
     def score(self, key):
-        """Of each model: mean contour error in percent, predicted and all frames, mean peak offset in pixels."""
+        """Each model's mean contour error in percent, predicted and all frames, and mean peak offset in pixels."""
         name, models, settings = key
         extra = ["--truth", str(self.truth)] if name.startswith("sphere") else []
         found = json.loads(run([self.glint, "evaluate", *self.arguments(name, models, settings), *extra, "--json", "-"]))

@@ -261,7 +261,7 @@ Eight calibrated views of six real objects with detection boxes (Aldoma et al., 
 given ellipsoids are read only to score.
 
 {boxes}
-- The published method inscribes an ellipse in each box and takes it for the outline. Of a tilted object such ellipses contradict each other: a box
+- The published method inscribes an ellipse in each box and takes it for the outline. The ellipses of a tilted object contradict each other: a box
   says where four lines touch, not more. Glint uses the four planes of these lines.
 - Objects 0 to 3 are packs. No ellipsoid touches their boxes to better than 1.8 px; a cuboid does. The answer is then the ellipsoid nearest to that cuboid
   in squared support over all directions (a closed form, `ellipsoidOfCuboid`). Nothing in it is chosen by the given ellipsoids. Other ellipsoids of a cuboid are

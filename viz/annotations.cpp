@@ -341,7 +341,7 @@ struct Annotations::Impl {
   bool colourBarShown() const {
     return scale.has_value() && (legendVisible || borderKind == Border::None);  // views with the same legend have one bar
   }
-  /// Above the scale bar.
+  /// Draws the text above the scale bar.
   void placeColourBar(int width, int points, double font) {
     const bool shown = colourBarShown() && width > kLeastLegend * font;
     for (auto& text : scaleTexts) text->SetVisibility(shown);

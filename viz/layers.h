@@ -181,7 +181,7 @@ struct LayerContent {
   void addOnSurface(vtkSmartPointer<vtkProp3D> prop, const Picked& info, double lineWidthPx, double nearerPx) {
     drawn.push_back({std::move(prop), info, lineWidthPx, true, {}, nearerPx});
   }
-  /// For the camera of the picture that is drawn next.
+  /// Prepares the camera of the picture that is drawn next.
   void bringNearer(vtkCamera* camera, int heightPx) const;
   /// To the end of what VTK draws in order: of two things at one depth, the one that is drawn last shows.
   void drawLast(vtkRenderer& renderer) const;

@@ -379,7 +379,7 @@ Picked surfaceInfo(const LayerInput& in, const SurfacePoint& hit) {
 }
 
 namespace {
-/// From the eye through a window pixel; not finite where the view has no depth.
+/// The ray from the eye through a window pixel; not finite if the view has no depth.
 Ray rayThrough(vtkRenderer* renderer, int xDisplay, int yDisplay) {
   const auto worldAt = [&](double depth) {
     renderer->SetDisplayPoint(xDisplay, yDisplay, depth);

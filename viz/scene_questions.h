@@ -36,7 +36,7 @@ std::optional<Framing> highlightFraming(const LayerInput& in, int highlight, Hig
 std::optional<Framing> ellipsoidFraming(const LayerInput& in, const std::vector<int>& frames, const std::string& model);
 /// The world's upward direction as the cameras have it; a signed axis where it is near one. @param frames  not empty.
 Eigen::Vector3d upwards(const LayerInput& in, const std::vector<int>& frames);
-/// From the scene towards an eye that sees the highlights with neither the surface nor the frustums before them; unit.
+/// Unit direction from the scene towards an eye that sees the highlights before the surface and the frustums.
 Eigen::Vector3d overviewDirection(const LayerInput& in, const std::vector<int>& frames, const Eigen::Vector3d& up);
 
 /// Numbers of a surface point, for the selected frame's camera.
@@ -44,7 +44,7 @@ Picked surfaceInfo(const LayerInput& in, const SurfacePoint& hit);
 /// A picked point of a contour is a direction from the observed one: fills Picked::direction.
 void addDirection(const LayerInput& in, Picked& picked);
 
-/// Of a drawn camera: which frame, and its numbers.
+/// What a drawn camera tells: its frame, and its numbers.
 Picked cameraPicked(const Inspection& inspection, const std::vector<std::string>& models, int frame);
 /// The nearest drawn camera whose frustum, taken as solid, lies under a window pixel (y up).
 std::optional<Picked> cameraUnder(vtkRenderer* renderer, const LayerInput& in, int xDisplay, int yDisplay);

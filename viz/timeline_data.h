@@ -16,7 +16,7 @@ struct LightRow {
   std::string light;
   std::vector<LightState> captured;  ///< one per frame: off, on, or the frame does not say and no highlight of it was found
 };
-/// With what the user switched; what was captured dark stays off as long as no contours are synthesised.
+/// The state with the user's switches; what was captured dark stays off unless contours are synthesised.
 LightState lightState(const LightRow& row, const Scene& scene, const WhatIf& whatIf, int frame);
 bool isLit(LightState state);
 

@@ -14,7 +14,7 @@ constexpr double kDrawnLimit = 0.44;  // rad: the limit angle in the sections, 2
 constexpr double kMostStretch = 20;
 constexpr double kGlyphWidth = 0.6;  // of a letter, in heights of the text, on average
 
-/// From the section (distance along the direction, height along N; m) to px.
+/// Maps the section (distance along the direction, height along N; m) to px.
 struct Section {
   Box box;
   double pxPerMetre = 1, stretch = 1, ground = 0;  ///< ground: y of T, px

@@ -12,7 +12,7 @@ namespace glint {
 namespace fs = std::filesystem;
 namespace {
 
-/// In the order in which a name without ending takes them: that of nerfstudio and of the original NeRF data.
+/// A name without ending takes them in this order, which is that of nerfstudio and of the original NeRF data.
 constexpr std::array<const char*, 10> kImageEndings{".png", ".jpg", ".jpeg", ".tif", ".tiff",
                                                     ".exr", ".bmp", ".webp", ".hdr", ".ppm"};
 

@@ -29,7 +29,7 @@ class FileFinder {
 
  private:
   struct Folder {
-    /// By the key of the name; and by the key of an image's name without ending.
+    /// Names by their key; images by the key of their name without ending.
     std::map<std::u32string, std::vector<std::string>> entries, images;
   };
   const Folder& listed(const std::filesystem::path& folder);

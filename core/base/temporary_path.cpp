@@ -29,7 +29,7 @@ namespace {
 
 constexpr std::string_view kMark = ".glint-", kEnd = ".tmp";
 
-/// Of all threads: what is under way, where this process has cleaned up, whether it ends.
+/// State of all threads: what is under way, where this process has cleaned up, whether it ends.
 struct Registry {
   std::timed_mutex mutex;
   std::set<fs::path> unfinished, cleaned;

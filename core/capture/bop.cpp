@@ -307,7 +307,7 @@ class BopReading {
     capture_.views.push_back(std::move(view));
   }
 
-  /// Of the folders `models*` beside the split the one called `models`, else the first in order of name.
+  /// Looks in the folder `models` beside the split, else in the first `models*` by name.
   void findMesh() {
     const std::string name = "obj_" + bopNumber(std::size_t(object_)) + ".ply";
     const std::vector<fs::path> folders = capture::modelFoldersOfBop(capture_.file);

@@ -55,7 +55,7 @@ struct TrackEntry {
 };
 using EachPoint = std::function<void(const Eigen::Vector3d& point, const std::vector<TrackEntry>& track)>;
 
-// Of both kinds, by Files::binary. `bytes` is the content of the file.
+// Readers of both kinds, by Files::binary. `bytes` is the content of the file.
 
 // In a text, a line that cannot be read is a warning; its camera, image or point is not there. InputError where nothing is left.
 

@@ -41,7 +41,7 @@ class ImageSizes {
     start.resize(static_cast<std::size_t>(in.gcount()));
     return start;
   }
-  /// Of a PNG, up to the end of its size; "" for everything else.
+  /// The start of a PNG, up to the end of its size; "" for everything else.
   static std::string pngStart(const std::string& start) {
     constexpr std::size_t kSize = 24;  // bytes: signature 8, length 4, "IHDR" 4, width 4, height 4
     const bool isPng = start.size() >= kSize && start.starts_with("\x89PNG\r\n\x1a\n") && start.compare(12, 4, "IHDR") == 0;

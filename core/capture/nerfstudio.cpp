@@ -35,7 +35,7 @@ std::set<std::string> nerfWords(const char* text) {
   return {std::istream_iterator<std::string>(in), {}};
 }
 
-/// Of the camera; they stand at the top of the file or in a frame.
+/// Keys of the camera, at the top of the file or in a frame.
 const std::set<std::string> kNerfCameraKeys =
     nerfWords("camera_model is_fisheye w h fl_x fl_y cx cy camera_angle_x camera_angle_y x_fov y_fov k1 k2 k3 k4 p1 p2");
 /// The rest that is read, or that says nothing about the cameras as they are stored: the split of the frames, and how a program
@@ -220,7 +220,7 @@ Lens nerfLens(const NerfKeys& keys, const NerfModel& model) {
   return lens;
 }
 
-/// Of w and h; where one is missing, of the image.
+/// The size by w and h, or by the image if one is missing.
 std::array<int, 2> nerfSize(const NerfKeys& keys, const fs::path& image, capture::ImageSizes& sizes, NerfTally& tally) {
   const std::optional<JsonNode> w = keys.find("w"), h = keys.find("h");
   if (w && h) return {w->integer(), h->integer()};
@@ -569,7 +569,7 @@ class NerfstudioReader final : public CaptureReader {
     return capture;
   }
 
-  /// Of ply_file_path, without observations.
+  /// Points of ply_file_path, without observations.
   std::vector<CaptureTrack> tracks(const Capture& capture, const CaptureOptions& options) const override {
     const JsonNode root = JsonNode::parse(readFile(capture.file, Limit::JsonMegabytes), capture.file.string());
     capture::FileNames names(options.rights);

@@ -265,7 +265,7 @@ class PosedPictures {
                              : ownCameras_ == n ? "intrinsics are those of the poses' lines"
                                                 : "intrinsics are those of " + std::to_string(ownCameras_) +
                                                       " of the poses' lines, else those of --camera");
-    // Of a video a few pictures are meant mostly; of a folder all.
+    // People usually mean a few pictures of a video, but all of a folder.
     if (const std::size_t out = pictures_.size() - n; out > 0)
       (isVideo_ ? capture_.facts : capture_.warnings)
           .push_back(what(out) + " of " + std::to_string(pictures_.size()) + (out == 1 ? " has" : " have") + " no pose and " +

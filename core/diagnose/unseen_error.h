@@ -48,7 +48,7 @@ bool isBetter(const UnseenError& after, const UnseenError& before);
 /// An observed highlight is missed, or off by more than kLargestExpectedPct.
 bool isAstray(const UnseenError::View& view);
 
-/// Of the first, those views that the second has as well.
+/// The views of the first error that the second has as well.
 UnseenError commonViews(const UnseenError& of, const UnseenError& with);
 
 /// "0.74 %, 2 of 54 highlights missed, 24 spurious"; "no highlight predicted".

@@ -287,7 +287,7 @@ class Findings {
     int n = 0;
     for (const double r : fit_.fit->residualPx) squares += r * r;
     if (!fit_.fit->residualPx.empty()) rms = std::sqrt(squares / double(fit_.fit->residualPx.size()));
-    // Of what was fitted: the canonical contour of a bent surface is several times as large as the highlight.
+    // Diameters of what was fitted: a bent surface's canonical contour is several times as large as the highlight.
     if (model_.hasOutlines())
       for (const ConicView& v : outlines_) diameters += 2 * std::sqrt(v.ellipse.semiAxes.prod()), ++n;
     else

@@ -43,7 +43,7 @@ struct Conditioning {
 /// and nothing that rests on its views is green: a wide angle between rays that were never seen is no good news.
 std::vector<Conditioning> conditioningOf(const Inspection& inspection);
 
-/// Widest angle between two of the unit vectors, rad; 0 for fewer than two. Of more than 256 vectors, that many evenly spread are
+/// Widest angle between two of the unit vectors, rad; 0 for fewer than two. Above 256 vectors, that many evenly spread ones are
 /// compared.
 double widestAngle(const std::vector<Eigen::Vector3d>& directions);
 
@@ -56,7 +56,7 @@ double effectiveNumber(const std::vector<Eigen::Vector3d>& directions, double in
 /// What ModelFit::residualPx of a fit measures: "from the observed contour to the outline, one way, RMS". It is another number
 /// than the contour error of the same frame, which goes both ways: a contour may lie along an outline that runs far beyond it.
 std::string residualMeaning(const ModelFit& fit);
-/// Of LightEstimate::rmsPx.
+/// What LightEstimate::rmsPx means, in words.
 std::string residualMeaning(const LightEstimate& light);
 
 /// Standard deviations of the three semi-axes, m, to first order from the fit's uncertainty of the shape S: d a = v^T dS v / (2

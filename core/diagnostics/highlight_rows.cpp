@@ -91,7 +91,7 @@ class Rows {
   void add(const FrameComparison& c, std::vector<HighlightRow>& rows) const;
 
  private:
-  /// By the view's place in Inspection::views: ModelFit says them in the order of the views it used.
+  /// Adds residuals by the view's place in Inspection::views: ModelFit lists them in the order of the views it used.
   void addResiduals(const ModelFit& fit, const FitKey& key) {
     std::size_t next = 0;
     for (std::size_t i = 0; i < in_.views.size() && next < fit.frames.size() && next < fit.residualPx.size(); ++i) {

@@ -23,8 +23,8 @@ using WorldChain = std::vector<Eigen::Vector3d>;
 std::optional<Eigen::Vector3d> intersection(const Ray& ray, const Plane& plane);
 /// Ideal pixel of a frame carried onto the surface, lifted towards the camera by `lift`; nothing where the ray misses.
 std::optional<Eigen::Vector3d> castPixel(const Camera& camera, const Surface& surface, const Pixel& pixel, double lift);
-/// A contour on the surface: broken where it leaves the surface or jumps to another part of it. Of more points than can be told
-/// apart on a screen some are left out.
+/// A contour on the surface: broken where it leaves the surface or jumps to another part of it. Points beyond those that can be
+/// told apart on a screen are left out.
 /// @param surfaceSize  diagonal of what is shown of the surface: a step of more than a tenth of it is a jump
 std::vector<WorldChain> castContour(const Camera& camera, const Surface& surface, const Polyline& contour, double surfaceSize,
                                     double lift);

@@ -32,7 +32,7 @@ struct FrameUnmatched {
   std::vector<Spurious> spurious;  ///< models from simple to rich
   friend bool operator==(const FrameUnmatched&, const FrameUnmatched&) = default;
 };
-/// Of all models, by frame; a frame where all have a partner is not there. One pass, for lists of long sequences.
+/// Those of all models, by frame; leaves out frames in which all have a partner. One pass, for lists of long sequences.
 std::map<int, FrameUnmatched> unmatchedByFrame(const Inspection& inspection);
 /// The spurious highlight that is selected; null where nothing is, or where it is not spurious any more.
 const PredictedHighlight* selectedSpurious(const Inspection& inspection, const Selection& selection);

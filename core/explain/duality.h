@@ -38,7 +38,7 @@ struct Duality {
   int atInfinity = 0;     ///< planes without a dual point
 };
 
-/// Of the training views of one model's fit for this frame and light. Pure; microseconds.
+/// The duality of the training views of one model's fit for this frame and light. Pure; microseconds.
 /// @param light  "" = the first that the model has a fit of.
 /// @param model  one without an ellipsoid here, or "" = the richest with one.
 /// @param planes  of each cone, >= 3.

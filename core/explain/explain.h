@@ -38,7 +38,7 @@ struct Explanation {
   int frame = -1;
   int highlight = -1;        ///< index in the frame's evidence; -1 = it has none
   std::string light, model;  ///< "" without one
-  /// Of this highlight, with its canonical contour if a light is known, whether the frame trains or not.
+  /// The view of this highlight, with its canonical contour if a light is known, whether the frame trains or not.
   std::optional<TrainingView> view;
   std::optional<Light> lightUsed;  ///< for the canonical contour
   std::vector<ExplainStep> steps;  ///< all of `explainSteps()`, in that order

@@ -317,7 +317,7 @@ MotionVerdict tooFew(const std::vector<Answer>& answers) {
   return v;
 }
 
-/// Of each camera the side from which it sees a point: those within a degree of the first one of a side are of that side.
+/// Each camera's side of a point: cameras within a degree of the first one of a side belong to that side.
 std::vector<int> sidesOf(const std::vector<const Camera*>& cameras, const Eigen::Vector3d& point) {
   std::vector<Eigen::Vector3d> first;
   std::vector<int> sides;

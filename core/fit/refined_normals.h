@@ -19,7 +19,7 @@ struct RefinedNormals {
   double slope = 0, openTilt = 1;     ///< as NormalRefinement
   double plainPx = 0, refinedPx = 0;  ///< what the model leaves of the training contours before and after, RMS
   std::optional<ParameterUncertainty> uncertainty;  ///< of the limit angle's light, where that model told
-  /// For the user: how far the normals turned, what it gained and what stays open.
+  /// Tells the user how far the normals turned, what it gained and what stays open.
   std::string remark() const;
 };
 

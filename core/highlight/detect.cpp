@@ -399,7 +399,7 @@ class Detector {
         if ((r.peak - peak).norm() <= kSamePeakPx) reference_ = r.value;
       const std::size_t before = found_.size();
       trace(candidate);
-      // Of the contours at this level only the one around the peak is its own, and only where no stronger peak owns it.
+      // At this level only the contour around the peak is its own, and only if no stronger peak owns it.
       for (std::size_t i = found_.size(); i-- > before;) {
         const bool own = contains(found_[i].contour, peak);
         const bool taken = own && std::any_of(seeds.begin(), seeds.end(), [&](const Seed& o) {

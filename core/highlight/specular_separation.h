@@ -34,7 +34,7 @@ struct SpecularSeparation {
 };
 
 /// Finds the combination of channels for one highlight, by the dichromatic model: I = m_d D + m_s S, with D of at most two
-/// diffuse colours around the highlight (with any m_d, anywhere) and S the lamp's. Of all combinations that are 1 at the
+/// diffuse colours around the highlight (with any m_d, anywhere) and S the lamp's. Among the combinations that are 1 at the
 /// highlight's middle it differs least from a lobe's tail around it, by least squares, which also weighs noise against leftover
 /// diffuse light. S need not be known: an error of it along D changes nothing.
 /// @param linear  3 channels. @param usable  one per pixel. @param clipValue  0 = none

@@ -103,7 +103,7 @@ StreakCut withoutStreaks(const Polyline& line) {
   const double narrow = narrowPx * region.cellsPerPx;
   const cv::Mat middles = middlesOf(depth, narrow + kRimCells);
   cv::distanceTransform(~middles, away, cv::DIST_L2, cv::DIST_MASK_PRECISE);
-  // Of each point: how far it lies outside of all opening discs, in their radii, zero at the cut.
+  // How far each point lies outside of all opening discs, in their radii, zero at the cut.
   const std::size_t n = line.points.size();
   std::vector<double> out(n);
   for (std::size_t i = 0; i < n; ++i) out[i] = bilinear(away, region.toCells(line.points[i])) / narrow - 1 - kSticksOut;

@@ -18,7 +18,7 @@ struct FrameScore {
   std::string reason;  ///< first failure's message when nothing matched; else ""
 };
 FrameScore frameScore(const ModelResult& result, int frame);
-/// Of one light alone.
+/// The score of one light alone.
 FrameScore scoreOf(const FrameComparison& comparison);
 /// The same for the frames 0 .. frames - 1, in one pass.
 std::vector<FrameScore> frameScores(const ModelResult& result, int frames);

@@ -305,7 +305,7 @@ std::vector<Group> Run::groups() const {
 
 void Run::lights() {
   const std::vector<Group> all = groups();
-  // Of which lights and surfaces: a look at one frame may not have seen them all.
+  // The key names lights and surfaces: a look at one frame may not have seen them all.
   std::string names;
   for (const Group& g : all) names += "|" + textOf(g.key);
   std::set<std::string> stages{"light"};

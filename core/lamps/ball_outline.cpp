@@ -54,7 +54,7 @@ struct WeightedEdge {
   double residual = 0, weight = 0;
 };
 
-/// In every sector the outermost edge within `outer` of the outline, with those of other photographs that agree with it.
+/// Every sector's outermost edge within `outer` of the outline, with those of other photographs that agree with it.
 std::vector<SectorEdge> outermost(const OutlineModel& model, const std::vector<BallEdge>& edges, double outer, double together) {
   std::array<double, kOutlineSectors> top;
   top.fill(-1e300);

@@ -42,7 +42,7 @@ struct LampSighting {
   Eigen::Vector2d residualPx = Eigen::Vector2d::Zero();   ///< of the fit: seen less predicted
   bool clipped = false;
   std::optional<LampExtent> extent;  ///< nothing without a contour on the ball
-  /// From the other balls alone, outlines refined without this lamp: predicted less seen, px, and the directions' difference.
+  /// Predicted less seen from the other balls alone, outlines refined without this lamp, px; and the directions' difference.
   std::optional<Eigen::Vector2d> leftOutPx;
 };
 

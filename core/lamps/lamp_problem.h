@@ -60,7 +60,7 @@ class LampProblem {
   /// Moves the lamps and, if asked, the outlines to the least sum of squares. False where it does not settle.
   bool solve(std::vector<LampUnknowns>& lamps, bool outlinesToo);
 
-  /// Of z: (I + sum E^T E)^-1, and the step that would lead to the least sum of squares, of all lamps but `without`.
+  /// Covariance of z, (I + sum E^T E)^-1, and the step to the least sum of squares, for all lamps but `without`.
   struct OutlineSystem {
     Eigen::MatrixXd covariance;
     Eigen::VectorXd step;

@@ -198,7 +198,7 @@ FrameAnswer lookAt(const Inspection& r, const std::vector<const ModelResult::Fit
   return result;
 }
 
-/// Of each lamp: median contrast where frames state that it is on.
+/// Each lamp's median contrast in frames that state that it is on.
 std::map<std::string, double> expectedContrasts(const std::vector<FrameAnswer>& frames) {
   std::map<std::string, std::vector<double>> seen;
   for (const FrameAnswer& f : frames)

@@ -115,7 +115,7 @@ Outcome<BallParameters> ballParameters(const BallProjection& view, const Refined
 
 std::vector<Pixel> outlinePixels(const BallProjection& view, const Eigen::Vector3d& parameters, int points) {
   const MirrorBall ball = ballOf(view, parameters);
-  // Of the rays that touch, the points on the ball: a circle square to the way to its centre.
+  // The points where rays touch the ball: a circle square to the way to its centre.
   const double distance = ball.centre.norm();
   Eigen::Vector3d middle = ball.centre, u = Eigen::Vector3d::UnitX(), v = Eigen::Vector3d::UnitY();
   double radius = ball.radius;

@@ -18,7 +18,7 @@ namespace glint {
 struct BallProjection {
   std::optional<Camera> camera;  ///< ideal pixels; pose and image size do not count
 
-  /// From a point towards the camera, unit.
+  /// Unit direction from a point towards the camera.
   Eigen::Vector3d toCamera(const Eigen::Vector3d& point) const {
     return camera ? Eigen::Vector3d(-point.normalized()) : Eigen::Vector3d(0, 0, -1);
   }

@@ -27,7 +27,7 @@ std::vector<std::filesystem::path> pluginFolders();
 /// @throw InputError for one of `named`. @return one line for each in a folder that was refused, with its file and the reason:
 /// also for one in a folder, or a file, that other users can write to.
 std::vector<std::string> loadPlugins(const std::vector<std::filesystem::path>& named);
-/// In the order in which they were loaded.
+/// The plugins, in the order in which they were loaded.
 const std::vector<LoadedPlugin>& loadedPlugins();
 /// One line each for --version and the like: "plugin flat-mirror 1.0: Predicts ... (model flat-mirror; /path/flat_mirror.so)".
 std::string pluginLines();

@@ -34,7 +34,7 @@ struct RetextureRequest {
   Image picture = {};  ///< linear, 3 channels: background (of the frame's size) or texture
   TextureMapping mapping = TextureMapping::Natural;
   double repeat = 1;  ///< textures across the surface, > 0
-  /// Of the surface as it was, (0, 1]: a texture's values are then albedos; else its mean replaces it.
+  /// Albedo of the surface as it was, (0, 1]: a texture's values are then albedos. Without it, the texture's mean replaces it.
   std::optional<double> albedo;
   ShadingSource shading = ShadingSource::Auto;
   double marginPx = 4;  ///< Removed, Frame: beyond where the highlight can be seen, >= 0

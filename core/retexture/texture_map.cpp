@@ -24,7 +24,7 @@ Eigen::Vector2d onSphere(const Eigen::Vector3d& direction) {
   return {turnOf(direction.y(), direction.x()), 0.5 - polar / M_PI};
 }
 
-/// In the surface's own coordinates; empty where it has none.
+/// The map in the surface's own coordinates; empty without such coordinates.
 std::pair<MapPoint, std::string> naturalMap(const AnalyticSpec& s) {
   const Eigen::Isometry3d local = s.worldFromSurface.inverse();
   if (s.type == "plane")

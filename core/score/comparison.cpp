@@ -11,7 +11,7 @@
 namespace glint {
 namespace {
 
-/// Of a line as the photograph measures it: places that the lens shows nowhere are left out.
+/// A line as the photograph measures it, without places that the lens shows nowhere.
 Polyline measured(const Polyline& ideal, const Camera& camera) {
   Polyline line{{}, ideal.closed};
   for (const Pixel& p : ideal.points)

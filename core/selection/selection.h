@@ -89,8 +89,8 @@ inline constexpr double kAsGood = 1.1;
 /// With `goodEnoughPct` the search stops at the first model whose leave-one-view-out error is under it, whatever it assumes;
 /// where views to predict lie outside the training views, what it predicts there must be reproduced within the tolerance by its
 /// left-out fits and by `limit-angle`. Nothing richer is computed.
-/// Without one it stops early only at `primal` on what is a plane as far as contours resolve; and a model that cannot become as
-/// good as the best any more is not tried on its other views.
+/// Without `goodEnoughPct` it stops early only at `primal` on what is a plane as far as contours resolve; and a model that cannot
+/// become as good as the best any more is not tried on its other views.
 /// A view that one model answers and another does not counts as kNoPredictionPct for the other; one that no model answers
 /// counts for none.
 /// Where frames to predict show a surface that no training view shows, `primal` and `dual` are not eligible: their ellipsoid

@@ -65,7 +65,7 @@ void addDetection(KeyResults& results, const Inspection& inspection) {
   addStatistic(results, "detect.peak_from_origin_px", statisticOf(std::move(peaks)));
 }
 
-/// In the order in which they are computed. Each uses those before it.
+/// Stages in the order of computation. Each uses those before it.
 enum class ResultStage { Detection, Light, Fit, Prediction };
 
 ResultStage stageOf(const std::string& keyResult) {

@@ -116,7 +116,7 @@ std::string relinkMeshes(Session& session, const Scene& scene);
 /// The session of a finished inspection, with hashes of its inputs, held-out frames, key results and digest; the view and notes
 /// are left empty. Reads every input file once. Stopped.
 Session sessionOf(const Inspection& inspection, const ProgressFn& progress = {});
-/// Of the scene, what it names, and the truth folder of the request.
+/// Hashes of the scene, of the files that it names, and of the request's truth folder.
 std::vector<SessionFile> hashInputs(const Scene& scene, const InspectionRequest& request, const ProgressFn& progress = {});
 
 /// One line "path: changed" or "path: missing" for each input that is not what it was; of a file that the session may not name, a
@@ -134,7 +134,7 @@ struct Replay {
   std::string firstChanged;              ///< the first stage whose results differ, in words; "" = none
   bool digestAgrees = false;
   int compared = 0;  ///< key results
-  /// Of a key result, relative to its size (and to 1e-3 if that is smaller): what 1e-9 is compared with.
+  /// Largest one of a key result, relative to its size (at least 1e-3). It is compared with 1e-9.
   double largestDifference = 0;
 };
 /// Recomputes a session and compares: key results agree when they differ by at most 1e-9 relatively (or 1e-12 absolutely,

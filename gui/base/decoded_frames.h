@@ -41,9 +41,9 @@ class DecodedFrames {
   /// @param mostBytes  of all images that are kept.
   explicit DecodedFrames(int mostBytes, Decode decode = decodeFrame);
   Held find(const FramePictures& pictures, int frame, FrameSource source);  ///< null where it is not there
-  /// For a view: waits for nobody. @return, throws  as decodeFrame.
+  /// Serves a view: waits for nobody. @return, throws  as decodeFrame.
   Outcome<Held> whole(const FramePictures& pictures, int frame, FrameSource source, const ProgressFn& going = {});
-  /// For a thumbnail, a texture, a value: a file that is being read for a view is waited for. What a what-if renders comes at
+  /// Serves a thumbnail, a texture, a value: waits for a file that is being read for a view. What a what-if renders comes at
   /// every n-th pixel unless the whole is there, and is not kept.
   Outcome<Held> part(const FramePictures& pictures, int frame, FrameSource source, int every);
   int bytes() const {

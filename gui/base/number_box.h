@@ -39,7 +39,7 @@ class NumberBox : public QDoubleSpinBox {
   bool whole_ = false;  ///< takes whole numbers only
 };
 
-/// For a number box that is of no setting.
+/// The range of a number box that belongs to no setting.
 ParamSpec numberRange(double min, double max, double step);
 ParamSpec wholeRange(int min, int max);
 

@@ -25,7 +25,7 @@ struct ExplainText {
   bool solo = false;              ///< of the selected frame alone: what belongs to the others would lie over it
   bool epipolar = false;          ///< with the epipolar lines of two frames side by side, which are no other step's geometry
   QMap<QString, Words> ofModels;  ///< where a model does something else: by its id, "" = as for the others
-  /// @param model  "" = none. For a model that no step has words for: what it assumes, where others have words of their own.
+  /// @param model  "" = none. For models that no step has words for: what it assumes, where others have words of their own.
   Words words(const QString& model) const;
   QMap<QString, Shown> shownOfModels;  ///< where the picture of a model has other parts: by its id
   /// What the step shows when that model is explained.

@@ -14,7 +14,7 @@ class QPainter;
 
 namespace glint::gui {
 
-/// Of a figure; not valid where that is transparent.
+/// The background of a figure; not valid if it is transparent.
 QColor backgroundOf(const FigureLook& look);
 /// Height of a caption's letters, px: those of a caption on paper at the figure's resolution, and legible on a screen.
 double captionPx(const FigureLook& look);

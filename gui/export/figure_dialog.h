@@ -34,7 +34,7 @@ class FigureDialog : public QDialog {
   /// @param onScreen  device px of what is shown.
   FigureDialog(const QString& title, const QString& kind, const QSize& onScreen, QWidget* parent);
   FigureLook look() const;
-  /// For what cannot have a transparent background.
+  /// Serves pictures that cannot have a transparent background.
   void setOpaque();
   /// A caption for who wants one; the field stays empty.
   void proposeCaption(const QString& caption);

@@ -24,7 +24,7 @@ class BallResults : public QTabWidget {
   PlotCanvas* shares() const { return shares_; }
   /// @param report  null = none, because `why`
   void show(const LampsReport* report, const QString& why);
-  /// Of this lamp, which is that of a photograph; -1 = none.
+  /// Selects this lamp, which is that of a photograph; -1 = none.
   void select(int lamp);
 
  signals:

@@ -343,7 +343,7 @@ int ErrorTable::nameWidth() const {
 }
 
 int ErrorTable::columnWidth(int column) const {
-  // Of the widest number that an error, a share or a count of this column's frames can be: it stays while a slider moves.
+  // Width of the largest error, share or count that this column can have: it stays while a slider moves.
   const QString widest = column < 4 ? QStringLiteral("999.999") : column == kIou ? QStringLiteral("0.9999") : QString();
   int width = summary_->fontMetrics().horizontalAdvance(widest);
   for (const SummaryRow& row : summaryRows_)

@@ -222,7 +222,7 @@ draw::PlotData PlotsPanel::data(const std::string& id, Pane& pane) {
     return empty;
   }
   if (!inspection) {
-    // Of a scene just opened, the selected frame's results come before all others, and the frame view shows them too.
+    // When a scene opens, the selected frame's results come before all others, and the frame view shows them too.
     if (id == "dial" && document_.frameInspection())
       return draw::residualDial(*document_.frameInspection(), s.frame, s.highlight);
     empty.empty = (!document_.scene()            ? tr("No scene")

@@ -60,7 +60,7 @@ class ScenePanel : public QWidget {
   void frameAll();
   void frameSelection();
   void lookAlong(glint::viz::AxisView axis);
-  /// Of the active view, or of all where they are linked.
+  /// Moves the active view, or all views if they are linked.
   void setEye(glint::viz::Eye eye);
   void setArrangement(glint::gui::Arrangement arrangement);
   void setColourBy(const QString& by);

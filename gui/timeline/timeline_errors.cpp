@@ -125,7 +125,7 @@ void TimelineStrip::paintErrors(QPainter& painter) {
   const auto write = [&](const QString& text, double middle) {
     painter.drawText(QRectF(0, middle - lineHeight() / 2, left, lineHeight()), Qt::AlignRight | Qt::AlignVCenter, text);
   };
-  // Below the line where the word "missed" stands above it.
+  // The label stands below the line if the word "missed" is above it.
   const bool named = missedRow().height() > 0 && chart().height() >= kRoomForName * scale_;
   const double lower = named ? lineHeight() / 2 : 0;
   write(texts[0], c.top() + lower);

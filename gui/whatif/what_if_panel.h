@@ -21,7 +21,7 @@ class QToolButton;
 namespace glint::gui {
 
 /// Highlights of the selected frame that there are knobs for, of the newest results: those before edits by hand, then those that
-/// were made by hand. Of each what edits did to it, "" = nothing.
+/// were made by hand. Each with what edits did to it, "" = nothing.
 QStringList highlightsToMove(const Document& document);
 /// One step of undo; equal positive gestures merge. @param value  in the unit of the knob.
 void turnKnob(Document& document, const WhatIfKnob& knob, double value, int gesture = 0);

@@ -136,7 +136,7 @@ void FileActions::openDialog() {
 }
 
 void FileActions::openFolderDialog() {
-  // Of a file, the dialog would take the name for a folder's, which does not exist.
+  // The dialog would take a file's name for that of a folder, which does not exist.
   const QString now = document_.inputFile();
   const QString path = QFileDialog::getExistingDirectory(window_, tr("Open scene folder"),
                                                          now.isEmpty() ? QString() : QFileInfo(now).absolutePath());

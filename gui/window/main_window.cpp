@@ -557,7 +557,7 @@ void MainWindow::offerToLocate(const QString& oneLine, const MissingPtr& missing
 
 void MainWindow::log(const QString& line) { log_->add(line); }
 
-/// In the log and, for a while, in the status line.
+/// Writes a line to the log and, for a while, to the status line.
 void MainWindow::tell(const QString& line) {
   log(line);
   // A menu that closes clears the line of status tips: after that.

@@ -21,7 +21,7 @@ class ShortcutDialog : public QDialog {
 
  private:
   void fill();
-  /// After a question.
+  /// Asks before it resets.
   void resetAll();
   void filter();
 

@@ -23,7 +23,7 @@ class SymbolLinks : public QObject {
  public:
   SymbolLinks(EquationBrowser& text, SceneViews& views, QObject* parent);
   void follow(DualityWindow& duality);
-  /// Of the first view.
+  /// What is lit in the first view.
   const viz::LitParts& lit() const { return *lit_.front(); }
   /// Lights the symbols of what is drawn at a place of the widget of the views, and that.
   void pointAt(const QPoint& place);

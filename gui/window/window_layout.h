@@ -20,7 +20,7 @@ class WindowLayout : public QObject {
  public:
   /// @param views  what shares the middle of the window.
   WindowLayout(QMainWindow* window, Docks& docks, QSplitter* views);
-  /// Of the layout that was applied last.
+  /// Name of the layout that was applied last.
   const QString& name() const { return name_; }
   void apply(const QString& name);
   /// No docks while nothing is open. @see showAgain

@@ -35,7 +35,7 @@ def groups(file=HERE / "occasional.txt"):
 
 
 def digest(root, group):
-    """Of names and contents of all files below the paths that git does not ignore; None where git does not tell."""
+    """A hash of names and contents of all files below the paths that git does not ignore; None where git does not tell."""
     asked = subprocess.run(["git", "-C", str(root), "ls-files", "-z", "--cached", "--others", "--exclude-standard", "--", *group.paths],
                            capture_output=True)
     names = sorted(set(asked.stdout.split(b"\0")) - {b""})

@@ -136,7 +136,7 @@ TEST_F(LegendPicture, OverAPhotographItStandsOnAPanel) {
   EXPECT_LT(pixels(false), font) << "but for the smoothed edges of letters";
 }
 
-/// Of two entries side by side in the list, how many rows of pixels lie between their strokes; nothing where the first is left
+/// How many rows of pixels lie between the strokes of two neighbouring entries of the list; nothing if the first is left
 /// out.
 TEST_F(LegendPicture, ALongLegendSharesRowsAndALowPictureKeepsOnlyWhatItHasToShow) {
   const auto between = [&](int width, int others) -> std::optional<int> {

@@ -138,7 +138,7 @@ def ball(radii, steps=192):
 
 
 def sheet_point(curvature, length, width):
-    """Of the sheet k (x^2 + z^2) + 2 z = 0 around the origin: s along the arc, t along y."""
+    """A function of s along the arc and t along y: points of the sheet k (x^2 + z^2) + 2 z = 0 around the origin."""
     def point(s, t):
         arc = (s - 0.5) * length
         if abs(curvature) < 1e-12:  # flatter than any sheet that a file means: the plane itself

@@ -169,7 +169,7 @@ def mesh(vertices: ArrayLike, triangles: ArrayLike, normals: Optional[ArrayLike]
     triangles : (m, 3) whole numbers
         Indices of vertices. Winding may differ; degenerate triangles are ignored but keep their index.
     normals : (n, 3) real numbers
-        Of the vertices; None, or a zero: the mean of the triangles around.
+        Normals of the vertices; None, or a zero: the mean of the triangles around.
     **settings
         `surface_normals="facet"`, "interpolated" or "curved"; `surface_rays`.
     """
@@ -184,7 +184,7 @@ def depth_map(depth: ArrayLike, camera: Camera, **settings: Any) -> Surface:
     depth : (height, width) real numbers
         Along the optical axis, metres; 0, negative or not finite: none. Single precision is kept.
     camera : Camera
-        Of the same size; its lens distortion is removed.
+        A picture of the same size; its lens distortion is removed.
     **settings
         `surface_depth_smoothing`, `surface_depth_normals`, `surface_depth_radius`, `surface_depth_fill` and those of `mesh`.
 
@@ -312,7 +312,7 @@ def inspect(scene: Union[Scene, Session], models: Union[None, str, _abc.Sequence
     good_enough_pct : float
         With "auto": contour error in percent that is good enough.
     previous : Inspection
-        Of the same scene: what did not change is taken from it.
+        An earlier result of the same scene: what did not change is taken from it.
     progress : function (stage, done, total)
         Called from the threads of the work; returns False to stop. What it raises comes out.
 
@@ -364,7 +364,7 @@ def retexture(source: Union[Session, Scene, Inspection], frame: Union[int, str],
     repeat : float
         Textures in place of one, in both directions.
     albedo : float
-        Of the surface as it was, above 0, at most 1; None: the texture's mean takes the place of it.
+        Albedo of the surface as it was, above 0, at most 1; None: the texture's mean takes its place.
     margin_px : float
         How far beyond its visible part a highlight is removed, px.
 
@@ -418,7 +418,7 @@ def tradeoff(scene: Union[Scene, Session], models: Union[None, str, _abc.Sequenc
     max_error_pct : float
         Choose the fastest setting with at most this contour error in percent.
     repeats : int
-        Of each timed prediction.
+        How often each prediction is timed.
     max_trials : int
         Settings tried on a few frames.
     **settings
@@ -486,7 +486,7 @@ def lights_of_balls(folder: Path, balls: Union[str, _abc.Sequence[str]], *, ball
     Parameters
     ----------
     folder : path
-        Of the photographs.
+        The folder of the photographs.
     balls : list of "[DIR:]CX,CY,R[@X0,Y0]"
         Outlines, px, as `glint lights --ball` takes them.
     ball_radius : float
@@ -495,7 +495,7 @@ def lights_of_balls(folder: Path, balls: Union[str, _abc.Sequence[str]], *, ball
         fx, fy, cx, cy[, k1, k2, p1, p2, k3], px; None: what EXIF data say, else a distant one.
     outlines : "fitted", "edges" or "given"
     outline_sigma : float
-        Of a given outline's centre and radius, px.
+        Standard deviation of a given outline's centre and radius, px.
     """
     return _answered(_glint._lights_of_balls(_os.fspath(folder), [balls] if isinstance(balls, str) else list(balls), ball_radius,
                                              "" if camera is None else _text(camera), _spec(exclude) or "", outlines,

@@ -32,7 +32,7 @@ void declareLobe(py::class_<ModelFit>& fit) {
             const ReflectanceFit* const lobe = f.as<ReflectanceFit>();
             return lobe ? std::optional(lobe->lightRadius) : std::nullopt;
           },
-          "Of a spherical lamp, world units; 0 for a point or a tube; or None of models without a lobe.")
+          "Radius of a spherical lamp, world units; 0 for a point or a tube; None for models without a lobe.")
       .def_property_readonly(
           "light_segment",
           [](const ModelFit& f) {
@@ -80,7 +80,7 @@ void declareFit(py::module_& module) {
             return c ? arrayOrNone(c->extent) : std::nullopt;
           },
           "(3, 3) second moment of an extended light, squared world units, of limit-angle; else None.")
-      .def_readonly("condition", &ModelFit::condition, "Of the linear system, or of the rays that fix the light.")
+      .def_readonly("condition", &ModelFit::condition, "Condition of the linear system, or of the rays that fix the light.")
       .def_property_readonly(
           "residual_px", [](py::object self) { return viewOf(self.cast<const ModelFit&>().residualPx, self); },
           "(n,) RMS contour distance of each training view, px.")

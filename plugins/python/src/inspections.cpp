@@ -110,7 +110,7 @@ void declareRequest(py::module_& module) {
       .def_property_readonly(
           "noise_px", [](const RequestHandle& r) { return r.request.noisePx; }, "Noise added to training contours, px.")
       .def_property_readonly(
-          "seed", [](const RequestHandle& r) { return r.request.seed; }, "Of the noise.")
+          "seed", [](const RequestHandle& r) { return r.request.seed; }, "Seed of the noise.")
       .def_property_readonly(
           "truth", [](const RequestHandle& r) { return r.request.truthFolder; },
           "Folder of true contours; empty = own detection.");

@@ -123,8 +123,9 @@ void declareModels(py::module_& module) {
           "covariance", [](const LightEstimate& e) { return arrayOrNone(e.covariance); },
           "(3, 3) of the position, squared world units; None where it is not known.")
       .def_readonly("limit_angle", &LightEstimate::limitAngle, "rad: robust mean over all contour points.")
-      .def_readonly("condition", &LightEstimate::condition, "Of the triangulation, in (0, 1]; small = rays nearly parallel.")
-      .def_readonly("rms_px", &LightEstimate::rmsPx, "Of the bundle's residuals, px; 0 when triangulated.")
+      .def_readonly("condition", &LightEstimate::condition,
+                    "Condition of the triangulation, in (0, 1]; small = rays nearly parallel.")
+      .def_readonly("rms_px", &LightEstimate::rmsPx, "RMS of the bundle's residuals, px; 0 when triangulated.")
       .def_property_readonly(
           "residual_px", [](py::object self) { return viewOf(self.cast<const LightEstimate&>().residualPx, self); },
           "(n,) px, of the views that were used.")

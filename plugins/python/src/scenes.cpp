@@ -260,7 +260,7 @@ void declareScenes(py::module_& module) {
           "How it was read, such as \"scene\", \"colmap\" or \"nerfstudio\".")
       .def_property_readonly(
           "file", [](const SceneHandle& s) { return s.scene->file.string(); }, "As opened; empty for a scene from memory.")
-      .def_readonly("input", &SceneHandle::input, "As the caller named it.")
+      .def_readonly("input", &SceneHandle::input, "The input as the caller named it.")
       .def_property_readonly(
           "frames",
           [](const SceneHandle& s) {

@@ -68,7 +68,7 @@ void declarePoint(py::module_& module) {
       .def_property_readonly(
           "settings", [](const TradeoffPoint& p) { return dictOf(p.settings); }, "Every setting by its dotted name.")
       .def_readonly("frames", &TradeoffPoint::frames, "Frames with an observed highlight.")
-      .def_readonly("predicted", &TradeoffPoint::predicted, "Of them, those with a prediction.")
+      .def_readonly("predicted", &TradeoffPoint::predicted, "How many of them have a prediction.")
       .def_readonly("matched", &TradeoffPoint::matched, "Highlights that a prediction was compared with.")
       .def_readonly("missed", &TradeoffPoint::missed, "Observed highlights without a prediction.")
       .def_readonly("spurious", &TradeoffPoint::spurious, "Predictions without an observed highlight.")

@@ -171,7 +171,7 @@ TEST(ViewEffects, NoiseAloneIsNoErrorOfViews) {
 }
 
 TEST(ViewEffects, BandsHoldAViewWhosePoseIsOff) {
-  // Of few views, pretests and the share that the parameters took keep it below 95 %.
+  // With few views, pretests and the share that the parameters took keep it below 95 %.
   EXPECT_GT(inside(20, 0.1, 0.3, 100), 0.90);
   EXPECT_GT(inside(6, 0.1, 0.3, 100), 0.86);
   EXPECT_LT(inside(6, 0.1, 0.3, 100), 0.99);

@@ -158,7 +158,7 @@ TEST(ClippedCore, NoiseTheStatedUncertaintyCovers) {
     ASSERT_TRUE(h && h->flank) << seed;
     if (!h->flank->outsideCore) continue;
     ++outside;
-    // Of the area: single points move by their own noise.
+    // Compares radii by the area: single points move by their own noise.
     const double radius = std::sqrt(h->areaPx2 / M_PI), truth = std::sqrt(std::log(2.0) * blob.a * blob.b);
     within += std::abs(radius - truth) < 2 * h->flank->sigmaPx;
   }

@@ -81,8 +81,8 @@ TEST(BallOutline, NoiseIsWhatTheCovarianceSays) {
   EXPECT_LT(normalised, 3);
 }
 
-/// Of a wide lens, far from its axis: an ellipse. Its edge points lie on the cone that touches the ball, sin(alpha) = 1 /
-/// distance.
+/// Far from the axis of a wide lens the outline is an ellipse. Its edge points lie on the cone that touches the ball, sin(alpha)
+/// = 1 / distance.
 TEST(BallOutline, ASphereUnderPerspectiveIsItsCone) {
   Scene scene = blackBall({{0, 0}, 100});
   scene.focal = 900;

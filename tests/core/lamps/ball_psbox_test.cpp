@@ -18,7 +18,7 @@ namespace glint::ball_psbox_tests {
 
 constexpr int kShots = 12;
 const std::string kFolder = GLINT_SHARED_DIR "/data/psbox/";
-/// Of the cut-outs in the shot: 2750 px apart in x; their lower rows are the same, 1000 and 950 rows high.
+/// Corners of the cut-outs in the shot: 2750 px apart in x; their lower rows agree, 1000 and 950 rows high.
 const std::array<Eigen::Vector2d, 2> kCorner{Eigen::Vector2d(0, 0), Eigen::Vector2d(2750, 50)};
 /// The middle of what is known of the shot; its size is not.
 const Eigen::Vector2d kMiddle(1850, 500);

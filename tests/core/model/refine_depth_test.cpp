@@ -76,7 +76,7 @@ struct Case {
 constexpr double kError = 1e-2;  // of the depth, at the image's border
 constexpr double kPrior = 1e-2;
 
-/// Of second and third degree: a millimetre or two where the highlights are, invisible on the depth itself.
+/// An error of second and third degree: a millimetre or two where the highlights are, invisible on the depth itself.
 DepthCorrection error(double size) {
   DepthCorrection c;
   c.coefficients(3) = size;         // x^2
