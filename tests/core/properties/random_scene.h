@@ -40,7 +40,7 @@ struct RandomScene {
 constexpr int kTraining = 5, kHeldOut = 1;
 constexpr double kNoisePx = 0.2;
 
-/// Cameras of 641 x 481 with a random roll, lights, a surface that touches the origin. Contours are 72 points on the level set, at
+/// Cameras 641 x 481 with a random roll, lights, a surface that touches the origin. Contours are 72 points on the level set, at
 /// equal distances along it, so that resampling to 72 gives them again. @param folder  for the mesh.
 RandomScene randomScene(const Draw& what, const std::filesystem::path& folder);
 

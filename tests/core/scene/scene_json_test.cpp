@@ -467,17 +467,22 @@ TEST(WriteScene, RoundTripIsExact) {
 TEST(WriteScene, EveryKindOfSurfaceLightAndHighlightComesBack) {
   const TemporaryFolder folder;
   const std::string text = R"({"glint_scene": 1, "name": "all",
-    "frames": [{"id": "a", "camera": {"width": 64, "height": 48, "fx": 80, "fy": 81, "cx": 31.5, "cy": 23.5, "distortion": [0.1,-0.02,0.001,0.002,0.003]},
+    "frames": [{"id": "a", "camera": {"width": 64, "height": 48, "fx": 80, "fy": 81, "cx": 31.5, "cy": 23.5,
+      "distortion": [0.1,-0.02,0.001,0.002,0.003]},
       "depth": "d.png", "depth_scale": 0.0002, "mask": "m.png", "normals": "n.tiff", "lights_on": ["p"],
       "camera_from_world": [[1,0,0,0],[0,1,0,0],[0,0,1,2],[0,0,0,1]],
-      "highlights": [{"light": "p", "level": 0.2, "peak": [30.25, 20.5], "contour": [[28, 18], [32, 18.5], [33, 22], [30, 23], [27.5, 21]]}]},
+      "highlights": [{"light": "p", "level": 0.2, "peak": [30.25, 20.5],
+      "contour": [[28, 18], [32, 18.5], [33, 22], [30, 23], [27.5, 21]]}]},
       {"id": "b", "camera": {"width": 32, "height": 48, "fx": 80, "fy": 80, "cx": 15.5, "cy": 23.5}, "surface": "q",
       "camera_from_world": [[0,-1,0,0.5],[1,0,0,0],[0,0,1,2],[0,0,0,1]]}],
     "surfaces": {"p": {"analytic": {"type": "plane"}}, "c": {"analytic": {"type": "cylinder", "radius": 0.1}},
-      "e": {"analytic": {"type": "ellipsoid", "semi_axes": [0.6, 0.35, 0.25], "world_from_surface": [[0,-1,0,0.5],[1,0,0,0],[0,0,1,2],[0,0,0,1]]}},
-      "s": {"analytic": {"type": "sheet", "curvature": 0.5, "length": 1, "width": 2}}, "t": {"analytic": {"type": "torus", "major_radius": 0.5, "minor_radius": 0.1}},
+      "e": {"analytic": {"type": "ellipsoid", "semi_axes": [0.6, 0.35, 0.25],
+      "world_from_surface": [[0,-1,0,0.5],[1,0,0,0],[0,0,1,2],[0,0,0,1]]}},
+      "s": {"analytic": {"type": "sheet", "curvature": 0.5, "length": 1, "width": 2}},
+      "t": {"analytic": {"type": "torus", "major_radius": 0.5, "minor_radius": 0.1}},
       "q": {"analytic": {"type": "quadric", "matrix": [[1,0,0,0],[0,2,0,0],[0,0,3,0],[0,0,0,-1]]}}},
-    "lights": [{"id": "p", "position": [1, 0, 2], "radius": 0.02}, {"id": "sun", "direction": [0, 0, 2]}, {"id": "tube", "segment": [[0, 0, 2], [0.6, 0, 2]], "radius": 0.015}]})";
+    "lights": [{"id": "p", "position": [1, 0, 2], "radius": 0.02}, {"id": "sun", "direction": [0, 0, 2]},
+      {"id": "tube", "segment": [[0, 0, 2], [0.6, 0, 2]], "radius": 0.015}]})";
   const Scene scene = readScene(folder.write("one.json", text));
   EXPECT_THAT(scene.warnings, ElementsAre());
   writeScene(scene, folder / "two.json");
