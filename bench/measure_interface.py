@@ -7,7 +7,7 @@
 A million triangles, 100 cameras, a preset that `glint tradeoff` measures first, software rendering on a virtual
 display (xvfb-run). Every slider is moved ten times a second whether the window keeps up or not, and a wait counts from the movement to the end
 of the event that painted the first overlay for that position or a later one: the observed contour where the slider changes what is
-observed, else those of the models, whose wait stands beside it. Then a test tells for how long the interface stood still (STANDSTILLS),
+observed, else those of the models, whose wait is listed beside it. Then a test tells for how long the interface stood still (STANDSTILLS),
 several times over. --page writes the tables into the page.
 """
 import argparse

@@ -88,7 +88,7 @@ std::string writeOn(const LightsArguments& a, const Inspection& inspection, Lamp
   return lampsOnSummary(on);
 }
 
-/// Who has photographs of mirror balls is not helped by being asked for poses.
+/// It does not help users with photographs of mirror balls to be asked for poses.
 Scene sceneOf(const LightsArguments& a) {
   try {
     return a.places.read(a.input);

@@ -92,7 +92,7 @@ int answerPoses(const OpenedSession& opened, const InspectionRequest& request, c
       ++answered;
     }
   } catch (const ReaderGone&) {
-    // Who reads a table with `head` wants no more lines; who waits for answers wants to know why they stop.
+    // A user of `head` wants no more lines; a program that waits for answers wants to know why they stop.
     throw InputError("standard output", "",
                      "was closed by its reader after " + std::to_string(answered) + (answered == 1 ? " answer" : " answers"));
   }

@@ -134,7 +134,7 @@ class Maker:
 
 
 def peaks_of(node):
-    """Every predicted highlight with a peak, wherever it stands."""
+    """Every predicted highlight with a peak, wherever it is."""
     if isinstance(node, dict):
         if isinstance(node.get("peak"), list):
             yield node

@@ -26,7 +26,7 @@ the mirrored rays of the peaks alone, which give a direction. A highlight whose 
 `error` is the distance from the true lamp, `stated` the root of the trace of the covariance.
 
 SCENES
-The covariance has two parts: the noise that the residuals show, and how the lamp moves when an eighth of the frames is left out, by their contours. It knows nothing of what all frames have wrong in the
+The covariance has two parts: the noise that the residuals show, and how the lamp moves when an eighth of the frames is left out, by their contours. It cannot know an error that all frames share in the
 same way: a lobe of another shape, a lamp with a size, a scale; an error may then be larger than stated, as on the path-traced sphere. Where fewer than four views
 remain, each is taken to be 0.2 px off on its own.
 
@@ -34,7 +34,7 @@ All frames from one place see one mirrored ray: then there is no position, whate
 Twelve distant lamps around a rough ball, each on in one 8-bit frame of one camera, as a scene and as photographs (next section):
 
 ROUGH
-The camera stands at 24 radii of the ball. Whoever does not say so pays the angle under which it sees the ball's radius, 2.4 degrees at the edge.
+The camera is at 24 radii of the ball. A user who does not say so pays the angle under which it sees the ball's radius, 2.4 degrees at the edge.
 
 ## Photographs of mirror balls
 One fit of all lamps and all outlines: a lamp is a direction and an inverse distance, a ball the circle (with a focal length the sphere) of its outline. The mirror point on the sphere is solved
@@ -89,7 +89,7 @@ BODY = {"glint_scene": 1, "name": "body", "camera": {"width": 160, "height": 120
         "path": {"orbit": {"centre": [0, 0, 0], "radius": 1.9, "height": 0.9, "from": -1.9, "to": -0.5, "count": 8}},
         "render": {"reflectance": "ggx", "roughness": 0.2, "diffuse": 0.05, "bits": 32, "samples": 1}}
 TURNS = 12  # distant lamps around a rough ball
-# Balls of psbox: outlines as somebody clicked them (circle_data.txt), from the left and the bottom, counted from 1; x of the cut-out in the shot.
+# Balls of psbox: outlines as a person clicked them (circle_data.txt), from the left and the bottom, counted from 1; x of the cut-out in the shot.
 PSBOX = [("LightProbe-1", 0, 0), ("LightProbe-2", 2750, 50)]
 
 

@@ -215,7 +215,7 @@ def psbox(glint, data):
         rms = math.sqrt(sum(x * x + y * y for x, y in off) / max(1, len(off)))
         left = math.sqrt(sum((x - mean[0]) ** 2 + (y - mean[1]) ** 2 for x, y in off) / max(1, len(off)))
         text += f"| {ball} | {shots} | {len(off)} | {largest} | {others} | {flagged} | {mean[0]:.1f}, {mean[1]:.1f} | {rms:.1f} | {left:.1f} |\n"
-    return text + (f"\nEstimated peaks that are relied on: {sum(c['trusted'] for c in clipped)} of {len(clipped)} clipped highlights. "
+    return text + (f"\nEstimated peaks that are trusted: {sum(c['trusted'] for c in clipped)} of {len(clipped)} clipped highlights. "
                    "A chrome ball shows the lamp itself and the camera's star burst, no lobe.\n")
 
 
@@ -313,7 +313,7 @@ areas of its contours tell the peak (`traceFlank`, `core/highlight/clipped_flank
 
 {clipped}
 - Where level 0.5 lies inside the core, the contour stays at half of the clip value, and `glint detect` says so. It is then too large by about what the last column says, and the
-  stated uncertainty is as wide: the profile's own distance to the level, or, where no peak is relied on, anything up to the whole radius.
+  stated uncertainty is as wide: the profile's own distance to the level, or, without a trusted peak, anything up to the whole radius.
 - Outside of the core the stated uncertainty (one standard deviation) is that of the peak and of the background. The background is fitted again with the tail that the slope shows, up
   to three times: with a Gaussian's, GGX's tail passes for background (at 0.95 the contour was off by 1.32 px).
 - A narrow peak on top of a wide lobe that lies wholly inside the core shows in no slope: no uncertainty covers it.
@@ -321,7 +321,7 @@ areas of its contours tell the peak (`traceFlank`, `core/highlight/clipped_flank
 The same with lobes by their formulas over the angle, two sizes, four places and noises each. Errors of a lobe's shape are alike in all pictures of it; so the stated uncertainty is on the safe side for most.
 
 {bands}
-- Profiles of contours that are no ellipses (median over the levels: 8 % off) are not relied on: star bursts, mirrored lamps.
+- Profiles of contours that are no ellipses (median over the levels: 8 % off) are not trusted: star bursts, mirrored lamps.
 
 ## Coloured surfaces
 A lobe of 44 x 30 px at 1/e under a yellowish lamp, over diffuse paint in closed form. `--separate auto` finds the combination of the channels in which the diffuse colours around the highlight vanish

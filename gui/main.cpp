@@ -108,7 +108,7 @@ int run(int argc, char** argv) {
     throw glint::InputError("", "QT_QPA_PLATFORM",
                             "this Qt platform cannot draw 3D; use a display, or xvfb-run with QT_QPA_PLATFORM=xcb (see --help)");
 
-  // What can be said without opening the input is said before there is a window; Screenshot has the rest.
+  // Messages that do not need the input come before there is a window; Screenshot has the rest.
   const std::vector<std::filesystem::path> input{command.input.toStdString()};
   glint::Outputs(input).file(command.screenshot.toStdString(), "--screenshot", glint::OutputKind::png());
 

@@ -25,7 +25,7 @@ struct GltfRow {
   std::size_t stride = 0;
 };
 
-/// Elements that stand in place of some others.
+/// Elements that replace some others.
 struct GltfSparse {
   std::size_t count = 0;
   GltfScalar scalar = GltfScalar::Uint32;  ///< of the numbers

@@ -52,9 +52,9 @@ class Annotations {
   void setLegendVisible(bool visible, bool title = true);
   /// Width and height of the legend from the upper left corner, window px; 0 without one.
   Eigen::Vector2d legendSize();
-  /// Height of what stands with the colour bar at the lower right, window px; 0 without any.
+  /// Height of the texts with the colour bar at the lower right, window px; 0 without any.
   double colourBarHeight();
-  /// The legend lies over a photograph: it stands on a panel, which keeps it readable.
+  /// The legend lies over a photograph: its panel keeps it readable.
   void setOnPicture(bool on);
   void setDark(bool dark);
   /// All texts are so many times as large as usual.

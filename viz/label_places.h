@@ -15,7 +15,7 @@ struct Rectangle {
   }
 };
 
-/// Where a label stands: beside its point, to the right first, then to the left, then in rows above and below. A place off all
+/// The place of a label: beside its point, to the right first, then to the left, then in rows above and below. A place off all
 /// `glyphs` is taken before one on some of them, on which it would be hard to read. Nothing where a small picture has no room: a
 /// click on the point still tells what it is, texts over one another tell nothing.
 /// @param at, size, picture  px: the point, the label's size and the picture's. @param font  height of the text, px.

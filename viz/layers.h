@@ -154,8 +154,8 @@ struct DrawnLabel {
   Eigen::Vector3d anchor;
   std::string text;
   Colour colour;
-  std::optional<Eigen::Vector3d> tail{};  ///< of the arrow whose tip the anchor is: the text stands in front of it
-  double clear = 0;                       ///< m: radius about the anchor, of what the text stands beside
+  std::optional<Eigen::Vector3d> tail{};  ///< of the arrow whose tip the anchor is: the text is in front of it
+  double clear = 0;                       ///< m: radius about the anchor, of the thing beside the text
 };
 
 constexpr std::size_t kMostGlyphs = 64;  ///< of more cameras there is nowhere a picture that is free of them
@@ -258,7 +258,7 @@ std::vector<Points> castContour(const Camera& camera, const Surface& surface, co
 /// An image ellipse carried back to a plane, lifted towards the camera.
 std::vector<Points> ellipseOnPlane(const Camera& camera, const Plane& plane, const Ellipse& ellipse, double lift);
 /// Radius of a disc on a tangent plane, so many times as wide as a contour there.
-/// @param times  3: the highlight stands in the middle of a plane that is seen as one.
+/// @param times  3: the highlight is in the middle of a plane that is seen as one.
 double planeRadius(const Camera& camera, const Plane& plane, const Eigen::Vector3d& at, const std::vector<Pixel>& contour,
                    const SceneScale& scale, double times = 3);
 /// Direction of an ideal pixel from an observed contour, as Selection::direction has it. @param ideal  finite.

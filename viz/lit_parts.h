@@ -54,7 +54,7 @@ class LitParts {
   void putBack();
   bool wanted(const std::string& name) const;
 
-  vtkSmartPointer<vtkRenderer> renderer_;  ///< kept: who owns the view may go first
+  vtkSmartPointer<vtkRenderer> renderer_;  ///< kept: the owner of the view may go first
   vtkNew<vtkCallbackCommand> onFrame_;
   std::set<std::string> names_;
   Colour colour_{};

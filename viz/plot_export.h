@@ -9,7 +9,7 @@
 
 namespace glint::viz {
 
-/// What stands under an exported plot, inside its size.
+/// The text under an exported plot, inside its size.
 struct PlotCaption {
   std::string text;    ///< "" = none
   double sizePx = 12;  ///< of its letters, device px

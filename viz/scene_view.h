@@ -145,7 +145,7 @@ class SceneView {
 
   /// The renderer's viewport shows its part of the picture of the whole window (the wipe) instead of a picture of its own.
   void setPartOfWindow(bool part);
-  /// Draws a border, in the accent colour where the view is the active one. @param name  stands in the upper right corner, may be
+  /// Draws a border, in the accent colour where the view is the active one. @param name  shown in the upper right corner, may be
   /// "".
   void setFrame(bool border, bool active, const std::string& name);
   /// Legend, notes and title (`title`: also that); labels, axes and scale stay.

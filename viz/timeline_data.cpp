@@ -14,7 +14,7 @@
 namespace glint::viz {
 
 namespace {
-constexpr double kWorstShownPct = 1000;  // ten times the highlight's size: a model that went astray must not flatten the others
+constexpr double kWorstShownPct = 1000;  // ten times the highlight's size: a very wrong model must not flatten the others
 }
 
 namespace {

@@ -69,7 +69,7 @@ struct Painter {
     out.dots.push_back({at, own, current ? 4.5 : 3.0});
   }
 
-  /// Whether the angle has room beside the title; in a narrow half it stands below it.
+  /// Whether the angle has room beside the title; in a narrow half it is below it.
   bool beside(const Box& box, const char* title) const {
     return kGlyphWidth * textPx * static_cast<double>(std::string(title).size() + std::string("α 88.88°").size() + 2) < box.width;
   }

@@ -28,7 +28,7 @@ struct WalkStory {
   WalkTrace trace;
 
   int steps() const { return static_cast<int>(trace.onSurface.size() + trace.onPlane.size()); }
-  /// Where the walk stands at a step; a step beyond the ends is the nearest end.
+  /// The walk's place at a step; a step beyond the ends is the nearest end.
   struct Moment {
     bool onSurface = true;
     int place = 0;                                 ///< index into the trace's places on S or on T

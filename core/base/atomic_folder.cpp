@@ -68,7 +68,7 @@ void fill(const fs::path& temporary, const fs::path& given, const Write& write) 
     const std::string inside = temporary.string() + "/";
     if (e.file().compare(0, inside.size(), inside) != 0) throw;
     const std::string file = (given / e.file().substr(inside.size())).string();
-    // The reason is what stands behind file and place.
+    // The reason is the text behind file and place.
     const std::string start = InputError(e.file(), e.place(), "").what(), whole = e.what();
     throw InputError(file, e.place(), whole.compare(0, start.size(), start) == 0 ? whole.substr(start.size()) : whole);
   }

@@ -225,7 +225,7 @@ ImageHeader tiffHeader(std::string_view bytes, ImageHeader h) {
     if (!found || *found) continue;
     constexpr std::uint64_t kShort = 3, kLong = 4, kLong8 = 16;
     const bool whole = *type == kShort || *type == kLong || (*type == kLong8 && kind.value == 8);
-    // The decoder takes other types too, of which some stand elsewhere in the file; nobody writes a size so.
+    // The decoder takes other types too, some of them elsewhere in the file; no program writes a size so.
     if (!whole && TiffTags::isSize(*tag)) return damaged(h, "a size is not a 16- or 32-bit whole number");
     *found = in.number(valueAt, *type == kShort ? 2 : *type == kLong8 ? kind.value : 4);
   }

@@ -27,7 +27,7 @@ inline void append(Json& object, const std::string& key, Json value) {
 std::string textWithPaths(const Json& document, const std::string& file);
 
 /// `file` names the text in messages.
-/// @throw InputError (file; line and column, or the place of the value) for wrong syntax, a key that stands twice in one object,
+/// @throw InputError (file; line and column, or the place of the value) for wrong syntax, a repeated key in an object,
 ///        nesting deeper than 100, and beyond the limits json.megabytes and json.values.
 Json parse(const std::string& text, const std::string& file);
 

@@ -15,7 +15,7 @@ namespace glint {
 /// as long as one of its places. Keeps the JSON library out of headers.
 class JsonNode {
  public:
-  /// Syntax errors name line and column; a key that stands twice in one object and nesting deeper than 100 are refused.
+  /// Syntax errors name line and column; a repeated key in an object and nesting deeper than 100 are refused.
   /// NaN and Infinity, which some programs write although JSON has none, read as null, so that the error names their place.
   static JsonNode parse(const std::string& text, const std::string& file);
 

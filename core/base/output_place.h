@@ -33,7 +33,7 @@ class OpenFolder {
 /// @param stillAllowed  the check once more, false = what is there now must not be replaced
 void expectOutput(const std::filesystem::path& path, std::function<bool()> stillAllowed);
 
-/// Called with the folder that is written into, after it was opened. Does nothing for a path that nobody expected.
+/// Called with the folder that is written into, after it was opened. Does nothing for an unexpected path.
 /// @throw InputError (file) if a link on the way to the path appeared or changed since `expectOutput`, or its target is forbidden
 void requireAsExpected(const std::filesystem::path& path, const OpenFolder& folder);
 

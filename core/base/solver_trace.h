@@ -24,7 +24,7 @@ struct SolverRun {
   int steps() const;
 };
 
-/// Records what the solvers do on this thread while it lives, for whoever asks why a fit fails; of several the newest records.
+/// Records what the solvers do on this thread while it lives, to explain why a fit fails; if several live, the newest records.
 /// Solvers that run on other threads meanwhile are not seen.
 class SolverTrace {
  public:
@@ -44,7 +44,7 @@ class SolverTrace {
   SolverTrace* outer_;
 };
 
-/// Stands around one run of a solver. Does nothing where nobody records.
+/// Lives around one run of a solver. Does nothing if nothing records.
 class TracedRun {
  public:
   /// @param start  homogeneous, world, any scale
@@ -53,7 +53,7 @@ class TracedRun {
   TracedRun(const TracedRun&) = delete;
   TracedRun& operator=(const TracedRun&) = delete;
   void end(bool converged, const std::string& ending, const std::optional<Eigen::Vector4d>& end = {});
-  /// For traceAnswer(); -1 where nobody records.
+  /// For traceAnswer(); -1 if nothing records.
   int index() const { return index_; }
 
  private:

@@ -71,7 +71,7 @@ std::map<int, JsonNode> bopImages(const JsonNode& root) {
     const JsonNode node = root.at(key);
     const std::optional<int> id = bopId(key);
     if (!id) node.fail("is not the number of an image");
-    if (!images.emplace(*id, node).second) node.fail("image " + std::to_string(*id) + " stands twice in the file");
+    if (!images.emplace(*id, node).second) node.fail("image " + std::to_string(*id) + " is in the file twice");
   }
   return images;
 }
@@ -110,7 +110,7 @@ Camera bopCamera(const JsonNode& node, const std::array<int, 2>& size) {
   return camera;
 }
 
-/// How far an object moves in the world, against where it is in the first image that says where its camera stands.
+/// How far an object moves in the world, against where it is in the first image that says where its camera is.
 class BopMotion {
  public:
   void add(const Eigen::Isometry3d& worldFromModel, const std::string& image) {

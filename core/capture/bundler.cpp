@@ -49,7 +49,7 @@ struct BundlerImage {
 constexpr std::size_t kWord = 2;                                     // bytes, with what separates it
 constexpr std::size_t kCameraLines = 5, kInLine = 3, kEachView = 4;  // lines, and numbers in each; numbers of a measurement
 
-/// The words of the file. Programs break its lines differently; where the cameras stand in lines as Bundler writes them, a bad
+/// The words of the file. Programs break its lines differently; if cameras have the lines that Bundler writes, a bad
 /// line does not touch what follows it.
 class BundlerWords {
  public:

@@ -73,7 +73,7 @@ struct CaptureTrack {
     Pixel measured;
   };
   Eigen::Vector3d point;          ///< in the world of the views, in the unit of the capture
-  std::vector<Observation> seen;  ///< empty where the program does not say who saw it (nerfstudio)
+  std::vector<Observation> seen;  ///< empty if the program does not say which cameras saw it (nerfstudio)
 };
 
 /// What the files of other programs do not say, from the command line or a session.
@@ -121,7 +121,7 @@ std::unique_ptr<const CaptureReader> makeBundlerReader();
 std::unique_ptr<const CaptureReader> makeBopReader();
 
 /// A folder of images, and a video, whose poses CaptureOptions names (its `poses`). Not among captureReaders(): nothing in such a
-/// folder says that it is a capture, so only who names the poses asks them.
+/// folder says that it is a capture, so they are asked only if the user names the poses.
 std::unique_ptr<const CaptureReader> makeImagesReader();
 std::unique_ptr<const CaptureReader> makeVideoReader();
 

@@ -85,7 +85,7 @@ bool isNumberName(const fs::path& name) {
   return !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
 }
 
-/// `sparse` and `sparse/0` stand in the folder that holds `images`, too. A folder `dense` is a project of its own: its images are
+/// `sparse` and `sparse/0` are in the folder that holds `images`, too. A folder `dense` is a project of its own: its images are
 /// undistorted, so those of the folder above do not belong to its cameras.
 fs::path projectRoot(const fs::path& model) {
   if (model.filename() == "sparse") return model.parent_path();

@@ -35,7 +35,7 @@ struct Files {
   bool has(const char* stem) const;
 };
 
-/// As they stand in the file, in our conventions. Identifiers are any numbers.
+/// The file's data in our conventions. Identifiers are any numbers.
 struct ModelCamera {
   std::uint32_t id = 0;
   std::string model;  ///< COLMAP's name

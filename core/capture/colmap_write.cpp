@@ -15,7 +15,7 @@ namespace {
 
 using capture::kFromCorner;
 
-/// What a camera is in COLMAP: the name of a model, and what stands behind the principal point.
+/// What a camera is in COLMAP: the name of a model, and the parameters behind the principal point.
 struct ColmapLens {
   std::string model;
   bool oneFocalLength = false;

@@ -123,7 +123,7 @@ std::optional<std::int64_t> nvmCountOf(const Row& row) {
   return row.words.size() == 1 ? io::integerOf(row.words.front()) : std::nullopt;
 }
 
-/// What stands behind the first model: others, then VisualSFM's list of the images without a pose (a model without points), then
+/// What follows the first model: others, then VisualSFM's list of the images without a pose (a model without points), then
 /// a 0 and the numbers of meshes. None of it is read, so a damaged end is no error.
 void skipOtherNvmModels(RowReader& rows, NvmModel& model) {
   std::size_t models = 0, cameras = 0, unposed = 0;

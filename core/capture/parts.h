@@ -41,7 +41,7 @@ std::vector<std::filesystem::path> modelFoldersOfBop(const std::filesystem::path
 /// one name that differ.
 void orderByName(Capture& capture);
 
-/// Lines or frames of one kind that are passed over: a file may have thousands of them.
+/// Skipped lines or frames of one kind: a file may have thousands of them.
 class PassedOver {
  public:
   void add(const std::string& place) {
@@ -85,7 +85,7 @@ class BadLines {
   std::optional<InputError> first_;
 };
 
-/// Why a frame or a line is passed over, for PassedOver::tell().
+/// Why a frame or a line is skipped, for PassedOver::tell().
 inline constexpr const char* kNoFinitePose = "no finite pose (tracking was lost)";
 inline constexpr const char* kCutPose = "has fewer numbers than a pose (a cut line?)";
 inline constexpr const char* kSaidBefore = "says the same as a line before";

@@ -20,7 +20,7 @@ namespace glint {
 ///   1305031102.1758 tx ty tz qx qy qz qw                                                TUM: camera to world, quaternion w last
 /// Times in seconds (others: capture::secondsOf); lengths in the unit of the scene.
 struct PoseLine {
-  std::string id;              ///< as the line writes it; where it names none (TUM), the time as it stands there. Never empty
+  std::string id;              ///< as the line writes it; if it has none (TUM), the time as written. Never empty
   std::optional<double> time;  ///< s
   Eigen::Isometry3d cameraFromWorld = Eigen::Isometry3d::Identity();
   std::optional<Camera> camera;  ///< where the line has one; its pose is `cameraFromWorld`
@@ -42,7 +42,7 @@ class CutPose : public InputError {
 inline constexpr std::size_t kLongestPoseLine = 65536;
 
 /// Reads poses one at a time, as soon as their line has ended: lines come from others, and may come live. Blank lines and
-/// comments (#) are passed over. Memory is bounded, whatever comes.
+/// comments (#) are skipped. Memory is bounded, whatever the input.
 class PoseLineReader {
  public:
   /// @param in    outlives the reader

@@ -92,7 +92,7 @@ class PosedPictures {
     return isVideo_ ? capture::counted(n, "picture", "pictures") : capture::counted(n, "image", "images");
   }
 
-  /// A line without a pose is passed over; by order the images behind it would take poses of others.
+  /// A line without a pose is skipped; by order the images behind it would take poses of others.
   void requireNoneLost() const {
     std::ifstream in(options_.poses, std::ios::binary);
     PoseLineReader reader(in, poseFile());
@@ -246,7 +246,7 @@ class PosedPictures {
       return formatted(" (EXIF: %g mm on 35 mm film, about --camera %.0f,%.0f,%g,%g without distortion)", *mm, k(0, 0), k(1, 1),
                        k(0, 2), k(1, 2));
     } catch (const InputError&) {
-      return "";  // it is said where the picture is read
+      return "";  // reading the picture reports it
     }
   }
 

@@ -84,7 +84,7 @@ inline std::string someOf(const std::vector<std::string>& names) {
   return names.size() > kMost ? text + ", ... (" + std::to_string(names.size()) + " in all)" : text;
 }
 
-/// Where the view of this name stands in Capture::views.
+/// Index of the view of this name in Capture::views.
 inline std::map<std::string, int> viewsByName(const Capture& capture) {
   std::map<std::string, int> indices;
   for (std::size_t i = 0; i < capture.views.size(); ++i) indices[capture.views[i].name] = static_cast<int>(i);

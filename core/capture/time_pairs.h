@@ -20,8 +20,8 @@ inline constexpr std::size_t kNoPair = static_cast<std::size_t>(-1);
 /// For each time (s) the index of the one among `others` that belongs to it, else kNoPair: again and again the two closest that
 /// are left become a pair, as long as they are at most kApart apart, as TUM's associate.py does with the table of all pairs.
 ///
-/// On the line of time the two closest of different kind stand side by side (one between them would be closer to one of them),
-/// so neighbours are all that has to be looked at: the table is quadratic where a file repeats a time.
+/// On the line of time the two closest of different kind are neighbours (one between them would be closer to one of them),
+/// so only neighbours matter. The whole table would be quadratic if a file repeats a time.
 std::vector<std::size_t> timePairs(const std::vector<double>& times, const std::vector<double>& others);
 
 }  // namespace glint::capture

@@ -16,7 +16,7 @@
 #include "io/text_scan.h"
 
 // The RGB-D benchmark of TUM (Sturm et al., IROS 2012). Lists of images: `timestamp path`. Trajectory: `timestamp tx ty tz qx
-// qy qz qw`, where the colour camera's optical centre stands and how it is turned, in the world of the motion capture: camera
+// qy qz qw`, the place and rotation of the colour camera's optical centre, in the world of the motion capture: camera
 // to world, with the axes of OpenCV. Times are in seconds.
 
 namespace glint {
@@ -36,7 +36,7 @@ struct TumImage {
 struct TumPose {
   double time = 0;
   Eigen::Vector3d position;
-  Eigen::Vector4d xyzw;  ///< as it stands in the file
+  Eigen::Vector4d xyzw;  ///< as in the file
   std::string place;
 };
 

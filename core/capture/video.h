@@ -15,7 +15,7 @@ namespace glint {
 /// Which picture of a video is meant.
 struct VideoPicture {
   int index = 0;       ///< from 0, in the order in which a player shows them
-  double seconds = 0;  ///< on the video's own clock, which begins with 0; tells a seek that went astray
+  double seconds = 0;  ///< on the video's own clock, which begins with 0; detects a failed seek
   friend bool operator==(const VideoPicture&, const VideoPicture&) = default;
 };
 

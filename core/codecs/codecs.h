@@ -17,8 +17,8 @@ class Mat;
 /// belongs to one thread at a time. All functions throw CodecsMissing.
 namespace glint {
 
-/// libglint-codecs is missing, cannot be loaded or is of another version. One line with its file. Not an InputError: whoever goes
-/// on without a file that cannot be read must not go on without all of them.
+/// libglint-codecs is missing, cannot be loaded or is of another version. One line with its file. Not an InputError: a program
+/// that goes on without a file that cannot be read must not go on without all of them.
 class CodecsMissing : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -30,13 +30,13 @@ void loadCodecs();
 /// All channels in OpenCV's order (blue first), in the file's own depth, as cv::imdecode with IMREAD_UNCHANGED gives them. TIFF
 /// and EXR files that OpenCV cannot read are decoded by libtiff and OpenEXR themselves, without alpha and half floats as floats:
 /// of EXR files one layer (own_decoders.h).
-/// @param reason  takes why a whole file of a known format is refused
+/// @param reason  says why a whole file of a known format is refused
 /// @return empty: refused, or not an image
 /// @throws std::exception  damaged data
 cv::Mat decodeOtherFormat(const std::string& bytes, std::string& reason);
 
 /// The one channel of depth (Z or V) of an EXR file, whatever else it has: floats.
-/// @param reason  takes why there is no depth in it
+/// @param reason  says why there is no depth in it
 /// @return empty: refused, or not an EXR file
 /// @throws std::exception  damaged data
 cv::Mat decodeExrDepth(const std::string& bytes, std::string& reason);

@@ -55,14 +55,14 @@ struct ModelDiagnosis {
   std::vector<FitTrace> fits;  ///< how they went; none where the status is ok
 };
 
-/// What to do about a sequence: one verdict, at most three remedies, and what both stand on.
+/// What to do about a sequence: one verdict, at most three remedies, and the evidence for both.
 struct Diagnosis {
   std::string present;                 ///< the model whose state is to be beaten
   UnseenError now;                     ///< of that state
   std::string best;                    ///< the model with the smallest error, settings as they are; "" = none answers
   std::string verdict;                 ///< one sentence
   std::vector<Remedy> remedies;        ///< best first, of different kinds
-  std::vector<std::string> notes;      ///< what the verdict stands on, one sentence each
+  std::vector<std::string> notes;      ///< reasons for the verdict, one sentence each
   std::vector<ModelDiagnosis> models;  ///< those of the request, in its order; filled last
   std::vector<Measured> measured;      ///< models as they are first
   bool complete = false;               ///< everything was tried that was to be

@@ -21,8 +21,8 @@ struct HighlightEvidence {
   /// rad: median of alpha along its contour under the common light; of the peaks alone where its
   /// bundle failed. None where there is no light, or the view is not usable.
   std::optional<double> limitAngle;
-  std::vector<std::string> against;  ///< what makes it stand against the model, in words, weightiest first
-  double weight = 0;                 ///< how much it stands against it: 0 = not at all, 1 = clearly
+  std::vector<std::string> against;  ///< how it contradicts the model, in words, weightiest first
+  double weight = 0;                 ///< how much it contradicts the model: 0 = not at all, 1 = clearly
 };
 
 /// Highlights of the training frames, in the order of Inspection::views. A fit that failed is made again with fit.most_residual

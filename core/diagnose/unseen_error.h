@@ -41,7 +41,7 @@ UnseenError unseenError(const Inspection& inspection, const std::string& model, 
 
 /// Whether the second is better than the first: with a tenth fewer spurious highlights where its contours are no worse and it
 /// misses no more; or beyond chance. That is, over the views of both: by more than kNegligiblePct, by a tenth, and by more than
-/// one standard error of the difference, or with fewer views astray and none that was not. They must be half of what is scored
+/// one standard error of the difference, or with fewer wrong views and no new one. They must be half of what is scored
 /// before, and over all of its views the second must not be worse: what the user then sees is no larger number.
 bool isBetter(const UnseenError& after, const UnseenError& before);
 

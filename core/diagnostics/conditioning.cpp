@@ -212,10 +212,10 @@ class Findings {
     reason += model_.hasOutlines()
                   ? chosen(v, "three or more determine an ellipsoid with a free centre.",
                            "fewer than three, which an ellipsoid with a free centre needs.",
-                           "fewer than two: what the light's distance and an ellipsoid stand on is the contours' shape alone.")
+                           "fewer than two: only the contours' shape tells the light's distance and an ellipsoid.")
                   : chosen(v, "three or more determine the light and leave data to check it.",
                            "fewer than three: two determine the light, but no data is left to check it.",
-                           "fewer than two: what the light's distance stands on is the contours' shape alone.");
+                           "fewer than two: only the contours' shape tells the light's distance.");
     add("views", "effective views", effective, formatted("%.2g of %d", effective, int(rays_.size())), v, reason);
   }
 

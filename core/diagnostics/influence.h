@@ -14,7 +14,7 @@ namespace glint {
 ///
 /// Every error in it is capped at kNoPredictionPct (100 %): from there on the prediction lies as far from the highlight as the
 /// highlight is large, which is no better than none, and none counts as just that. Without the cap one prediction that went
-/// astray (a near-degenerate fit predicts 10,000 %) would decide a mean over all probes, and a frame that turns such a failure
+/// wrong (a near-degenerate fit predicts 10,000 %) would decide a mean over all probes, and a frame that turns such a failure
 /// into a missing prediction would seem to help by its removal. So a model whose errors are all beyond the cap (`primal` off the
 /// plane) shows no influence of any frame: its changes are 0.
 struct ModelInfluence {

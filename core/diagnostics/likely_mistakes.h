@@ -26,7 +26,7 @@ struct CameraChange {
   void move(Highlight& highlight, const Camera& camera) const;
 };
 
-/// What somebody may have done wrong, the change that undoes it, and how a person does that.
+/// A mistake that a user may have made, the change that undoes it, and how a person does that.
 struct LikelyMistake {
   std::string subject;  ///< "the images", "the mesh"
   bool many = false;    ///< of the subject

@@ -8,7 +8,7 @@
 
 namespace glint::draw {
 
-/// A caption as it stands under a figure: lines that the width of the page broke.
+/// A caption under a figure: lines that the width of the page broke.
 struct Caption {
   std::vector<std::string> lines;
   double sizePx = 0;

@@ -37,7 +37,7 @@ class Painter {
   virtual void text(const Eigen::Vector2d& at, const std::string& text, double sizePx, const Colour& colour,
                     Align align = Align::Left, bool vertical = false, bool bold = false) = 0;
   virtual double textWidth(const std::string& text, double sizePx, bool bold = false) const = 0;
-  /// What stands at a place in words, for pictures that answer the mouse by themselves; others leave it out.
+  /// What is at a place, in words, for pictures that answer the mouse by themselves; others leave it out.
   virtual void hint(const Eigen::Vector2d& /*centre*/, double /*radius*/, const std::string& /*text*/) {}
 
   /// The text, its end replaced by an ellipsis if it is wider than `widthPx`.

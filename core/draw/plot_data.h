@@ -27,7 +27,7 @@ struct PlotPoint {
   bool noValue = false;  ///< y is NaN, and that is to be seen: a cross at the top of the plot, see PlotData::noValue
   std::optional<std::pair<double, double>> band;  ///< lower and upper end of the error bar
   std::string label;                              ///< lines for a tool tip
-  std::string note{};                             ///< stands beside the sample, which has a ring around it; "" = none
+  std::string note{};                             ///< beside the sample, which has a ring around it; "" = none
   bool hollow = false;                            ///< a ring in place of a disc
   bool triangle = false;                          ///< a triangle around it, see PlotData::triangles
   PlotTarget target;
@@ -75,7 +75,7 @@ struct PlotData {
   PlotAxis x, y;
   std::vector<PlotSeries> series;
   std::vector<PlotShade> shades;
-  std::vector<std::string> remarks{};  ///< stand before the legend: how many samples there are, what is not shown
+  std::vector<std::string> remarks{};  ///< precede the legend: how many samples there are, what is not shown
   std::string noValue;                 ///< what the crosses at the top stand for, for the legend: "missed highlight"
   std::string triangles{};             ///< the same of triangles: "spurious highlight"
 };

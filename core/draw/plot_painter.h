@@ -21,7 +21,7 @@ struct PlotMarks {
 };
 
 /// Paints a plot over width x height device px, background included: title and legend at the top, then axes, grid, tinted ranges,
-/// series, error bars, crosses and marks; or a dial; or the sentence that stands in its place. In a low picture the legend ends
+/// series, error bars, crosses and marks; or a dial; or the sentence that replaces it. In a low picture the legend ends
 /// early, with dots. Every sample has its label as a hint.
 /// @param shown   the part of the range to show
 /// @return where the values lie; nothing where no plot was drawn

@@ -11,7 +11,7 @@
 
 namespace glint::draw {
 
-// What has no partner: observed highlights that a model misses, and predicted ones that nobody saw (spurious).
+// What has no partner: observed highlights that a model misses, and predicted ones that were not observed (spurious).
 
 /// Whether a predicted highlight of a comparison is spurious. Not outside of the image, or where a person ignores a highlight.
 bool isSpurious(const FrameComparison& comparison, int predicted);

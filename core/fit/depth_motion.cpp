@@ -72,7 +72,7 @@ std::shared_ptr<const Image> PanelDepths::image(int frame) const {
     if (Outcome<std::optional<Image>> depth = readDepth(scene_.frames[static_cast<std::size_t>(frame)], policy_); depth && *depth)
       read = std::make_shared<const Image>(*std::move(*depth));
   } catch (const InputError&) {
-    // Whoever needs the depth map says so.
+    // The user of the depth map reports it.
   }
   const std::lock_guard<std::mutex> lock(mutex_);
   recent_.emplace_front(frame, read);

@@ -35,7 +35,7 @@ class PanelDepths {
 /// motionVerdicts() of one frame; loads its surface only if it can matter. If that is the frame's own depth map, a view answers
 /// about a spot only if its own depth map has the same point: then poses and depth agree that this part of the object did not
 /// move. Names spots that no other depth map has (MotionVerdict::apart): the object bends or moves, or poses and depth disagree.
-/// @param surface  of the frame; null = nothing is said
+/// @param surface  of the frame; null = no verdicts
 std::vector<MotionVerdict> judgedByMotion(const Scene& scene, int frame, const std::vector<int>& panel,
                                           const std::vector<FrameEvidence>& evidence,
                                           const std::function<std::shared_ptr<const Surface>()>& surface,

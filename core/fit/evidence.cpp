@@ -159,7 +159,7 @@ FrameEvidence gatherEvidence(const Scene& scene, int index, FrameSource source, 
     }
     for (Highlight& h : *found) {
       if (std::optional<Failure> failure = toIdealPixels(h, frame.camera))
-        evidence.failure = std::move(failure);  // stands only when no other highlight is left
+        evidence.failure = std::move(failure);  // kept only if no other highlight is left
       else
         evidence.highlights.push_back(std::move(h));
     }

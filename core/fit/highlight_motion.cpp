@@ -186,7 +186,7 @@ bool Judge::isExpected(const std::vector<Highlight>& candidates, const Place& pl
   if (h_.clipped || candidates.empty()) return true;
   double strongest = 0;
   for (const Highlight& c : candidates) {
-    if (c.clipped) return false;  // nobody knows how strong it is
+    if (c.clipped) return false;  // its strength is unknown
     strongest = std::max(strongest, c.peakValue);
   }
   return h_.peakValue >= kFoundAbove * level_ * strongest;
@@ -298,7 +298,7 @@ MotionVerdict Judge::verdict(const std::vector<Answer>& answers) const {
   return v;
 }
 
-/// Whether it may be paint, if all views that have not answered yet speak for it.
+/// Whether it may be paint, if all views that have not answered yet suggest it.
 bool mayBeTexture(const std::vector<Answer>& answers, int waiting) {
   const int away = static_cast<int>(sidesWith(answers, Answer::Says::Away).size());
   const int there = waiting + static_cast<int>(std::count_if(answers.begin(), answers.end(),

@@ -19,7 +19,7 @@ MotionUse motionUse(const Settings& settings);
 /// What other views say about a bright spot: paint stays on its surface point, a highlight moves over it with the camera.
 struct MotionVerdict {
   enum class Kind {
-    Unremarkable,  ///< it is elsewhere in other views, or nothing speaks for paint
+    Unremarkable,  ///< it is elsewhere in other views, or nothing suggests paint
     CannotTell,    ///< it stays on its point, but a highlight might do so too
     Texture,       ///< it stays on its point where a highlight would have left it
     Waiting        ///< views that were not searched yet may decide
@@ -53,7 +53,7 @@ std::vector<std::vector<int>> motionPanels(const Scene& scene, const SurfaceCach
 /// @param frame     whose highlights are judged; spots that the image or the silhouette cuts, or that are seen edge-on, are not
 /// @param panel     see motionPanels()
 /// @param evidence  of all frames, as detected; `frame` < 0 = not searched yet
-/// @param surface   that these frames see; null = nothing is said
+/// @param surface   that these frames see; null = no verdicts
 /// @param depths    where that is the frame's own depth map: views whose depth maps do not have the spot's point answer nothing
 /// @return  one for each highlight of the frame, in their order
 std::vector<MotionVerdict> motionVerdicts(const Scene& scene, int frame, const std::vector<int>& panel,

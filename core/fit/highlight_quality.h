@@ -14,7 +14,7 @@
 namespace glint {
 
 /// What a frame's pixels and surface say about its highlights beside their contours.
-/// @param surface  that the frame sees; null = not known: nothing is said of silhouettes and mirrored rays
+/// @param surface  that the frame sees; null = unknown: no flags about silhouettes and mirrored rays
 /// @param blur     of the frame, where its edges show one
 /// @return  one for each highlight, in their order
 std::vector<HighlightQuality> highlightQualities(const Frame& frame, const LinearPixels& pixels, const Surface* surface,

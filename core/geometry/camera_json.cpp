@@ -60,7 +60,7 @@ LensModel readLensModel(const JsonNode& node) {
   node.fail("'" + name + "' is not supported, only " + known);
 }
 
-/// "model" and "distortion" of a camera; ideal where neither stands.
+/// "model" and "distortion" of a camera; ideal without both.
 Lens readLens(const JsonNode& camera) {
   Lens lens;
   if (const auto model = camera.find("model")) lens.model = readLensModel(*model);

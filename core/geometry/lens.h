@@ -10,7 +10,7 @@
 
 namespace glint {
 
-/// How a lens bends rays, by COLMAP's names; the parameters stand in COLMAP's order after cx cy. A point of the camera's frame at
+/// How a lens bends rays, by COLMAP's names; the parameters have COLMAP's order after cx cy. A point of the camera's frame at
 /// (x, y, 1) is measured at (u, v), both without K; r^2 = x^2 + y^2, theta = atan(r). Without parameters (all 0) the fisheye
 /// models measure theta (x, y) / r, the others (x, y).
 enum class LensModel {

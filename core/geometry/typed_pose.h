@@ -5,7 +5,7 @@
 
 namespace glint {
 
-/// What a 3x3 matrix that somebody stored as a rotation is.
+/// What kind of matrix was stored as a 3x3 rotation.
 enum class TypedRotation { Exact, Repaired, NotARotation, Mirrored };
 
 /// A rigid pose x -> R x + t from a matrix and a shift that were printed with few digits.

@@ -40,7 +40,7 @@ constexpr double kFirstDamping = 1e-3, kLeastDamping = 1e-9, kMostDamping = 1e7;
 constexpr double kDamped = 5;                                                     // factor from step to step
 constexpr double kConverged = 1e-7;  // of the cost: log K then changes by far less than its sigma
 
-// When a peak is relied on.
+// When a peak is trusted.
 constexpr double kMostLogSigma = 0.2;  // a level known to a fifth; worse is no better than the clip value
 constexpr double kMostShape = 2;       // p: flatter tops are a lamp's image in a mirror, whose height no wall shows
 constexpr double kLeastGrown = 1.6;    // of the areas from the highest to the lowest level: a Gaussian clipped at a thirtieth

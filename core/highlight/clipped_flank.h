@@ -48,7 +48,7 @@ struct ClippedFlank {
   double clipHeight = 0;  ///< lowest value above the background at which a channel is clipped: what lies below it is whole
   std::vector<FlankLevel> levels;  ///< highest first
   std::optional<FlankPeak> peak;   ///< where the levels tell one
-  std::string reason;              ///< in words: why they tell none, or why it is not relied on
+  std::string reason;              ///< in words: why they tell no peak, or why it is not trusted
   bool trusted = false;            ///< the peak is known well enough to set the level of contours
   double levelAsked = 0.5;
   double contourValue = 0;     ///< at which the highlight's contour was taken, above the background
@@ -56,7 +56,7 @@ struct ClippedFlank {
   double backgroundSigma = 0;  ///< of the background that was taken off
   /// How far the contour may be from that at the level asked for (standard deviation, px). Outside of the core: what the
   /// uncertainties of peak and background move it. Else the contour is too large: by the distance to where the profile has the
-  /// level, and its uncertainty; where no peak is relied on, anything up to the whole radius is as likely.
+  /// level, and its uncertainty; without a trusted peak, anything up to the whole radius is as likely.
   double sigmaPx = 0;
 };
 
@@ -81,7 +81,7 @@ struct FlankView {
 /// belong to one highlight (nested, alike, growing no faster than a lobe's, on usable pixels, in view). Estimates the peak.
 ClippedFlank traceFlank(const FlankView& view);
 
-/// The contour at `level` of the estimated peak lies outside of the clipped core, and the peak is relied on.
+/// The contour at `level` of the estimated peak lies outside of the clipped core, and the peak is trusted.
 bool reachesLevel(const ClippedFlank& flank, double level);
 
 /// Notes at which value the contour was taken, and what the peak's uncertainty does to it.

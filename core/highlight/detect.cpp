@@ -349,7 +349,7 @@ class Detector {
       if (!boxes[label].empty()) candidates_.push_back(candidateOf(static_cast<int>(label), boxes[label]).first);
   }
 
-  /// Every peak with a contour of its own, strongest first: what stands alone at some value is its own region at its own level.
+  /// Every peak with a contour of its own, strongest first: one that is separate at some value has its own region at its level.
   std::optional<Failure> findSeparately() {
     const std::optional<double> top = brightestMedian();
     if (!top) return Failure{Reason::NoHighlight, "nothing rises above the background"};

@@ -57,7 +57,7 @@ struct Group {
 };
 
 /// Whether two frames are one photograph given twice: the same camera, surface and highlights, to the last bit. Noise never
-/// repeats itself like that, so the second one is no further observation: it would only take weight from priors, and stand in for
+/// repeats itself like that, so the second one is no further observation: it would only take weight from priors, and replace
 /// the first one where that is left out to judge a choice.
 bool sameObservation(const Inspection& r, int frame, int other) {
   if (r.train.perSurface && r.surfaces->keyOf(frame) != r.surfaces->keyOf(other)) return false;  // they serve fits of their own

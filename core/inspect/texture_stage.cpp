@@ -19,7 +19,7 @@ bool waits(const std::vector<MotionVerdict>& verdicts) {
                      [](const MotionVerdict& v) { return v.kind == MotionVerdict::Kind::Waiting; });
 }
 
-/// Null where it cannot be read: whoever needs it says so.
+/// Null if it cannot be read: its user reports that.
 std::shared_ptr<const Surface> surfaceIfAny(const SurfaceOfFrame& surfaceOf, int frame) {
   try {
     return surfaceOf(frame);

@@ -214,7 +214,7 @@ double heightOn(const OutlineModel& model, const std::vector<BallEdge>& edges, d
   return steps.empty() ? 0.0 : upperMedian(steps);
 }
 
-/// What all edges have wrong together. A step beside light that rises or falls up to the rim, as in what a ball mirrors, seems to
+/// The error that all edges share. A step beside light that rises or falls up to the rim, as in what a ball mirrors, seems to
 /// lie slope / step sigma^2 aside, sigma the whole blur: with twice the blur of ours by how much more, and the heights tell
 /// sigma. Grey levels are whole numbers: a faint edge is known to the width of one level.
 Eigen::Matrix3d commonErrors(const OutlineModel& model, const std::vector<Image>& linear, const std::vector<BallEdge>& edges,

@@ -345,7 +345,7 @@ ShotReader::Seen ShotReader::highlightsOf(const Shot& shot) {
 
 /// What makes it doubtful that a reflection which was not seen to move is the lamp's; "" = nothing does.
 std::string ShotReader::doubtOf(std::size_t k, const std::vector<LampAnswer>& lamps) const {
-  // A lamp that appears 20 degrees wide stands as near as three of its own widths; a window is seldom below 5. An ellipse fills
+  // A lamp that appears 20 degrees wide is as near as three of its own widths; a window is seldom below 5. An ellipse fills
   // pi / 4 of its rectangle: well more is a rectangle, less has streaks.
   constexpr double kWideDeg = 20, kShapedDeg = 5, kElongated = 1.5, kRectangular = 0.87, kCompact = 0.72;
   const auto at = [&](const Pixel& place, const Eigen::Vector3d& towards) {
@@ -478,7 +478,7 @@ std::optional<Camera> cameraOfExif(const BallShots& shots, double& mm) {
       mm = *focal;
       camera = filmCamera(mm, static_cast<int>(header.width), static_cast<int>(header.height));
     } catch (const InputError&) {
-      return std::nullopt;  // it is said where the photograph is looked at
+      return std::nullopt;  // the search of the photograph reports it
     }
   }
   return camera;

@@ -37,13 +37,13 @@ struct BallShots {
   std::vector<NamedBall> balls;
   std::vector<Shot> shots;  ///< by name
   CameraResponse response;  ///< of all photographs
-  /// Folders beside those of the balls with photographs of the same names: those of another ball that nobody outlined.
+  /// Folders beside those of the balls with photographs of the same names: those of another ball without an outline.
   std::vector<std::string> leftOut;
   std::vector<std::filesystem::path> files() const;
 };
 
 /// The photographs in the folders that the balls name, by the endings of their names; `input` where a ball names none. A folder
-/// is looked for as it stands, and in `input`.
+/// is looked for as named, and in `input`.
 /// @param exclude  a frame SPEC over the shots' ids; "" = none
 /// InputError: a folder is missing, has no photographs or could be two; a ball is named twice; `exclude`.
 BallShots ballShotsIn(const std::filesystem::path& input, const std::vector<NamedBall>& balls, const std::string& exclude);

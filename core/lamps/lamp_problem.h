@@ -52,7 +52,7 @@ class LampProblem {
     Eigen::MatrixXd redundant;  ///< residuals x redundant equations: e = redundant^T residuals, columns of length 1
   };
   std::optional<Eliminated> eliminated(const LampUnknowns& lamp) const;
-  /// Whether two balls with peaks stand apart. If cut-outs have no places in the shot, all balls stand in one place.
+  /// Whether two balls with peaks stand apart. If cut-outs have no places in the shot, all balls are in one place.
   bool standApart(const LampUnknowns& lamp) const;
   /// Whether the peaks say anything about the lamp's distance, beyond round-off.
   bool tellsDistance(const LampUnknowns& lamp) const;

@@ -13,7 +13,7 @@
 // A mirror ball before one fixed camera. Axes are the camera's: x right, y down, z forward.
 namespace glint {
 
-/// How the balls are seen. With a camera, which stands at the origin, lengths are in radii of the ball. Without one the rays are
+/// How the balls are seen. With a camera, which is at the origin, lengths are in radii of the ball. Without one the rays are
 /// parallel to z and lengths are pixels: x and y of a point are its pixel.
 struct BallProjection {
   std::optional<Camera> camera;  ///< ideal pixels; pose and image size do not count
@@ -56,7 +56,7 @@ struct BallParameters {
 Outcome<BallParameters> ballParameters(const BallProjection& view, const RefinedOutline& outline);
 
 /// Points of the outline of such a ball, ideal px, once around: the circle, or where rays from the camera touch the ball.
-/// @param points  at least 3. Empty where the camera stands in the ball or a ray that touches it does not come forward.
+/// @param points  at least 3. Empty if the camera is in the ball or a ray that touches it does not come forward.
 std::vector<Pixel> outlinePixels(const BallProjection& view, const Eigen::Vector3d& parameters, int points);
 
 /// What the reflection law says of one peak.

@@ -232,7 +232,7 @@ class SceneLamp {
     a_.remarks = fit->remarks;
     a_.degreesOfFreedom = fit->uncertainty->degreesOfFreedom;
     const auto near = std::make_shared<const ModelFit>(*fit);
-    // Contours instead of pixels: what views have wrong moves both, and a fit takes a twentieth of the time.
+    // Contours instead of pixels: errors of views move both, and a fit takes a twentieth of the time.
     Settings ofContours = settings;
     if (settings.text("fit.evidence") != "levels") ofContours.set("fit.evidence", std::string("contours"));
     const auto again = [&](const std::vector<bool>& kept) -> std::optional<Light> {

@@ -55,7 +55,7 @@ std::string shellWord(const std::string& text) {
 Outcome<std::string> commandOf(const Scene& scene, const InspectionRequest& q) {
   if (!q.whatIf.none()) return Failure{Reason::NotSupported, "a what-if has no flag; save a session and use it as INPUT"};
   const InspectionRequest usual;
-  // The command is pasted into a shell that stands in another folder.
+  // The command is pasted into a shell in another folder.
   const auto absolute = [](const std::filesystem::path& path) {
     return std::filesystem::absolute(path).lexically_normal().string();
   };

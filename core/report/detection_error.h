@@ -8,7 +8,7 @@
 
 namespace glint {
 
-/// How far the contours that the frames' own pixels gave lie from the truth that `--truth` names: whoever trusts an error against
+/// How far the contours that the frames' own pixels gave lie from the truth that `--truth` names: trusting an error against
 /// own detection must know this one.
 struct DetectionError {
   Statistic contourErrorPct, contourErrorPx;  ///< over highlights that overlap a true one, all frames

@@ -92,7 +92,7 @@ void addWarnings(const Inspection& inspection, const std::string& best, std::vec
   }
 }
 
-/// What the numbers stand on: the frames and what is taken for the truth.
+/// What the numbers rest on: the frames and what is taken for the truth.
 void addDoubtsOfTheRun(const Inspection& inspection, std::vector<std::string>& doubts) {
   const HeldOutFrames heldOut = heldOutFrames(inspection);
   if (inspection.train.perSurface)

@@ -69,7 +69,7 @@ std::string turnedByViewers(const BallShots& shots) {
       const int orientation = exifOrientation(readFile(file, Limit::ImageMegabytes));
       if (orientation != 1 && turned++ == 0) first = orientation;
     } catch (const InputError&) {
-      continue;  // it is said where the photograph is looked at
+      continue;  // the search of the photograph reports it
     }
   }
   if (turned == 0) return "";

@@ -21,7 +21,7 @@ inline constexpr int kMostSharedFrames = 300;
 
 /// One HTML file that needs no network: the scene in 3D, each photograph with its contours, the errors of `evaluationJson`
 /// (without times, so that equal data give equal bytes), and the steps of a lesson. Everything that comes from files is data:
-/// JSON in which no mark-up can stand. The page's policy forbids every load.
+/// JSON without mark-up. The page's policy forbids every load.
 /// @param report  what `evaluationJson` takes
 /// @return the whole file. std::invalid_argument for a frame that does not exist. Stopped.
 std::string sharePage(const Inspection& inspection, const ReportContext& report, const ShareChoice& choice = {},

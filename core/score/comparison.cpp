@@ -97,7 +97,7 @@ std::vector<Polyline> addSpurious(const FrameEvidence& evidence, const Camera& c
   for (std::size_t p = 0; p < predicted.size(); ++p) {
     if (!used[p] && isIgnored(evidence, c.light, predicted[p])) continue;
     compared.push_back(predicted[p]);
-    if (used[p] || clippedToImage(c.prediction.highlights()[p].contour, camera).points.empty()) continue;  // nobody could see it
+    if (used[p] || clippedToImage(c.prediction.highlights()[p].contour, camera).points.empty()) continue;  // it could not be seen
     FrameComparison::Row row;
     row.predicted = static_cast<int>(p);
     c.rows.push_back(row);

@@ -69,7 +69,7 @@ class Search {
   void expect(std::size_t m);
   void choose(std::size_t m, double mostPct);
   std::string whereText() const;
-  /// What the choice stands on once all models were tried.
+  /// The reasons for the choice once all models were tried.
   struct Decision {
     std::size_t best = 0;                ///< least ranked error, and the surface does not contradict it
     std::vector<std::size_t> plausible;  ///< as good in leave-one-out, from simple to rich

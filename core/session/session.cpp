@@ -47,7 +47,7 @@ void migrateFromBeforePixels(const JsonNode& request, Settings& settings) {
   if (!stored->find("fit.most_residual")) settings.set("fit.most_residual", 10.0);  // no fit was refused for what it left
 }
 
-/// Before the fit had its own directions and walk tolerance, it took those of the prediction. A setting that stands at its
+/// Before the fit had its own directions and walk tolerance, it took those of the prediction. A setting with its
 /// default stays at it.
 void giveFitItsWalks(Settings& settings) {
   for (const auto& [of, from] :

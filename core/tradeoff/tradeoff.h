@@ -73,7 +73,7 @@ Tradeoff readTradeoff(const JsonNode& node);
 std::string trainedOn(const Tradeoff& tradeoff);
 
 // One number is the error of a setting wherever settings are compared: rankedErrorPct, `error %`. The mean over the highlights
-// that were found, which `evaluate` prints, stands beside it under its own name.
+// that were found, which `evaluate` prints, is listed beside it under its own name.
 /// One sentence that says what both are.
 extern const char* const kTradeoffErrors;
 /// "29 of 54": highlights that were found, of those observed.

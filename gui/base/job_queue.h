@@ -28,7 +28,7 @@ class JobEnd {
  public:
   bool stopped = false;    ///< its work threw Stopped, or it was stopped before it began
   bool overtaken = false;  ///< meanwhile something newer was asked for
-  /// What its work threw, as one line; "" = nothing. Where nobody asks for it, unexpected() tells it: no failure gets lost.
+  /// What its work threw, as one line; "" = nothing. If nothing asks for it, unexpected() reports it: no failure gets lost.
   const QString& failure() const { return asked_ = true, failure_; }
 
  private:
@@ -50,7 +50,7 @@ enum class Asks {
   Lasting   ///< as AsWell, and nothing that is asked for later overtakes or stops it
 };
 
-/// What a job knows, on its thread, of who asked for it.
+/// What a job knows, on its thread, of its requester.
 class JobToken {
  public:
   bool stopped() const { return job_->stopped; }

@@ -20,10 +20,10 @@ struct PictureParts {
 
 /// A painted widget tells screen readers what it is and what it shows in words, which would otherwise hear of an empty area.
 /// @param name   what it is, unless the widget has an accessible name of its own
-/// @param words  what it shows by now; asked for when somebody listens, never else
+/// @param words  what it shows by now; asked for only while a screen reader listens
 void describePicture(QWidget* picture, const QString& name, std::function<QString()> words, PictureParts parts = {});
 
-/// Another part of the picture is selected: said where somebody listens and the picture has the keyboard.
+/// Another part of the picture is selected: said if a screen reader listens and the picture has the keyboard.
 void announceSelection(QWidget* picture);
 
 }  // namespace glint::gui

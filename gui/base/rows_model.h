@@ -18,7 +18,7 @@ class RowsModel : public QAbstractTableModel {
     QVariant sort = {};  ///< invalid = by the text
     QColor colour = {};  ///< invalid = the usual one
     QString tip = {};
-    bool number = false;  ///< stands on the right
+    bool number = false;  ///< aligned right
   };
   struct Row {
     std::vector<Cell> cells;

@@ -31,7 +31,7 @@ class VtkCanvas : public QWidget {
   vtkGenericOpenGLRenderWindow* renderWindow() const { return window_; }
   /// It has an OpenGL context; not before it was first shown, and nowhere without OpenGL.
   bool ready() const { return adapter_ != nullptr; }
-  /// Draws at once, also before the first turn; for who needs the picture or its coordinates now.
+  /// Draws at once, also before the first turn; if the picture or its coordinates are needed now.
   void renderNow();
 
  protected:

@@ -13,7 +13,7 @@ class Document;
 /// What this program keeps for itself: autosaves and locks of sessions that are open. Both folders may not exist yet.
 QString recoveryFolder();
 QString locksFolder();
-/// Lies in recoveryFolder(): only this program writes there, so that what stands in it may be believed.
+/// Lies in recoveryFolder(): only this program writes there, so that its content can be trusted.
 bool isOwnRecovery(const QString& file);
 /// Lessons and sessions that came with the program, installed or in its source tree: read-only, whatever the file system says.
 bool isShipped(const QString& file);

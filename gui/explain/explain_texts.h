@@ -40,7 +40,7 @@ struct ExplainTexts {
 const ExplainTexts& explainTexts();
 
 /// The values of a number with its unit, as HTML without a break: what is smaller than counts is "0 within rounding", short
-/// lengths are in mm, and no digit stands beyond what counts.
+/// lengths are in mm, and no digit is beyond what counts.
 QString valuesHtml(const ExplainNumber& number);
 
 }  // namespace glint::gui

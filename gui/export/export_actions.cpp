@@ -217,7 +217,7 @@ void ExportActions::writeLabels(const QString& folder) {
   });
 }
 
-/// A command is pasted into a shell that may stand anywhere.
+/// A command is pasted into a shell in any folder.
 std::string ExportActions::sessionPath() const { return QFileInfo(document_.sessionFile()).absoluteFilePath().toStdString(); }
 
 Outcome<std::string> ExportActions::command() const {

@@ -21,7 +21,7 @@ struct FigureLook {
   bool transparent = false;
   bool dark = true;      ///< bright lines and texts, for a dark background or page
   int dpi = 96;          ///< px per inch of paper
-  QString caption = {};  ///< stands below the figure, within `size`; "" = none
+  QString caption = {};  ///< below the figure, within `size`; "" = none
 };
 
 /// Asks for the size (px, or mm at a resolution) and the background of a picture or plot. Remembers the last answer of each kind,
@@ -36,7 +36,7 @@ class FigureDialog : public QDialog {
   FigureLook look() const;
   /// Serves pictures that cannot have a transparent background.
   void setOpaque();
-  /// A caption for who wants one; the field stays empty.
+  /// Offers a caption; the field stays empty.
   void proposeCaption(const QString& caption);
   void accept() override;
 

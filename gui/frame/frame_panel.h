@@ -45,7 +45,7 @@ class FramePanel : public QWidget {
   FrameCanvas* canvas() const { return canvas_; }
   HighlightEdits* edits() const { return edits_; }
   FrameCanvas* secondCanvas() const { return second_; }
-  const PairBar& pair() const { return *pair_; }  ///< what stands beside the selected frame
+  const PairBar& pair() const { return *pair_; }  ///< the frame beside the selected one
   PhotoLoader* loader() { return &loader_; }
   RetextureBar* retexture() { return retexture_; }
   /// Something is still being read, developed or waiting to be drawn.

@@ -36,7 +36,7 @@ class RetextureBar : public QWidget {
   bool on() const;
   /// Something is being computed or read for it.
   bool busy() const { return refresh_.isActive() || maker_.busy(); }
-  /// What is said about the picture; the owner places it below the bar.
+  /// The text about the picture; the owner places it below the bar.
   QWidget* words() const;
   void setMostWords(int height);  ///< px; the rest scrolls
   /// The picture of the state on screen; null without one, or while a newer one is on its way.
@@ -58,7 +58,7 @@ class RetextureBar : public QWidget {
   RetextureRequest request() const;
   void chooseFile(const QString& base);
   void allow();
-  /// Absolute; OutsidePath where a session names it and nobody allowed it; InputError.
+  /// Absolute; OutsidePath if a session names it and the user did not allow it; InputError.
   std::string fileOf(const QString& base) const;
   void refresh();
   void showControls();

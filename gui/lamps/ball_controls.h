@@ -29,7 +29,7 @@ class BallControls : public QWidget {
   void setPhotographSize(QSize size) { size_ = size; }
   /// Camera, radius and outlines of this question; its balls are the outlines'.
   void show(const BallQuestion& question);
-  /// Camera, radius and outlines as typed. Where one of them cannot be taken: why, which is said below its field, too; else "".
+  /// Camera, radius and outlines as typed. If one is wrong: why, which its field shows, too; else "".
   QString fill(BallQuestion& question);
 
  signals:

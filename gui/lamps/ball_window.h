@@ -39,7 +39,7 @@ class BallWindow : public QWidget {
   BallResults* results() const { return results_; }
   /// The newest; null before the first.
   std::shared_ptr<const LampsReport> report() const { return report_; }
-  /// What would be asked now. False, and it is said where, where something typed cannot be taken.
+  /// What would be asked now. False, and a message says where, if something typed is wrong.
   bool question(BallQuestion& question);
 
  public slots:

@@ -19,7 +19,7 @@ class LampTable : public QTableView {
   explicit LampTable(QWidget* parent = nullptr);
   /// @param report  null = no rows
   void show(const LampsReport* report);
-  /// The lamp is an index into the report's. -1 = none. Tells nobody.
+  /// The lamp is an index into the report's. -1 = none. Emits nothing.
   void setCurrentLamp(int lamp);
   int currentLamp() const;
 

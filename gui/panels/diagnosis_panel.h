@@ -25,7 +25,7 @@ namespace glint::gui {
 
 /// What is wrong: models without an answer with their reasons, frames whose highlights are missed or far off; and, when asked,
 /// what to do about it, as `glint diagnose` says it: one verdict for the model on screen, at most three remedies, and folded
-/// below what they stand on. A click on a frame or highlight selects it; "Try" makes the change as one step of undo.
+/// below their evidence. A click on a frame or highlight selects it; "Try" makes the change as one step of undo.
 class DiagnosisPanel : public QWidget {
   Q_OBJECT
  public:

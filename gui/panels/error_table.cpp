@@ -39,10 +39,10 @@ namespace glint::gui {
 
 namespace {
 constexpr int kSearchWidth = 90, kChangeWidth = 110;  // px
-constexpr int kHeadGapPx = 6;                         // between what stands above the table
+constexpr int kHeadGapPx = 6;                         // between the texts above the table
 constexpr int kLeastLetters = 6;                      // of a choice of rows; its list shows the rest
 constexpr int kColumnGapPx = 5;                       // of the summary
-constexpr double kWorstPct = 1000;                    // ten times the highlight's size: how far astray beyond that says nothing
+constexpr double kWorstPct = 1000;                    // ten times the highlight's size: how wrong beyond that says nothing
 constexpr int kIou = 4, kMissed = 6, kSpurious = 7;   // columns of its values
 // What the errors leave out comes before their tails: without it, a mean over few matched highlights looks too good. The last
 // ones are left out first.
@@ -103,7 +103,7 @@ ErrorTable::ErrorTable(Document& document, QWidget* parent) : QWidget(parent), d
                     : i == ErrorModel::Difference   ? kChangeWidth
                                                     : kNumberWidth,
                     fontMetrics().horizontalAdvance(model_->headerData(i, Qt::Horizontal, Qt::DisplayRole).toString()) + kArrow));
-  // Why there is no number stands beside "failed", not out of sight behind a row of dashes.
+  // The reason for a missing number is beside "failed", not out of sight behind a row of dashes.
   view_->horizontalHeader()->moveSection(ErrorModel::ReasonText, ErrorModel::Status + 1);
   // The errors themselves are in sight without scrolling.
   for (const int column : {ErrorModel::Difference, ErrorModel::Pinned, ErrorModel::ErrorPx, ErrorModel::ErrorPct})
@@ -282,7 +282,7 @@ void ErrorTable::showSummary() {
         s.poor ? toQString(s.reason) : QString()};
     if (s.answered) {
       const Statistic& e = s.contourErrorPct;
-      // As many decimals as the table below, so that points stand under points.
+      // As many decimals as the table below, so that points are under points.
       const auto fixed = [](double v, int decimals) {
         return !std::isfinite(v) ? QStringLiteral("–")
                : v > kWorstPct   ? QStringLiteral("> 1000")

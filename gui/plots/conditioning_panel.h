@@ -67,7 +67,7 @@ class ConditioningPanel : public QWidget {
   void showLights();
   /// Shows the columns of this light, if there are any.
   void follow(const std::string& light);
-  /// The unit that all chips of a row have stands in its name, at any width and whatever the numbers are, so that it does not
+  /// A row's name has the unit of its chips, at any width and whatever the numbers are, so that it does not
   /// move.
   void placeUnit(int row);
   void explain(const Conditioning& c, const Finding& f);

@@ -356,7 +356,7 @@ void PlotsPanel::saveAs(const char* ending) {
   if (document_.shownStale() && kind(current_) != "tradeoff") return void(emit problem(notUpToDate()));
   const QString type = QString::fromLatin1(ending);
   std::optional<FigureLook> look;
-  if (type != QLatin1String("csv")) {  // numbers have no size; pictures go to light pages unless somebody asks for something else
+  if (type != QLatin1String("csv")) {  // numbers have no size; pictures go to light pages unless the user asks for something else
     const PlotCanvas* canvas = panes_[std::size_t(current_)].canvas;
     const QSize shown = QSize(std::max(320, canvas->width()), std::max(200, canvas->height())) * devicePixelRatioF();
     FigureDialog dialog(tr("Plot as picture"), QStringLiteral("plot"), shown, this);

@@ -48,7 +48,7 @@ class SceneViews : public QWidget {
   /// See behindChanged().
   bool behind() const { return behind_; }
   bool busy() const { return photographs_->busy() || renderPending_; }
-  /// Where every view stands, shown or not; linked ones all where the active one does.
+  /// The place of every view, shown or not; linked ones all where the active one does.
   std::vector<viz::ViewPoint> places() const;
   void setPlaces(const std::vector<viz::ViewPoint>& places);
 
@@ -116,7 +116,7 @@ class SceneViews : public QWidget {
   std::shared_ptr<viz::LayerCache> cache_;
   PhotographStore* photographs_;
   std::array<std::unique_ptr<viz::SceneView>, kMostSceneViews> views_;
-  std::array<bool, kMostSceneViews> own_{};  ///< a view that is not shown comes back where it stands
+  std::array<bool, kMostSceneViews> own_{};  ///< a view that is not shown comes back to its place
   std::shared_ptr<const Inspection> inspection_;
   std::shared_ptr<const std::vector<LampAnswer>> lamps_;
   std::shared_ptr<const std::vector<viz::DrawnRuns>> runs_;

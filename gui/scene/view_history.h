@@ -20,7 +20,7 @@ class ViewHistory {
   explicit ViewHistory(const QUndoStack* stack) : stack_(stack) { forget(); }
   /// Another scene: its history starts here.
   void forget();
-  /// A step arranges the views otherwise; call before they move. @param places  nothing where they stand nowhere yet.
+  /// A step arranges the views otherwise; call before they move. @param places  nothing if they have no place yet.
   void leave(const std::optional<Places>& places);
   /// The stack's index has changed. Where the views go back to; nothing after a new step, or one that arranged nothing.
   std::optional<Places> arrive();

@@ -114,7 +114,7 @@ void TimelineStrip::paintErrors(QPainter& painter) {
   painter.setRenderHint(QPainter::Antialiasing);
   paintMissed(painter);
   painter.setRenderHint(QPainter::Antialiasing, false);
-  const double left = c.left() - kBesideChart;  // of what stands beside the chart
+  const double left = c.left() - kBesideChart;  // of the texts beside the chart
   c.setTop(missedRow().bottom());
   if (missedRow().height() > 0) {
     painter.setPen(QPen(palette().color(QPalette::Mid), 1, Qt::DotLine));

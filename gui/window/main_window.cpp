@@ -363,7 +363,7 @@ void MainWindow::buildMenus() {
                  exports_->longJob()->cancel();
                },
                {{Qt::Key_Escape}, "stop"});
-  // What has a button in a panel is found by who looks for it in menus or the palette, too.
+  // Actions with a button in a panel are in menus and the palette, too.
   const auto press = [this](const char* button) {
     return [this, button] { findChild<QAbstractButton*>(QLatin1String(button))->click(); };
   };

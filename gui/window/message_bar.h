@@ -47,7 +47,7 @@ class MessageBar : public QWidget {
   QLabel* label_;
   QList<QWidget*> buttons_;
   bool notice_ = false;
-  std::optional<std::pair<QString, Answers>> offer_;  ///< that nobody has answered or closed
+  std::optional<std::pair<QString, Answers>> offer_;  ///< not yet answered or closed
   bool offerShown_ = false;
 };
 

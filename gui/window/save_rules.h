@@ -11,8 +11,8 @@ class QWidget;
 
 namespace glint::gui {
 
-/// Which session files may be replaced: the one that was opened, as long as nobody else has changed it; any other session after a
-/// question; nothing else, and nothing that came with the program.
+/// Which session files may be replaced: the one that was opened, as long as no other program has changed it; any other session
+/// after a question; nothing else, and nothing that came with the program.
 class SaveRules {
  public:
   enum class Answer { Write, SaveAs, Cancel };

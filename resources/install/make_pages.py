@@ -20,7 +20,7 @@ def version_of(program):
 
 
 def roff(text):
-    """Text as it stands, in the page's fixed layout."""
+    """Text as written, in the page's fixed layout."""
     return "\n".join(r"\&" + line if line[:1] in ".'" else line
                      for line in text.replace("\\", r"\e").replace("-", r"\-").splitlines())
 

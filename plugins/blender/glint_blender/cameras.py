@@ -59,7 +59,7 @@ def exact_entry(scene, camera):
         if entry and same_state(entry["state"], state_of(scene, evaluated(scene, camera))):
             return entry
     except (ValueError, KeyError, TypeError, AttributeError):
-        pass  # somebody has edited the property: the camera that Blender shows counts
+        pass  # the property was edited: the camera that Blender shows counts
     return None
 
 

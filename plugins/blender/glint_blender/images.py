@@ -39,7 +39,7 @@ def may_copy(path):
 
 
 class GLINT_OT_trust_pictures(bpy.types.Operator):
-    """Copy pictures that this .blend file names outside of its folder, until Blender ends. A .blend file from somebody else may name any picture"""
+    """Copy pictures that this .blend file names outside of its folder, until Blender ends. A .blend file of others may name any picture"""
     bl_idname = "glint.trust_pictures"
     bl_label = "Allow Pictures from Other Folders"
 

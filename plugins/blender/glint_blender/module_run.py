@@ -41,7 +41,7 @@ def predictions_of(inspection, models):
 
 def write(path, text):
     """A file, whole or not at all."""
-    # In a folder that is new and this user's alone: nobody has put a link in its place.
+    # In a folder that is new and this user's alone: no one has put a link in its place.
     with tempfile.TemporaryDirectory(prefix=".glint-", suffix=".tmp", dir=os.path.dirname(path)) as work:
         unfinished = os.path.join(work, os.path.basename(path))
         with open(unfinished, "w", encoding="utf-8") as file:

@@ -11,7 +11,7 @@ from nbconvert.preprocessors import ExecutePreprocessor
 
 
 def cells_of(script):
-    """The cells of a script in "percent" form; what stands before the first is not part of the notebook."""
+    """The cells of a script in "percent" form; what precedes the first is not part of the notebook."""
     for kind, body in re.findall(r"^# %%( \[markdown\])?\n(.*?)(?=^# %%|\Z)", script, re.M | re.S):
         if kind:
             yield nbformat.v4.new_markdown_cell(re.sub(r"^# ?", "", body, flags=re.M).strip())
