@@ -188,7 +188,7 @@ std::vector<std::string> namesOf(const std::vector<Command>& commands) {
   return names;
 }
 
-/// Which flag of the command was meant by the first one that it does not have, in words; "" where none is near.
+/// Which flag of the command was meant by the first one that it does not have, in words; "" if none is near.
 std::string meantOption(const CLI::App& app) {
   for (const CLI::App* sub : app.get_subcommands()) {
     std::vector<std::string> known;

@@ -54,9 +54,9 @@ class Context {
   /// On standard error when the command ends, together with its other warnings in one line; --all-warnings: at once, on its own.
   void warn(const std::string& line) const;
   void info(const std::string& line) const;  ///< on standard error, on a terminal only
-  /// To standard output, control characters from files escaped. InputError when that is full or closed.
+  /// To standard output, control characters from files escaped. InputError if that is full or closed.
   void print(const std::string& text) const;
-  /// "-" = standard output, unchanged; else a file written atomically, and said so. InputError when it cannot be written.
+  /// "-" = standard output, unchanged; else a file written atomically, and said so. InputError if it cannot be written.
   void write(const std::string& fileOrDash, const std::string& content) const;
   /// "wrote FILE", on standard error, on a terminal only. For files that a command writes by other means than `write`.
   void wrote(const std::string& file) const;

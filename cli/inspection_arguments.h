@@ -35,8 +35,8 @@ struct InspectionArguments {
   /// `--set` names this setting.
   bool sets(const std::string& key) const;
   /// Reads the scene, and puts the frames of --exclude and the level of --level auto into the request: only the scene knows them.
-  /// InputError; CannotAnswer where no training frame shows a highlight to choose a level by.
-  /// @param levelReason  optional: why this level; "" where it was not chosen here
+  /// InputError; CannotAnswer if no training frame shows a highlight to choose a level by.
+  /// @param levelReason  optional: why this level; "" if it was not chosen here
   std::shared_ptr<const Scene> scene(InspectionRequest& request, std::string* levelReason = nullptr) const;
 };
 
@@ -55,7 +55,7 @@ inline constexpr const char* kAutoLevel = "auto";
 inline constexpr const char* kLevelRange = "must be a fraction of the peak, more than 0 and less than 1";
 
 /// Model and settings of a point of the session's trade-off: "fast", "balanced", "exact" or "chosen".
-/// InputError when the session has none.
+/// InputError if the session has none.
 void applyPreset(const Session& session, const std::string& preset, InspectionRequest& request);
 
 /// Ids of all models, for help: "primal, dual, ...".
@@ -67,7 +67,7 @@ std::vector<std::string> splitList(const std::string& text, const std::string& f
 /// One warning when training frames could not be used, with the first reason; silent when all could.
 void warnOfUnusedTrainingFrames(const Inspection& inspection, const Context& context);
 
-/// Throws CannotAnswer when no training view could be used at all, with the first reason.
+/// Throws CannotAnswer if no training view could be used at all, with the first reason.
 void requireUsableViews(const Inspection& inspection);
 
 }  // namespace glint::cli

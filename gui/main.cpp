@@ -49,7 +49,7 @@ bool onlyX11() {
                      [](const QString& platform) { return platform.section(':', 0, 0) == QLatin1String("xcb"); });
 }
 
-/// Qt ends the program where it finds no display. InputError before that; null where it may find something else than X11.
+/// Qt ends the program where it finds no display. InputError before that; null if it may find something else than X11.
 std::unique_ptr<glint::viz::DisplayConnection> openDisplay() {
   if (!onlyX11()) return nullptr;
   glint::Outcome<std::unique_ptr<glint::viz::DisplayConnection>> display = glint::viz::DisplayConnection::open();

@@ -22,7 +22,7 @@ bool looksLikeCloud(std::string_view start);
 inline constexpr std::size_t kCloudHeader = 4096;  // bytes that tell; a longer header is that of a mesh with many properties
 
 /// Reads PLY without faces, or PCD, recognised by content. Checked as meshes are (io/mesh_reader.h).
-/// @throw InputError (file; line in text, byte in binary files) when the file is missing, empty, neither of the two, truncated,
+/// @throw InputError (file; line in text, byte in binary files) if the file is missing, empty, neither of the two, truncated,
 ///        longer than its header promises, or contradicts itself; when it has faces; when there is no point.
 CloudContent readCloudContent(const std::filesystem::path& file);
 /// The same for bytes in memory. @param file  for messages

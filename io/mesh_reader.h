@@ -14,7 +14,7 @@ namespace glint {
 /// Polygons become fans of triangles around their first corner; where the fan would leave the polygon, it is cut inside itself.
 /// Vertices that no face uses may be NaN and are left out. A million triangles take about a second. Our own readers: those of PCL
 /// and VTK bring VTK into core, and do not name the place of a fault.
-/// @throw InputError (file; line in text, byte in binary files, and the element) when the file is missing, empty, none of the
+/// @throw InputError (file; line in text, byte in binary files, and the element) if the file is missing, empty, none of the
 ///        four formats, truncated, longer than its header promises, or contradicts itself; when a face has fewer than three
 ///        corners or names a vertex, normal or texture coordinate that does not exist; when a coordinate of a face is not a
 ///        number below 1e30 in size; when concave polygons are so large that their cut would take minutes; when there is no face.

@@ -43,7 +43,7 @@ DualityPicture dualityPicture(const Duality& duality, const DualityLook& look);
 /// The plane under the pointer: the nearest plane or point within `reach` px.
 std::optional<DualityPlane> planeAt(const DualityPicture& picture, const Eigen::Vector2d& at, double reach = 14);
 
-/// The plane of a frame's cones that touches its cone nearest to a place, as seen from the cone's apex. Nothing where no cone is
+/// The plane of a frame's cones that touches its cone nearest to a place, as seen from the cone's apex. Nothing if no cone is
 /// of that frame, or where the place is the apex.
 /// @param place  world, m
 std::optional<DualityPlane> planeNearest(const Duality& duality, int frame, const Eigen::Vector3d& place);

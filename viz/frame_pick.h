@@ -23,7 +23,7 @@ struct Grip {
   int highlight = -1;  ///< index into FrameEvidence::highlights
   bool peak = false;
 };
-/// Nothing where neither is near, nor where what is shown is truth instead of that evidence.
+/// Nothing if neither is near, nor where what is shown is truth instead of that evidence.
 std::optional<Grip> gripAt(const Inspection& inspection, int frame, const Pixel& at, double nearPx);
 
 /// Label of the line or mark under a photograph pixel; "" without any.

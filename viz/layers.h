@@ -89,7 +89,7 @@ struct LayerInput {
   std::vector<std::string> models;         ///< shown, from simple to rich
   SceneScale scale;
   double glyphScale = 1;
-  std::shared_ptr<const Surface> surface;  ///< of the selected frame; null when it has none
+  std::shared_ptr<const Surface> surface;  ///< of the selected frame; null if it has none
   std::string surfaceKey;
   std::string surfaceProblem;  ///< why the surface is missing
   std::vector<int> frames;     ///< frames whose cameras are drawn: one per pose, those on this surface first
@@ -113,7 +113,7 @@ struct LayerInput {
   /// Usable training views on the shown surface, of frames that are shown.
   std::vector<const TrainingView*> views() const;
   /// Where the selected frame does not train: brightest point, tangent plane and virtual camera of each highlight observed in it.
-  /// Without canonical contours. Empty where it trains, has no surface or is hidden.
+  /// Without canonical contours. Empty if it trains, has no surface or is hidden.
   std::vector<TrainingView> ownViews() const;
   /// The same with the canonical contours of what was observed, by the light that the training frames gave; only those that have
   /// one. Walks for some milliseconds.
@@ -131,7 +131,7 @@ struct LayerInput {
     std::string light;
   };
   std::vector<Mirror> mirrors(int frame) const;
-  /// Index of a training view's highlight in its frame's evidence; -1 when it is not there.
+  /// Index of a training view's highlight in its frame's evidence; -1 if it is not there.
   int highlightOf(const TrainingView& view) const;
   /// Ink that reads on the background.
   Colour ink() const { return dark ? kTextOnDark : kTextOnLight; }
@@ -250,7 +250,7 @@ SceneScale sceneScale(const Inspection& inspection, const Surface* surface, cons
 std::vector<int> framesToDraw(const Inspection& inspection, const std::string& surfaceKey, int selected,
                               const std::set<int>& hidden = {});
 
-/// Pixel of a frame carried onto the surface, lifted towards the camera by `lift`; nothing where the ray misses.
+/// Pixel of a frame carried onto the surface, lifted towards the camera by `lift`; nothing if the ray misses.
 std::optional<Eigen::Vector3d> castPixel(const Camera& camera, const Surface& surface, const Pixel& pixel, double lift);
 /// A contour on the surface: broken where it leaves the surface or jumps to another part of it.
 std::vector<Points> castContour(const Camera& camera, const Surface& surface, const Polyline& contour, const SceneScale& scale,

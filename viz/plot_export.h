@@ -24,7 +24,7 @@ Image plotImage(const PlotData& plot, const PlotStyle& style, const Selection& s
 void writePlotSvg(const PlotData& plot, const PlotStyle& style, const Selection& selection, int width, int height,
                   const std::string& file, const PlotCaption& caption = {});
 
-/// InputError when it cannot be written.
+/// InputError if it cannot be written.
 void writePlotCsv(const PlotData& plot, const std::string& file);
 
 }  // namespace glint::viz

@@ -28,7 +28,7 @@ struct DrawnParts {
 };
 DrawnParts drawnParts(const SceneView& view);
 /// A highlight of the selected frame.
-/// @param highlight  index in the frame's evidence; out of range = the first. Nothing where it is not on the surface.
+/// @param highlight  index in the frame's evidence; out of range = the first. Nothing if it is not on the surface.
 std::optional<Framing> highlightFraming(const LayerInput& in, int highlight, HighlightLook look, const DrawnParts& drawn);
 /// What the cones of a model hold: the brightest points of the views that it was made from and the ellipsoids, across their
 /// longest extent, as far as an ellipsoid that is small among them can be seen along with them.

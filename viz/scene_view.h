@@ -165,10 +165,10 @@ class SceneView {
   /// How often a layer was built since construction; for tests of "rebuilt only where its input changed".
   int buildCount(const std::string& layer) const;
   std::optional<Picked> pick(int xDisplay, int yDisplay) const;
-  /// The true light that is drawn there, also behind an ellipsoid, rays or whatever else shines through; nothing where the
+  /// The true light that is drawn there, also behind an ellipsoid, rays or whatever else shines through; nothing if the
   /// surface hides it.
   std::optional<Picked> pickLamp(int xDisplay, int yDisplay) const;
-  /// The nearest camera that is drawn there, also between its lines; nothing where none is or cameras are hidden.
+  /// The nearest camera that is drawn there, also between its lines; nothing if none is or cameras are hidden.
   std::optional<Picked> pickCamera(int xDisplay, int yDisplay) const;
 
  private:

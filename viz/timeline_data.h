@@ -24,7 +24,7 @@ bool isLit(LightState state);
 struct TimelineData {
   struct Series {
     std::string model;
-    std::vector<std::optional<double>> errorPct;  ///< one per frame; none where a highlight was missed
+    std::vector<std::optional<double>> errorPct;  ///< one per frame; none if a highlight was missed
     std::vector<char> missed;                     ///< one per frame: a highlight was missed there
     std::vector<char> spurious;                   ///< one per frame: one was predicted that is not seen there
     std::vector<std::string> spuriousWords;       ///< one per frame

@@ -51,7 +51,7 @@ void endProcess(int pid) {
   }
 }
 
-/// What the server writes to -displayfd: its display number and a newline. "" when it ended or took too long.
+/// What the server writes to -displayfd: its display number and a newline. "" if it ended or took too long.
 std::string readNumber(int fd) {
   std::string text;
   const Clock::time_point limit = Clock::now() + kStartLimit;

@@ -21,7 +21,7 @@ struct WalkStory {
   std::string light, model;  ///< model: of the inverse walk, else ""
   bool inverse = false;
   Camera camera;
-  std::optional<double> direction;  ///< Selection::direction of its end on S; nothing where no highlight was observed
+  std::optional<double> direction;  ///< Selection::direction of its end on S; nothing if no highlight was observed
   Light lamp;
   Eigen::Vector3d along{1, 0, 0};   ///< unit, on T
   Eigen::Vector3d normal{0, 0, 1};  ///< of T, unit, towards the camera

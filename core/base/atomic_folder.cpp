@@ -56,7 +56,7 @@ struct Parents {
 
  private:
   void remove() const {
-    for (const fs::path& p : made) ::rmdir(p.c_str());  // refused where something else lies in it by now
+    for (const fs::path& p : made) ::rmdir(p.c_str());  // refused if something else lies in it by now
   }
 };
 

@@ -9,7 +9,7 @@ namespace glint {
 
 /// Writes a whole folder or nothing: `write` fills a temporary one beside it, which is then renamed; when it throws, nothing
 /// stays.
-/// @throw InputError (file = the folder) when it exists and is not an empty folder, or cannot be made; whatever `write` throws,
+/// @throw InputError (file = the folder) if it exists and is not an empty folder, or cannot be made; whatever `write` throws,
 /// where it names a file of the temporary folder with the name that it was to have.
 void atomicFolder(const std::filesystem::path& folder, const std::function<void(const std::filesystem::path& temporary)>& write);
 

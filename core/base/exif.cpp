@@ -25,7 +25,7 @@ std::optional<std::uint64_t> valueOf(const NumbersInBytes& in, std::uint64_t dir
   return std::nullopt;
 }
 
-/// The TIFF structure that EXIF data are, or nothing where they begin as none.
+/// The TIFF structure that EXIF data are, or nothing if they begin as none.
 struct Tiff {
   NumbersInBytes in;
   std::uint64_t first;  ///< byte of the first directory

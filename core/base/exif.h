@@ -7,7 +7,7 @@
 namespace glint {
 
 /// FocalLengthIn35mmFilm of the EXIF data of a JPEG, PNG, WebP or TIFF: the focal length, mm, at which a frame of 36 x 24 mm has
-/// the same angle of view across its diagonal. Nothing where the file has no such entry, says 0 (unknown), or is damaged before
+/// the same angle of view across its diagonal. Nothing if the file has no such entry, says 0 (unknown), or is damaged before
 /// it. Every offset is checked against the bytes that are there.
 /// @see CIPA DC-008 (Exif 2.32), 4.6.5: tag 0xA405 in the Exif IFD, which tag 0x8769 of the first IFD points to.
 std::optional<double> focalLength35mm(std::string_view file);

@@ -14,7 +14,7 @@ void expectImages(double megapixels);
 /// How many frames of the expected size the budget has room for, at least 1: loops take no more threads than that.
 int imagesAtOnce();
 
-/// InputError (file) where one image of this size takes more than the budget; the line names the option that raises it.
+/// InputError (file) if one image of this size takes more than the budget; the line names the option that raises it.
 void requireRoomForImage(double megapixels, const std::string& file);
 
 }  // namespace glint

@@ -23,7 +23,7 @@ inline void append(Json& object, const std::string& key, Json value) {
 }
 
 /// The text of a document that names files. @param file  that it will be
-/// @throw InputError where a path or name is not UTF-8: JSON could hold another one only, and nothing would be found there.
+/// @throw InputError if a path or name is not UTF-8: JSON could hold another one only, and nothing would be found there.
 std::string textWithPaths(const Json& document, const std::string& file);
 
 /// `file` names the text in messages.

@@ -36,7 +36,7 @@ double limitOf(Limit limit);
 /// not a number above 0.
 void setLimit(const std::string& nameAndValue);
 
-/// InputError (file, place) when `amount` is above the limit; the line names the option that raises it.
+/// InputError (file, place) if `amount` is above the limit; the line names the option that raises it.
 void requireWithin(Limit limit, double amount, const std::string& file, const std::string& place = "");
 
 }  // namespace glint

@@ -39,7 +39,7 @@ struct PathRights {
 
 /// The file that `place` of a document in `folder` names. `relative` is taken relative to the folder; the result is absolute
 /// and lexically normal, and may not exist.
-/// @throw InputError (file, place) when it is empty; OutsidePath when it is absolute or leaves the folder (by `..` or through a
+/// @throw InputError (file, place) if it is empty; OutsidePath if it is absolute or leaves the folder (by `..` or through a
 ///        symbolic link), unless it lies in one of `rights.folders` or `rights.anywhere` is true.
 std::filesystem::path resolveInside(const std::filesystem::path& folder, const std::string& relative, const PathRights& rights,
                                     const std::string& file, const std::string& place);

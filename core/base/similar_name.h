@@ -11,10 +11,10 @@ namespace glint {
 int editDistance(const std::string& a, const std::string& b);
 
 /// The known name that was most likely meant: the nearest one, where at most a third of the given name is wrong; the first of
-/// equally near ones. "" where none is near, and for names beyond 100 bytes, which people do not type.
+/// equally near ones. "" if none is near, and for names beyond 100 bytes, which people do not type.
 std::string similarName(const std::string& given, const std::vector<std::string>& known);
 
-/// "; did you mean 'NAME'?", "" where no name is near.
+/// "; did you mean 'NAME'?", "" if no name is near.
 std::string didYouMean(const std::string& given, const std::vector<std::string>& known);
 
 }  // namespace glint

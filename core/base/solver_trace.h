@@ -18,7 +18,7 @@ struct SolverRun {
   bool converged = false;
   std::string ending;   ///< in words: "converged", "out of iterations", "the light lies behind the surface"
   bool answer = false;  ///< the fit's answer came from this run
-  /// The light or the centre of the ellipsoid before and after, homogeneous, world, |.| = 1; none where it is not finite.
+  /// The light or the centre of the ellipsoid before and after, homogeneous, world, |.| = 1; none if it is not finite.
   std::optional<Eigen::Vector4d> start, end;
   /// Steps that were taken, over all rounds.
   int steps() const;

@@ -88,7 +88,7 @@ void cleanOnce(const fs::path& folder) {
   removeAbandonedTemporaries(folder);
 }
 
-/// Removes a file or folder that threads may still write to; false when it has more files than `most`, which `files` counts.
+/// Removes a file or folder that threads may still write to; false if it has more files than `most`, which `files` counts.
 bool removeAside(const fs::path& path, int most, int& files) {
   std::error_code ignored;
   fs::path at = path;

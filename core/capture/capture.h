@@ -101,7 +101,7 @@ class CaptureReader {
   virtual std::filesystem::path incomplete(const std::filesystem::path& folder) const;
   /// Reads what `recognise` found. InputError (file, place: "line 12", "frames[3].transform_matrix" or "byte 120", reason).
   virtual Capture read(const std::filesystem::path& file, const CaptureOptions& options) const = 0;
-  /// The sparse points of what `read` returned; empty where the program has none. InputError as `read`.
+  /// The sparse points of what `read` returned; empty if the program has none. InputError as `read`.
   virtual std::vector<CaptureTrack> tracks(const Capture& capture, const CaptureOptions& options) const;
 };
 

@@ -57,7 +57,7 @@ using EachPoint = std::function<void(const Eigen::Vector3d& point, const std::ve
 
 // Readers of both kinds, by Files::binary. `bytes` is the content of the file.
 
-// In a text, a line that cannot be read is a warning; its camera, image or point is not there. InputError where nothing is left.
+// In a text, a line that cannot be read is a warning; its camera, image or point is not there. InputError if nothing is left.
 
 std::vector<ModelCamera> readCameras(const Files& files, std::vector<std::string>& warnings);
 /// Poses and names; the 2D points are skipped. An image that is there twice, word for word, counts once. `warnings`: one line for
@@ -131,7 +131,7 @@ std::string counted(std::size_t number, const std::string& noun, const std::stri
 /// At most 8 of `lines`, and how many more there are.
 void addWarnings(const std::vector<std::string>& lines, std::vector<std::string>& warnings);
 
-/// Index of each element by its identifier. InputError where two have the same.
+/// Index of each element by its identifier. InputError if two have the same.
 template <class Element>
 std::unordered_map<std::uint32_t, std::size_t> indexById(const std::vector<Element>& elements, const char* noun,
                                                          const std::string& file) {
@@ -164,7 +164,7 @@ class Bytes {
     for (double& v : values) v = take<double>();
     return values;
   }
-  /// A count of elements that take at least `least` bytes each; refused where the rest of the file cannot hold them.
+  /// A count of elements that take at least `least` bytes each; refused if the rest of the file cannot hold them.
   template <class Number>
   std::size_t takeCount(std::size_t least, const char* noun) {
     const Number count = take<Number>();

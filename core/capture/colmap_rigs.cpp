@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::int32_t kCameraSensor = 0;  // number of the type CAMERA
 
-/// Poses of its cameras in the rig; nothing where the file has none.
+/// Poses of its cameras in the rig; nothing if the file has none.
 using Rig = std::map<std::uint32_t, std::optional<Isometry3d>>;
 struct RigFrame {
   std::uint32_t rig = 0;

@@ -248,7 +248,7 @@ std::optional<double> nerfFocalOfAngle(const NerfKeys& keys, char axis, int size
   return 0.5 * sizePx / std::tan(0.5 * angle);
 }
 
-/// fl_x (fl_y), else from the angle; nothing where there is neither.
+/// fl_x (fl_y), else from the angle; nothing if there is neither.
 std::optional<double> nerfFocal(const NerfKeys& keys, char axis, int sizePx, const NerfModel& model, NerfTally& tally) {
   constexpr double kOther = 0.01;  // relative: more than rounding; the images were resized or cropped since
   const std::optional<double> ofAngle = nerfFocalOfAngle(keys, axis, sizePx);
@@ -389,7 +389,7 @@ CaptureView readNerfFrame(const JsonNode& frame, NerfContext& context) {
 
 struct NerfPoints {
   std::string named;
-  fs::path file;  ///< empty where it is not there: programs read the cameras without it
+  fs::path file;  ///< empty if it is not there: programs read the cameras without it
 };
 
 /// What ply_file_path names.

@@ -18,7 +18,7 @@ namespace glint::capture {
 inline constexpr double kFromCorner = -0.5;
 
 /// Rotation of a quaternion of any length but 0. A length that is off by more than 1e-3 was hardly meant as one: `warnings` says
-/// so. InputError where it is 0 or not finite.
+/// so. InputError if it is 0 or not finite.
 Eigen::Quaterniond unitQuaternion(double w, double x, double y, double z, const std::string& file, const std::string& place,
                                   std::vector<std::string>& warnings);
 
@@ -30,7 +30,7 @@ double bounded(double value, double most, const std::string& file, const std::st
 Camera cameraOf(int width, int height, double fx, double fy, double cx, double cy, const Lens& lens, const std::string& file,
                 const std::string& place);
 
-/// Width and height of an image file, without decoding it. InputError where it is missing or no image: programs whose files do
+/// Width and height of an image file, without decoding it. InputError if it is missing or no image: programs whose files do
 /// not say the size need it ("the file does not say the size of its images; name their folder by --photographs").
 std::array<int, 2> sizeOfImage(const std::filesystem::path& image, const std::string& file, const std::string& place);
 
@@ -102,7 +102,7 @@ struct Row {
   std::vector<std::string_view> words;
   std::string place() const { return "line " + std::to_string(number); }
 };
-/// The word as a number. InputError where it is missing or not a finite number ("needs 8 numbers, has 7").
+/// The word as a number. InputError if it is missing or not a finite number ("needs 8 numbers, has 7").
 double numberAt(const Row& row, std::size_t word, const std::string& file);
 long long integerAt(const Row& row, std::size_t word, const std::string& file);
 /// Whether one of the words from this one on, at most `words` of them, is NaN or infinite.

@@ -50,7 +50,7 @@ inline std::size_t possibleCount(long long count, std::size_t bytesEach, std::si
   return n;
 }
 
-/// The first line without its line break, as far as it matters for what the file is; "" where it cannot be read.
+/// The first line without its line break, as far as it matters for what the file is; "" if it cannot be read.
 inline std::string firstLineOf(const std::filesystem::path& file) {
   constexpr std::size_t kMost = 256;  // bytes; the headers that are looked for are shorter
   std::error_code ignored;            // what cannot be asked about is not there

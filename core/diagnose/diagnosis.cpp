@@ -20,7 +20,7 @@ constexpr double kNotFar = 5;  // times the least error: a change may make a mod
 
 bool isAsItIs(const Change& change) { return !change.train && !change.set && !change.exclude; }
 
-/// Null where the model was not computed as it is.
+/// Null if the model was not computed as it is.
 const UnseenError* errorOf(const Diagnosis& d, const std::string& model) {
   const auto it = std::find_if(d.measured.begin(), d.measured.end(),
                                [&](const Measured& m) { return isAsItIs(m.change) && m.change.model == model; });
@@ -118,7 +118,7 @@ class Adviser {
     d_.measured.push_back({{.model = model}, modelByName(model).assumption(), std::move(error)});
   }
 
-  /// Runs the request with a change, for one model alone. Nothing where the program refuses that combination.
+  /// Runs the request with a change, for one model alone. Nothing if the program refuses that combination.
   /// @param previous  what has most in common with it: only the rest is computed
   Results measured(const Inspection& previous, const Change& change, const std::string& model, UnseenError& error) {
     const ProgressFn progress = step("try " + flagsOf(change));

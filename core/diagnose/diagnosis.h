@@ -25,7 +25,7 @@ struct Change {
 std::string flagsOf(const Change& change);
 /// "use limit-angle", "set light.solver = triangulated".
 std::string wordsOf(const Change& change);
-/// The request with the change. InputError where the scene does not know a frame.
+/// The request with the change. InputError if the scene does not know a frame.
 InspectionRequest with(InspectionRequest request, const Change& change, const Scene& scene);
 
 /// One state that was computed: a model as it is (the model alone is set), or with one change.
@@ -52,7 +52,7 @@ struct ModelDiagnosis {
   /// In words, weightiest first; none if it is ok, misses nothing and is off by at most kLargestExpectedPct.
   std::vector<std::string> causes;
   std::vector<HighlightEvidence> evidence;
-  std::vector<FitTrace> fits;  ///< how they went; none where the status is ok
+  std::vector<FitTrace> fits;  ///< how they went; none if the status is ok
 };
 
 /// What to do about a sequence: one verdict, at most three remedies, and the evidence for both.

@@ -14,7 +14,7 @@ namespace glint {
 /// How a model was fitted to the highlights of one light: every run of a solver on the way, in order.
 struct FitTrace {
   FitKey key;
-  std::vector<SolverRun> runs;     ///< none where the model is fitted in closed form, or has no view
+  std::vector<SolverRun> runs;     ///< none if the model is fitted in closed form, or has no view
   std::optional<Failure> failure;  ///< of the fit
 };
 

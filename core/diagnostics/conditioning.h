@@ -60,7 +60,7 @@ std::string residualMeaning(const ModelFit& fit);
 std::string residualMeaning(const LightEstimate& light);
 
 /// Standard deviations of the three semi-axes, m, to first order from the fit's uncertainty of the shape S: d a = v^T dS v / (2
-/// a) along the axis v. Empty when the fit has no ellipsoid or tells no uncertainty; infinite for an axis of length 0.
+/// a) along the axis v. Empty if the fit has no ellipsoid or tells no uncertainty; infinite for an axis of length 0.
 std::optional<Eigen::Vector3d> semiAxesSigma(const ModelFit& fit);
 
 /// Bounds of the verdicts, each with its reason.

@@ -101,7 +101,7 @@ class Rows {
       residuals_[static_cast<int>(i)] = fit.residualPx[next++];
     }
   }
-  /// The training view of an observed highlight, by its peak, which noise may have moved a little; -1 where it did not train.
+  /// The training view of an observed highlight, by its peak, which noise may have moved a little; -1 if it did not train.
   int viewOf(int frame, const Highlight& seen) const {
     const auto here = views_.find(frame);
     if (here == views_.end()) return -1;

@@ -76,7 +76,7 @@ struct HighlightRow {
   std::string place;                              ///< the light, and which of several: "lamp, highlight 2", "lamp, predicted 1"
   RowRole role = RowRole::HeldOut;
   RowStatus status = RowStatus::NotCompared;
-  std::string reason;                     ///< why there is no error; "" where there is one
+  std::string reason;                     ///< why there is no error; "" if there is one
   std::array<double, kRowValues> values;  ///< finite, or NaN without a value
   double value(RowValue which) const { return values[std::size_t(which)]; }
 };
@@ -86,7 +86,7 @@ std::vector<HighlightRow> highlightRows(const Inspection& inspection);
 
 /// What names a row within an inspection, also after it was computed again.
 struct RowKey {
-  int frame = -1, observed = -1, predicted = -1;  ///< `predicted` is -1 where something was observed
+  int frame = -1, observed = -1, predicted = -1;  ///< `predicted` is -1 if something was observed
   std::string model, light;
   friend auto operator<=>(const RowKey&, const RowKey&) = default;
 };

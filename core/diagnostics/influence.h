@@ -41,7 +41,7 @@ struct Influence {
   int trainingFrames = 0;                     ///< of which frames.size() were left out
 };
 
-/// How much a frame matters to a model: changePct where there are held-out frames, else leftOutPct. None when the frame was not
+/// How much a frame matters to a model: changePct where there are held-out frames, else leftOutPct. None if the frame was not
 /// tried or nothing was predicted.
 std::optional<double> influenceOf(const Influence& influence, int frame, const std::string& model);
 

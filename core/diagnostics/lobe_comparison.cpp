@@ -30,7 +30,7 @@ double logOfLobe(Lobe lobe, double m, const LobePixel& p) {
 struct Line {
   double height = 0, offset = 0, rms = std::numeric_limits<double>::infinity();
   double logMost = 0;          ///< logarithm of the greatest S, for which `height` is K S
-  std::vector<double> values;  ///< S of each pixel over its greatest; empty where the lobe is not defined at a pixel
+  std::vector<double> values;  ///< S of each pixel over its greatest; empty if the lobe is not defined at a pixel
 };
 
 Line lineFor(const std::vector<LobePixel>& pixels, Lobe lobe, double m) {
@@ -110,7 +110,7 @@ void addRuns(const Polyline& closed, const Keep& keep, std::vector<Polyline>& ru
   }
 }
 
-/// The bin of every pixel; -1 where its bin has too few.
+/// The bin of every pixel; -1 if its bin has too few.
 std::vector<int> binned(const std::vector<LobePixel>& pixels, double peak, std::vector<LobeComparison::Bin>& bins) {
   double widest = 0;
   for (const LobePixel& p : pixels) widest = std::max(widest, p.alpha);

@@ -12,10 +12,10 @@ namespace glint::draw {
 std::vector<Pixel> toPhotograph(const Camera& camera, const std::vector<Pixel>& ideal);
 
 /// Ideal pixel from which Selection::direction is measured: centroid of the observed contour, its peak without a contour.
-/// Nothing when the frame has no such highlight.
+/// Nothing if the frame has no such highlight.
 std::optional<Pixel> directionOrigin(const Inspection& inspection, int frame, int highlight);
 
-/// The observed highlight that a predicted one was matched with; -1 when it is spurious.
+/// The observed highlight that a predicted one was matched with; -1 if it is spurious.
 int observedOf(const FrameComparison& comparison, int predicted);
 
 /// Crossing of the half line from `origin` (ideal pixels) with the parts of a prediction that do not bridge a gap.

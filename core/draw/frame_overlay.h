@@ -113,10 +113,10 @@ struct OverlayOptions {
 /// evidence; the captions then say why. What has no partner looks unlike the rest: an observed highlight that the selected model
 /// misses (any drawn one, where none is selected) is dashed with a crossed square at its peak; a spurious prediction has dashes
 /// and dots and a triangle at its middle; one that a filter took out is thin and dotted.
-/// @param frame  index into scene->frames; std::invalid_argument when it does not exist.
+/// @param frame  index into scene->frames; std::invalid_argument if it does not exist.
 FrameOverlay frameOverlay(const Inspection& inspection, int frame, const OverlayOptions& options = {});
 
-/// What the closed lines of a role that go round a pixel take up, photograph px; empty where none does.
+/// What the closed lines of a role that go round a pixel take up, photograph px; empty if none does.
 Eigen::AlignedBox2d extentAround(const FrameOverlay& overlay, OverlayRole role, const Pixel& pixel);
 
 /// A run of a predicted contour, in ideal pixels: predicted, or only bridging failed directions.

@@ -19,9 +19,9 @@ namespace glint::draw {
 
 using WorldChain = std::vector<Eigen::Vector3d>;
 
-/// Where a ray meets a plane in front of its origin; nothing when it is parallel or behind.
+/// Where a ray meets a plane in front of its origin; nothing if it is parallel or behind.
 std::optional<Eigen::Vector3d> intersection(const Ray& ray, const Plane& plane);
-/// Ideal pixel of a frame carried onto the surface, lifted towards the camera by `lift`; nothing where the ray misses.
+/// Ideal pixel of a frame carried onto the surface, lifted towards the camera by `lift`; nothing if the ray misses.
 std::optional<Eigen::Vector3d> castPixel(const Camera& camera, const Surface& surface, const Pixel& pixel, double lift);
 /// A contour on the surface: broken where it leaves the surface or jumps to another part of it. Points beyond those that can be
 /// told apart on a screen are left out.

@@ -24,7 +24,7 @@ struct PlotMarks {
 /// series, error bars, crosses and marks; or a dial; or the sentence that replaces it. In a low picture the legend ends
 /// early, with dots. Every sample has its label as a hint.
 /// @param shown   the part of the range to show
-/// @return where the values lie; nothing where no plot was drawn
+/// @return where the values lie; nothing if no plot was drawn
 std::optional<PlotPlaces> paintPlot(Painter& painter, const PlotData& plot, const PlotStyle& style, const PlotRange& shown,
                                     const PlotMarks& marks, double width, double height);
 

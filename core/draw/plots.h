@@ -36,11 +36,11 @@ struct FrameSamples {
     std::optional<LobeSamples> samples;  ///< exactly one of samples and failure
     std::optional<Failure> failure;
     std::optional<double> roughness;             ///< m of the model, where it has one
-    std::optional<LobeComparison> comparison{};  ///< of samples; none where `comparisonFailure` or `failure` says why
+    std::optional<LobeComparison> comparison{};  ///< of samples; none if `comparisonFailure` or `failure` says why
     std::optional<Failure> comparisonFailure{};
   };
   std::vector<Lobe> lobes;
-  std::string failure;  ///< why there is nothing; "" when there is
+  std::string failure;  ///< why there is nothing; "" if there is
 };
 /// Reads the frame's linear image, mask and surface, and samples its highlights for the model's light. Slow: tens of milliseconds
 /// and more.

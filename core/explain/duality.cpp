@@ -10,7 +10,7 @@
 namespace glint {
 namespace {
 
-/// The fit of a model for this frame's surface and this light; null where it has none with an ellipsoid.
+/// The fit of a model for this frame's surface and this light; null if it has none with an ellipsoid.
 const ModelFit* fitWithEllipsoid(const Inspection& inspection, int frame, const std::string& light, const std::string& model) {
   const auto found = inspection.models.find(model);
   if (found == inspection.models.end()) return nullptr;

@@ -23,7 +23,7 @@ struct End {
   Eigen::Vector3d seen{0, 0, 0}, reflected{0, 0, 0};
 };
 
-/// Both ends of the highlight along a tangent direction; empty where the contour leaves the surface there.
+/// Both ends of the highlight along a tangent direction; empty if the contour leaves the surface there.
 std::optional<std::array<End, 2>> endsAlong(const TrainingView& v, const Surface& surface, const Eigen::Vector3d& direction) {
   const Eigen::Vector3d eye = v.camera.centreInWorld(), at = v.seen->brightest.point.position;
   const Eigen::Vector3d beside = (at - eye).cross(direction);

@@ -32,7 +32,7 @@ bool anyNear(const FrameEvidence& e, const Pixel& place) {
          std::any_of(e.textures.begin(), e.textures.end(), [&](const WithheldTexture& t) { return near(t.highlight); });
 }
 
-/// Nothing where the frame's own depth has no point there.
+/// Nothing if the frame's own depth has no point there.
 std::optional<QuickLook> quickLook(const Scene& scene, int frame, const Highlight& h, const std::vector<int>& panel,
                                    const std::vector<FrameEvidence>& evidence, const PanelDepths& depths) {
   if (h.fromScene || h.contour.points.size() < 3) return std::nullopt;

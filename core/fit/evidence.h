@@ -42,8 +42,8 @@ FrameEvidence gatherEvidence(const Scene& scene, int frame, FrameSource source, 
 SpecularSeparation separateEvidence(const Scene& scene, int frame, FrameSource source, const Settings& settings,
                                     FrameEvidence& evidence);
 
-/// Contours stored as in data/cycles/*/contours (FOLDER/ID.json) at `level`, for scoring. FrameUnreadable when the frame has no
-/// file. InputError when a file does not parse, does not hold the level or has a contour without area.
+/// Contours stored as in data/cycles/*/contours (FOLDER/ID.json) at `level`, for scoring. FrameUnreadable if the frame has no
+/// file. InputError if a file does not parse, does not hold the level or has a contour without area.
 Outcome<std::vector<Highlight>> readTruth(const std::string& folder, const Scene& scene, int frame, double level);
 
 /// InputError if `folder` is not a folder, or holds no frame's contours.

@@ -23,7 +23,7 @@ struct LightFit {
 LightFit fitLight(std::vector<TrainingView> views, const Scene& scene, const SurfaceCache& surfaces, const Settings& settings);
 
 /// What a model is fitted to: the views, with canonical contours under the light where the model needs them and a view has none.
-/// @param light     for models that need one; empty where none was asked for.
+/// @param light     for models that need one; empty if none was asked for.
 /// @param pixelFit  of the pixels of exactly these views, where it is known already.
 FitInput fitInput(const HighlightModel& model, std::vector<TrainingView> views,
                   const std::optional<Outcome<LightEstimate>>& light, const Settings& settings,

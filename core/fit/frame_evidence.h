@@ -26,7 +26,7 @@ struct FrameEvidence {
   std::optional<Failure> failure;           ///< why there are no highlights: NoHighlight, FrameUnreadable, ...
   std::vector<RejectedCandidate> rejected;  ///< what detection saw and did not take, measured pixels
   std::vector<WithheldTexture> textures;    ///< taken out of `highlights`, by rising place
-  /// detect.background = colours: why the colours do not tell what is specular; "" where they do, or were not asked.
+  /// detect.background = colours: why the colours do not tell what is specular; "" if they do, or were not asked.
   std::string notSeparated;
   std::vector<SeparatedRegion> separated;  ///< where they do: how, around each highlight that was detected; measured pixels
   bool againstTruth = false;               ///< --truth is given: `truth` is scored, whatever was detected

@@ -80,7 +80,7 @@ struct Place {
   double tolerance() const { return std::max(kMatchPx, kMatchShare * radiusOf(areaPx2)); }
 };
 
-/// Nothing where the view does not see all of it, or nearly edge-on.
+/// Nothing if the view does not see all of it, or nearly edge-on.
 std::optional<Place> placeIn(const Camera& camera, const Surface& surface, const Spot& spot) {
   const Eigen::Vector3d towards = camera.centreInWorld() - spot.middle.position;
   if (!(spot.middle.normal.dot(towards) > kEdgeOn * towards.norm())) return std::nullopt;
@@ -106,7 +106,7 @@ double distanceToSegment(const Pixel& p, const Pixel& a, const Pixel& b) {
 
 /// Where a highlight would be in another view: the brightest points of lamps ever farther away along the mirrored ray.
 struct Path {
-  std::vector<std::vector<Pixel>> places;  ///< of each lamp, from near to far; empty where none is seen
+  std::vector<std::vector<Pixel>> places;  ///< of each lamp, from near to far; empty if none is seen
   bool empty() const {
     return std::all_of(places.begin(), places.end(), [](const auto& p) { return p.empty(); });
   }

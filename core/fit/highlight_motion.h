@@ -30,7 +30,7 @@ struct MotionVerdict {
   int away = 0;           ///< views from different sides that see the point, should find the spot there, and do not
   bool apart = false;     ///< the frame's surface is its own depth map, and that of no other view has the spot's point
   double lampWithin = 0;  ///< where stays > 0: a lamp that leaves a highlight there is nearer to the surface than this, m
-  /// In words, as a reason or a flag; "" where there is nothing to say.
+  /// In words, as a reason or a flag; "" if there is nothing to say.
   std::string text() const;
 };
 

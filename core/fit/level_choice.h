@@ -25,7 +25,7 @@ struct LevelChoice {
 /// tenth of the level (centre within 2 % of the longer semi-axis, axes like an ideal lobe's, Gaussian or GGX) half a pixel above
 /// noise; else the one at which most are. Clipped highlights lie at a fraction of the clip value, so every level is below it.
 /// @param frames  that are looked at, by index
-/// @return  NoHighlight where none of them shows one; FrameUnreadable
+/// @return  NoHighlight if none of them shows one; FrameUnreadable
 Outcome<LevelChoice> chooseLevel(const Scene& scene, const std::vector<int>& frames, FrameSource source, const Settings& settings,
                                  const ProgressFn& progress = {});
 

@@ -33,7 +33,7 @@ std::vector<BundleView> bundleViewsOf(const std::vector<TrainingView>& views) {
   return result;
 }
 
-/// The reflectance model of some views' contours; none where it fails.
+/// The reflectance model of some views' contours; none if it fails.
 std::optional<ModelFit> reflectanceOf(const std::vector<TrainingView>& views, const LightEstimate& light,
                                       const Settings& settings) {
   Settings contours = settings;

@@ -18,7 +18,7 @@ struct SurfaceCorrection {
 };
 
 /// The surface that a frame shows, corrected where the correction concerns it, else as given. A corrected depth map is read and
-/// built anew at every call. NoSurface; FrameUnreadable for its depth image; InputError when a mesh cannot be read.
+/// built anew at every call. NoSurface; FrameUnreadable for its depth image; InputError if a mesh cannot be read.
 Outcome<std::shared_ptr<const Surface>> correctedSurface(const Scene& scene, const SurfaceCache& surfaces, int frame,
                                                          const SurfaceCorrection& correction, MeshPolicy policy);
 

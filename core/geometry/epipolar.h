@@ -11,7 +11,7 @@
 namespace glint {
 
 /// F of two projections with finite centres, real or mirrored: x2^T F x1 = 0 for the images of one point; F = [e2]x M2 M1^-1 with
-/// M the left 3x3 blocks and e2 = M2 (C1 - C2). Scaled to |F| = 1. RankDeficient when the centres coincide (then there are no
+/// M the left 3x3 blocks and e2 = M2 (C1 - C2). Scaled to |F| = 1. RankDeficient if the centres coincide (then there are no
 /// epipolar lines) or when a left block is singular; NotFinite.
 /// @see Hartley & Zisserman, Multiple View Geometry, 2nd ed., sec. 9.2.2.
 Outcome<Eigen::Matrix3d> fundamentalMatrix(const Projection& first, const Projection& second);

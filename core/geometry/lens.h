@@ -58,7 +58,7 @@ Eigen::Vector2d distorted(const Lens& lens, const Eigen::Vector2d& ideal);
 /// connected with the centre is an answer; of VISUALSFM, which is stated the other way round, it ends where (x, y) folds back.
 /// Fisheye lenses see beyond 90 degrees, where no (x, y, 1) is. The branch of a polynomial in theta and the pole of FULL_OPENCV
 /// are found exactly, other folds by samples on the way from the centre.
-/// @return  NotConverged where no point of that branch is measured at (u, v); OutsideImage where it is 90 degrees or more from
+/// @return  NotConverged if no point of that branch is measured at (u, v); OutsideImage if it is 90 degrees or more from
 ///          the axis ("is seen 93 degrees from the optical axis; only less than 90 are supported") or lies beyond 180, where
 ///          nothing is; NotFinite.
 Outcome<Eigen::Vector2d> undistorted(const Lens& lens, const Eigen::Vector2d& measured);

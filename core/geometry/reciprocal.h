@@ -24,7 +24,7 @@ struct ConePlane {
 /// @see Hartley & Zisserman, Multiple View Geometry, 2nd ed., result 8.2 (the plane of a line).
 Outcome<std::vector<ConePlane>> conePlanes(const Projection& projection, const Ellipse& ellipse, int n);
 
-/// The centre of projection, P C = 0. RankDeficient where it lies at infinity.
+/// The centre of projection, P C = 0. RankDeficient if it lies at infinity.
 Outcome<Eigen::Vector3d> centreOf(const Projection& projection);
 
 /// Polar reciprocity in a sphere: a chart of the dual space, in which planes are points. The plane n.(X - centre) = h becomes the
@@ -34,7 +34,7 @@ struct Reciprocal {
   double radius = 1;  ///< m, > 0
 };
 
-/// The dual point of a plane, in the chart's own coordinates. RankDeficient where the plane goes through the chart's centre to
+/// The dual point of a plane, in the chart's own coordinates. RankDeficient if the plane goes through the chart's centre to
 /// round-off: its point lies at infinity.
 Outcome<Eigen::Vector3d> dualPoint(const Plane& plane, const Reciprocal& chart);
 

@@ -225,7 +225,7 @@ class Detector {
   }
 
  private:
-  /// Values of the brightest 3x3 median (single hot pixels do not set the level); nothing when none is above the base.
+  /// Values of the brightest 3x3 median (single hot pixels do not set the level); nothing if none is above the base.
   std::optional<double> brightestMedian() const {
     const int w = p_.value.width, h = p_.value.height;
     const cv::Mat values(h, w, CV_32F, const_cast<float*>(p_.value.data.data()));

@@ -26,10 +26,10 @@ void applyEdits(FrameEvidence& evidence, const Scene& scene, const InspectionReq
 HighlightEdit ignoreEdit(int frame, const Highlight& highlight);
 HighlightEdit mergeEdit(int frame, const Highlight& first, const Highlight& second);
 /// The shortest cut of a highlight through a place inside of it: through the neck, where one clicks at a neck.
-/// NotReached where the place is outside, or a part would have no area.
+/// NotReached if the place is outside, or a part would have no area.
 Outcome<HighlightEdit> splitEdit(int frame, const Highlight& highlight, const Pixel& at);
 /// A highlight grown from one pixel, on trial: the reason where nothing can be grown there (NoHighlight: it does not stand out of
-/// a brighter spot, or of its surroundings; FrameUnreadable; NotSupported where contours are synthesised).
+/// a brighter spot, or of its surroundings; FrameUnreadable; NotSupported if contours are synthesised).
 /// @param light  whose it is
 Outcome<HighlightEdit> seedEdit(const Scene& scene, const InspectionRequest& request, int frame, const Pixel& at,
                                 const std::string& light);

@@ -31,7 +31,7 @@ Prediction predictionFor(const Inspection& inspection, const ModelResult::Fit& f
 struct LiveHighlights {
   std::string model, light;
   Prediction prediction;
-  std::string poor{};  ///< why its fit is poor; "" where it is ok
+  std::string poor{};  ///< why its fit is poor; "" if it is ok
 };
 
 struct LiveAnswer {
@@ -48,13 +48,13 @@ class LivePredictor {
   LivePredictor(std::shared_ptr<const Scene> scene, const InspectionRequest& request, const ProgressFn& progress = {});
 
   const Inspection& inspection() const { return inspection_; }
-  /// Why no pose can be answered: no model was fitted. Nothing where one was.
+  /// Why no pose can be answered: no model was fitted. Nothing if one was.
   std::optional<Failure> failure() const;
 
   /// @param id      of a frame of the scene: its surface and the lights that are on in it count, and its intrinsics. Another id:
   ///                all fitted lights, and the surface and intrinsics that all frames share
   /// @param camera  intrinsics and size, where they are given; its pose is not looked at
-  /// @return  NotSupported where the intrinsics are not known. That a surface is not known is the failure of a prediction.
+  /// @return  NotSupported if the intrinsics are not known. That a surface is not known is the failure of a prediction.
   Outcome<LiveAnswer> predict(const std::string& id, const Eigen::Isometry3d& cameraFromWorld,
                               const std::optional<Camera>& camera) const;
 

@@ -41,7 +41,7 @@ std::shared_ptr<const PixelFit> pixelFitFor(const Inspection& inspection, const 
 /// detected in Inspection::detected. Throws Stopped.
 void contourAgain(Inspection& inspection, const SurfaceOfFrame& surfaceOf, const ProgressFn& progress);
 
-/// One frame's evidence, contoured again with the lobes that an inspection found. Empty where no light's lobe explains the frame.
+/// One frame's evidence, contoured again with the lobes that an inspection found. Empty if no light's lobe explains the frame.
 /// @param scene,request  whose frame and settings count; they may be newer than the inspection's
 std::optional<FrameEvidence> contouredAgain(const Inspection& lobes, const Scene& scene, const InspectionRequest& request,
                                             int frame, const FrameEvidence& detected,

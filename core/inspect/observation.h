@@ -20,7 +20,7 @@ struct Observation {
   StageInputs inputs;  ///< of the evidence alone
 };
 
-/// Nothing where `known` holds this frame's evidence already, or where lights can only be told from all frames. InputError for
+/// Nothing if `known` holds this frame's evidence already, or if lights can only be told from all frames. InputError for
 /// wrong requests, as inspect(); Stopped.
 std::optional<Observation> observeFrame(std::shared_ptr<const Scene> scene, const InspectionRequest& request, int frame,
                                         const ProgressFn& progress = {}, const Inspection* known = nullptr);

@@ -15,7 +15,7 @@
 namespace glint {
 namespace {
 
-/// log of the radiance relative to what mirrors exactly; nothing where the fit does not tell.
+/// log of the radiance relative to what mirrors exactly; nothing if the fit does not tell.
 std::optional<double> logBrightness(const ModelFit& fit, const PredictedHighlight& h, const Eigen::Vector3d& eye, double level) {
   if (!fit.lightEstimate) return std::nullopt;
   const SurfacePoint at = facing(h.brightest.point, eye);

@@ -15,7 +15,7 @@ struct PixelProbe {
   double depth = 0;    ///< along the optical axis, m
   struct Incidence {
     std::string light;
-    std::optional<double> alpha;  ///< angle(N, H), rad; nothing where the light is behind the surface
+    std::optional<double> alpha;  ///< angle(N, H), rad; nothing if the light is behind the surface
   };
   std::vector<Incidence> lights;  ///< the estimated lights that may shine on this frame, by id
 };

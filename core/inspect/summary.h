@@ -67,7 +67,7 @@ struct FitReasons {
 };
 FitReasons reasonsOf(const ModelResult& result);
 const char* fitStatus(const ModelResult::Fit& fit);  ///< "ok", "poor", "failed"
-std::string fitReason(const ModelResult::Fit& fit);  ///< "" where it is ok
+std::string fitReason(const ModelResult::Fit& fit);  ///< "" if it is ok
 /// Why the fit behind a comparison is poor; "" if it is ok, has failed, or does not exist.
 std::string poorFit(const ModelResult& result, const FrameComparison& comparison);
 /// The model was fitted, and failed for this light on every surface: it says nothing there.

@@ -249,7 +249,7 @@ LampObservation measurePeak(const BallView& view, const Candidate& lamp, bool cl
   return result;
 }
 
-/// Why the largest candidate is not the lamp's reflection, or not surely; nothing where it is.
+/// Why the largest candidate is not the lamp's reflection, or not surely; nothing if it is.
 std::optional<Failure> objection(const BallView& view, const std::vector<Candidate>& bright, std::span<const BallOutline> balls,
                                  std::size_t which, const Image& photograph, const Eigen::Vector2d& corner) {
   const Candidate& lamp = bright[0];

@@ -89,7 +89,7 @@ WeightedEdge weightedEdge(const OutlineModel& model, const Eigen::Vector2d& plac
   return {r, std::abs(t) < 1 ? (1 - t * t) * (1 - t * t) : 0.0};
 }
 
-/// One step of weighted Gauss-Newton. False where the edges do not determine one.
+/// One step of weighted Gauss-Newton. False if the edges do not determine one.
 bool outlineStep(OutlineModel& model, const std::vector<SectorEdge>& edges, const Widths& widths, int leftOut = -1) {
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
   Eigen::Vector3d right = Eigen::Vector3d::Zero();
@@ -129,7 +129,7 @@ double support(const OutlineModel& model, const std::vector<BallEdge>& edges, do
 }
 
 /// From wide weights outwards; with equal ones from close by, where these find clearly more of an outline. The widths that were
-/// used; nothing where neither fit holds.
+/// used; nothing if neither fit holds.
 std::optional<Widths> settle(OutlineModel& model, const std::vector<BallEdge>& edges, double blur, double widest) {
   const Widths outwards{kInner * blur, kOuter * blur}, equal{kOuter * blur, kOuter * blur};
   OutlineModel close = model;

@@ -49,7 +49,7 @@ struct BallShots {
 BallShots ballShotsIn(const std::filesystem::path& input, const std::vector<NamedBall>& balls, const std::string& exclude);
 
 /// What EXIF data of whole shots say of the camera: the focal length; the principal point is taken in the middle, the lens as
-/// ideal. Nothing where a ball was cut out, where the first shot says nothing, or where the last one says something else.
+/// ideal. Nothing if a ball was cut out, where the first shot says nothing, or if the last one says something else.
 /// @param mm  becomes the focal length on 35 mm film
 std::optional<Camera> cameraOfExif(const BallShots& shots, double& mm);
 
@@ -62,7 +62,7 @@ struct PhotographLamps {
 /// Outlines, highlights and lamps of all shots. A shot that cannot be read or shows no highlight is a lamp without an answer.
 /// @param camera,focalAlone  see BallPhotographs
 /// @param givenSigmaPx  of centre and radius of an outline that is taken as typed
-/// @throw InputError where a ball lies outside of its photographs; Stopped
+/// @throw InputError if a ball lies outside of its photographs; Stopped
 /// @return  no answers if no shot shows a highlight. FrameUnreadable if no shot can be read; failures of fitBallLamps()
 Outcome<PhotographLamps> lampsOfShots(const BallShots& shots, const std::optional<Camera>& camera, bool focalAlone,
                                       const std::optional<double>& ballRadius, Outlines outlines, double givenSigmaPx,

@@ -42,7 +42,7 @@ class LampProblem {
   const Eigen::Matrix3d& rootOf(std::size_t ball) const { return roots_[ball]; }
   MirrorBall ball(std::size_t k) const { return ballOf(view_, parametersOf(k)); }
 
-  /// Seen less predicted, px, whitened; two rows a peak. Nothing where a ball does not show the lamp.
+  /// Seen less predicted, px, whitened; two rows a peak. Nothing if a ball does not show the lamp.
   std::optional<Eigen::VectorXd> residuals(const LampUnknowns& lamp) const;
 
   /// The equations of one lamp, rotated so that the first rows alone hold its unknowns: [R T | t; 0 E | e] (dl, dz) = residuals.
@@ -57,7 +57,7 @@ class LampProblem {
   /// Whether the peaks say anything about the lamp's distance, beyond round-off.
   bool tellsDistance(const LampUnknowns& lamp) const;
 
-  /// Moves the lamps and, if asked, the outlines to the least sum of squares. False where it does not settle.
+  /// Moves the lamps and, if asked, the outlines to the least sum of squares. False if it does not settle.
   bool solve(std::vector<LampUnknowns>& lamps, bool outlinesToo);
 
   /// Covariance of z, (I + sum E^T E)^-1, and the step to the least sum of squares, for all lamps but `without`.

@@ -34,7 +34,7 @@ Polyline scaled(const Polyline& line, const Pixel& about, double factor) {
   return result;
 }
 
-/// A contour in measured pixels; none where the lens does not show all of it.
+/// A contour in measured pixels; none if the lens does not show all of it.
 std::optional<Polyline> onImage(Polyline line, const Camera& camera) {
   for (Pixel& p : line.points) {
     p = camera.distorted(p);

@@ -24,8 +24,8 @@ struct LampInFrame {
   double expected = 0;         ///< the contrast of this lamp where frames state that it is on: median
   double noise = 0;            ///< standard deviation of the contrast where the lamp is off
   std::optional<Pixel> place;  ///< middle of the predicted contour, ideal pixels
-  std::optional<bool> stated;  ///< what the scene says; nothing where the frame names no lamp
-  std::string reason;          ///< in words; "" where the state needs none
+  std::optional<bool> stated;  ///< what the scene says; nothing if the frame names no lamp
+  std::string reason;          ///< in words; "" if the state needs none
 };
 
 /// A highlight that no lamp explains.

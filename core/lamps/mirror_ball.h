@@ -48,7 +48,7 @@ MirrorBall ballOf(const BallProjection& view, const Eigen::Vector3d& parameters)
 /// Those numbers and their covariance from the outline of the ball. With a camera the outline is the cone of rays that touch the
 /// ball, sin(angle to its centre) = radius / distance, fitted to the points of the edge, or without any to the circle. The
 /// covariance is larger than that of independent points by the same excess as the outline's own.
-/// @return  NotConverged where no ball before the camera has this outline; NotFinite.
+/// @return  NotConverged if no ball before the camera has this outline; NotFinite.
 struct BallParameters {
   Eigen::Vector3d value = Eigen::Vector3d::Zero();
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< px^2
@@ -68,7 +68,7 @@ struct MirrorRay {
 Outcome<MirrorRay> mirrorRay(const BallProjection& view, const MirrorBall& ball, const Pixel& peak);
 
 /// Where the ball mirrors the lamp: the root of 2 t = angle to the camera + angle to the lamp in the plane of the ball's centre,
-/// camera and lamp, t the angle of the normal there (Alhazen's problem). Nothing where the lamp lies behind the ball.
+/// camera and lamp, t the angle of the normal there (Alhazen's problem). Nothing if the lamp lies behind the ball.
 std::optional<Pixel> mirrorPixel(const BallProjection& view, const MirrorBall& ball, const AimedLamp& lamp);
 
 /// The lamp where the rays of several balls meet, or their common direction: least squares of the angles' sines, homogeneous.

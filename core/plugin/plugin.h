@@ -45,7 +45,7 @@ struct PluginDeclaration {
   const char* version;     ///< its own
   const char* about;       ///< one line for a person
   void (*add)(PluginRegistry&);
-  void (*addLayers)(viz::LayerRegistry&);  ///< null where it draws nothing; a program without pictures does not call it
+  void (*addLayers)(viz::LayerRegistry&);  ///< null if it draws nothing; a program without pictures does not call it
 };
 
 inline constexpr std::uint32_t kPluginMagic = 0x676c6e74;  // "glnt"

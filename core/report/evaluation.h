@@ -36,7 +36,7 @@ Evaluation evaluate(std::shared_ptr<const Scene> scene, InspectionRequest reques
 
 /// "frame ID: reason" of every training frame without a usable highlight.
 std::vector<std::string> unusedTrainingFrames(const Inspection& inspection);
-/// Why no training view could be used at all, with the first reason; nothing where one could.
+/// Why no training view could be used at all, with the first reason; nothing if one could.
 std::optional<Failure> noUsableView(const Inspection& inspection);
 
 }  // namespace glint

@@ -157,7 +157,7 @@ Json fitJson(const Inspection& inspection, const ModelResult::Fit& entry) {
   return j;
 }
 
-/// Every metric of a row, null where it has none: each row of `frames` has the same keys.
+/// Every metric of a row, null if it has none: each row of `frames` has the same keys.
 void metricsJson(const FrameComparison::Row* row, const FrameComparison& c, Json& j) {
   const bool measured = row && row->metrics;
   const ContourMetrics m = measured ? *row->metrics : ContourMetrics{};

@@ -30,7 +30,7 @@ struct LampsReport {
 /// @param lamps  of lampsOfScene()
 std::vector<LampLine> lampLinesOf(const Scene& scene, const std::vector<LampAnswer>& lamps, std::vector<std::string>& warnings);
 
-/// Why a lamp has no answer, or no position; "" where it has one.
+/// Why a lamp has no answer, or no position; "" if it has one.
 std::string reasonOf(const LampAnswer& lamp);
 /// docs/formats.md, "lights --json". Numbers that are not finite become null.
 std::string lampsJson(const LampsReport& report);

@@ -60,7 +60,7 @@ void requireCorners(const BallShots& shots) {
                                      shots.balls[j].corner.x(), shots.balls[j].corner.y()));
 }
 
-/// What EXIF data of photographs tell viewers to do; "" where all are shown as they are stored.
+/// What EXIF data of photographs tell viewers to do; "" if all are shown as they are stored.
 std::string turnedByViewers(const BallShots& shots) {
   int turned = 0, first = 1;
   const std::vector<std::filesystem::path> files = shots.files();

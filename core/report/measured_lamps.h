@@ -44,7 +44,7 @@ const char* toText(Outlines outlines);
 /// @return  what lampsOfShots() says; throws what it throws
 Outcome<LampsReport> lampsReportOf(const BallQuestion& question, const BallShots& shots, const ProgressFn& progress = {});
 
-/// Why there is no lamp at all; nothing where one has an answer.
+/// Why there is no lamp at all; nothing if one has an answer.
 std::optional<Failure> nothingMeasured(const LampsReport& report);
 
 /// What a file of lamps is to be, by its ending: .json, .csv or .lp. InputError (file, `place`) for another one.

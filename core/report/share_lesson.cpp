@@ -10,7 +10,7 @@ namespace {
 
 using json_dom::Json;
 
-/// The member of an object that may lack it; "" where it does.
+/// The member of an object that may lack it; "" if it does.
 std::string textAt(const Json& object, const char* member, const std::string& key) {
   return object.contains(member) ? object.at(member).value(key, "") : "";
 }

@@ -67,7 +67,7 @@ struct Retextured {
 /// @param known  as predictedRadiance().
 /// @param frame  of the inspection, which computed `request.model` for it.
 /// Failures of predictedRadiance(); FrameUnreadable and NotSupported of a frame whose photograph is needed (Texture, Removed) and
-/// missing; NoSurface for a texture without a surface; NoHighlight where the mask leaves nothing to fill from.
+/// missing; NoSurface for a texture without a surface; NoHighlight if the mask leaves nothing to fill from.
 /// std::invalid_argument for a picture of another size. Stopped.
 /// @see Telea, An image inpainting technique based on the fast marching method, Journal of Graphics Tools 2004.
 Outcome<Retextured> retexture(const Inspection& inspection, int frame, const RetextureRequest& request,

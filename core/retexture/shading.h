@@ -30,7 +30,7 @@ struct LambertShading {
 };
 
 /// @param lights  estimated ones, at least one.
-/// NoSurface where no pixel shows the surface; TooFewPoints where too few are left beside highlights; NotFinite. Stopped.
+/// NoSurface if no pixel shows the surface; TooFewPoints if too few are left beside highlights; NotFinite. Stopped.
 Outcome<LambertShading> fitLambert(const Surface& surface, const Camera& camera, const std::vector<Light>& lights,
                                    const ShadedFrame& frame, const ProgressFn& progress = {});
 

@@ -23,7 +23,7 @@ struct RetextureWish {
   double repeat = 1, albedo = 0, marginPx = 4;  ///< albedo 0: the texture's mean takes the place of it
 };
 
-/// InputError where not exactly one of texture, background and removal is asked for, or a number is out of its range.
+/// InputError if not exactly one of texture, background and removal is asked for, or a number is out of its range.
 void requireAnswerable(const RetextureWish& wish);
 
 /// A frame of which one model was asked.

@@ -79,7 +79,7 @@ ExcessError excessOf(const std::vector<Answer>& a, const std::vector<Answer>& b,
 /// The largest curvatureVariation of the highlights; NaN when none was walked on a patch.
 double variationOf(const Prediction& prediction);
 
-/// Whether local quadrics serve the model that was chosen. None when it does not walk or walks on them already.
+/// Whether local quadrics serve the model that was chosen. None if it does not walk or walks on them already.
 /// @param exact    one answer per fold, of exact walks.
 /// @param mostPct  the error that the rule would still take.
 std::optional<PatchChoice> choosePatches(const Inspection& inspection, const HighlightModel& model,

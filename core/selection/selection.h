@@ -43,17 +43,17 @@ struct PatchChoice {
 };
 
 struct Selection {
-  std::string model;  ///< "" when no candidate answered every view that can be answered, or all expect too large an error
+  std::string model;  ///< "" if no candidate answered every view that can be answered, or all expect too large an error
   bool poor = false;  ///< `model` is the best of what is there: its fit is poor, or its expected error over kLargestExpectedPct
-  std::string best;   ///< what to show: `model`, or the best of those refused; "" where none answered
+  std::string best;   ///< what to show: `model`, or the best of those refused; "" if none answered
   std::string why;    ///< one sentence
   int trainingViews = 0;  ///< usable ones
   int leftOut = 0;        ///< of them left out, one at a time: at most kMostLeftOut, evenly spread
   int toPredict = 0;      ///< views to predict that were looked at, and of them those outside the training views
   int outside = 0;
-  std::string decidedBy;               ///< "leave-one-out" or "extrapolation"; "" when nothing was chosen
+  std::string decidedBy;               ///< "leave-one-out" or "extrapolation"; "" if nothing was chosen
   std::vector<Candidate> candidates;   ///< from simple to rich, as far as the search went
-  std::optional<PatchChoice> patches;  ///< none when the chosen model does not walk, or walks on patches already
+  std::optional<PatchChoice> patches;  ///< none if the chosen model does not walk, or walks on patches already
 
   const char* status() const { return model.empty() ? "failed" : poor ? "poor" : "ok"; }
 };

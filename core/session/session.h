@@ -73,7 +73,7 @@ struct Session {
   SessionView view;
   std::string notes;
   std::optional<Tradeoff> tradeoff;   ///< measured speed against accuracy; a replay does not look at it
-  KeyResults keyResults;              ///< empty when the session was saved without results
+  KeyResults keyResults;              ///< empty if the session was saved without results
   std::string digest;                 ///< of all results, "" without results; equal on the same machine and build only
   std::vector<std::string> warnings;  ///< unknown keys, one line each (not written)
   std::string unknownJson;            ///< unknown top-level keys, kept for writing back; "" = none
@@ -83,7 +83,7 @@ struct Session {
 Session readSession(const std::filesystem::path& file);
 /// The same from text that is kept elsewhere (in a picture): paths start at the folder of `file`.
 Session parseSession(const std::string& json, const std::filesystem::path& file);
-/// Atomically; paths relative to the session's folder. InputError when it cannot be written.
+/// Atomically; paths relative to the session's folder. InputError if it cannot be written.
 void writeSession(const Session& session, const std::filesystem::path& file);
 /// What `writeSession` writes there.
 std::string sessionText(const Session& session, const std::filesystem::path& file);

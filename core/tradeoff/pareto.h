@@ -19,7 +19,7 @@ std::vector<char> paretoFront(const std::vector<Cost>& costs);
 
 /// Indices of the presets among `costs`; all of them lie on the front.
 struct Presets {
-  int fast = -1, balanced = -1, exact = -1;  ///< -1 when no cost is finite
+  int fast = -1, balanced = -1, exact = -1;  ///< -1 if no cost is finite
 };
 /// Above this error a predicted contour is a wrong contour: a tenth of the highlight's diameter, an overlap of about 0.7.
 inline constexpr double kUsableErrorPct = 10;

@@ -19,7 +19,7 @@ struct FramePictures {
   std::shared_ptr<const Inspection> synthesis{};  ///< null: the scene's files
   QString key{};                                  ///< pictureKey(); "" for files
 
-  /// From now on those that belong to results on the same scene; null: as captured. False when that changes nothing.
+  /// From now on those that belong to results on the same scene; null: as captured. False if that changes nothing.
   bool follow(std::shared_ptr<const Inspection> inspection);
   bool contain(int frame) const { return scene && frame >= 0 && frame < int(scene->frames.size()); }
   const Frame& frame(int index) const { return scene->frames[std::size_t(index)]; }
@@ -40,7 +40,7 @@ class DecodedFrames {
 
   /// @param mostBytes  of all images that are kept.
   explicit DecodedFrames(int mostBytes, Decode decode = decodeFrame);
-  Held find(const FramePictures& pictures, int frame, FrameSource source);  ///< null where it is not there
+  Held find(const FramePictures& pictures, int frame, FrameSource source);  ///< null if it is not there
   /// Serves a view: does not wait. @return, throws  as decodeFrame.
   Outcome<Held> whole(const FramePictures& pictures, int frame, FrameSource source, const ProgressFn& going = {});
   /// Serves a thumbnail, a texture, a value: waits for a file that is being read for a view. What a what-if renders comes at

@@ -122,7 +122,7 @@ class JobQueue : public QObject, private QRunnable {
   bool busy() const { return !jobs_.empty(); }
 
  signals:
-  void busyChanged(bool busy);  ///< true when a job is asked for; false when the end of the last one has been told
+  void busyChanged(bool busy);  ///< true when a job is asked for; false if the end of the last one has been told
 
  private:
   using Job = JobToken::Job;

@@ -13,7 +13,7 @@ namespace glint::gui {
 struct PictureParts {
   std::function<int()> count;
   std::function<QString(int part)> name;
-  std::function<QRect(int part)> place;  ///< in the widget's coordinates; empty where it is out of sight
+  std::function<QRect(int part)> place;  ///< in the widget's coordinates; empty if it is out of sight
   std::function<int()> selected;         ///< -1 = none
   std::function<void(int part)> choose;
 };

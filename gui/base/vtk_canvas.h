@@ -40,7 +40,7 @@ class VtkCanvas : public QWidget {
   void resizeEvent(QResizeEvent* event) override;
 
  private:
-  bool prepare();  ///< false where OpenGL is missing
+  bool prepare();  ///< false if OpenGL is missing
   void fitWindow();
   void drawNext();
   bool upToDate() const;  ///< the last picture has the widget's size

@@ -23,7 +23,7 @@ class RecentResults {
   using Leads = std::function<bool(const InspectionRequest&)>;
   /// @param leads  whether a step of undo or redo leads to a request: positions that a slider only passed go first.
   void keep(std::shared_ptr<const Inspection> results, const InspectionRequest& computedFor, const Leads& leads);
-  /// Null where none are kept.
+  /// Null if none are kept.
   std::shared_ptr<const Inspection> find(const InspectionRequest& request);
   void clear() { kept_.clear(); }
 

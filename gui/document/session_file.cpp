@@ -24,7 +24,7 @@ namespace {
 const char* const kSceneView = "scene";
 constexpr int kDefaultTraining = 6;  // InspectionRequest::train
 
-/// The session that a path means; empty when it means a scene.
+/// The session that a path means; empty if it means a scene.
 fs::path sessionAt(const fs::path& path) {
   std::error_code ignored;  // what cannot be read is reported by the reader, with its reason
   if (!fs::is_directory(path, ignored)) return path.extension() == ".glint" ? path : fs::path();

@@ -87,7 +87,7 @@ class FrameCanvas : public QWidget {
   void onePixelPerPixel();
 
  signals:
-  void probed(const QString& text);  ///< "" when the mouse leaves the photograph
+  void probed(const QString& text);  ///< "" if the mouse leaves the photograph
   void hovered(double x, double y);  ///< photograph pixel under the mouse, after probed()
   void clicked(double x, double y);  ///< photograph pixel
   void zoomChanged(double zoom);

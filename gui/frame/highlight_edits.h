@@ -38,7 +38,7 @@ class HighlightEdits : public QObject {
  private:
   struct Target {
     std::shared_ptr<const Inspection> inspection;
-    const FrameEvidence* evidence;  ///< of the selected frame; null where it is not known
+    const FrameEvidence* evidence;  ///< of the selected frame; null if it is not known
     int frame;
   };
   /// An edit at the place under the pointer, or why it cannot be made.

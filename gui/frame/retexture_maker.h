@@ -17,7 +17,7 @@ namespace glint::gui {
 struct RetextureWish {
   std::shared_ptr<const Inspection> inspection;
   int frame = -1;
-  std::string file;          ///< of the texture or background; "" where none is needed
+  std::string file;          ///< of the texture or background; "" if none is needed
   RetextureRequest request;  ///< but for its picture
   viz::Development look;     ///< as the photograph beside it
 };
@@ -25,7 +25,7 @@ struct RetextureWish {
 struct RetextureAnswer {
   int frame = -1;
   std::string model;
-  std::shared_ptr<const Retextured> result;  ///< null where it failed
+  std::shared_ptr<const Retextured> result;  ///< null if it failed
   FramePicture picture;
   QString failure;  ///< one line; "" = none
 };

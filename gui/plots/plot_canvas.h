@@ -30,7 +30,7 @@ class PlotCanvas : public QWidget {
   /// Dragging marks a rectangle and reports its content; with Shift it moves the zoomed part. A click beside the samples marks
   /// none.
   void setBrushing(bool brushing) { brushing_ = brushing; }
-  /// Where a sample is drawn, in this widget's coordinates; empty when it is not.
+  /// Where a sample is drawn, in this widget's coordinates; empty if it is not.
   std::optional<QPointF> positionOf(const draw::PlotSample& sample) const;
   void renderNow() { repaint(); }
 

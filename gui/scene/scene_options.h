@@ -29,7 +29,7 @@ struct SceneOptions {
     viz::Eye eye = viz::Eye::Outside;
     std::set<std::string> models;  ///< empty = all
     bool parallel = false;
-    std::string name;  ///< "A: dual"; "" where there is nothing to tell apart
+    std::string name;  ///< "A: dual"; "" if there is nothing to tell apart
   };
   std::array<View, kMostSceneViews> views;
 

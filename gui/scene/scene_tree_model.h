@@ -89,7 +89,7 @@ class SceneTreeModel : public QAbstractItemModel {
   void emitChanged(int group);  ///< its head and its objects
   void emitHighlightsChanged(int camera);
   QString highlightName(const SceneObject& object) const;
-  std::vector<std::string> missedBy(const SceneObject& object) const;  ///< none where it is spurious, or where no one misses it
+  std::vector<std::string> missedBy(const SceneObject& object) const;  ///< none if it is spurious, or if no one misses it
   void emitAllChanged();
   std::array<bool, kGroups> layersShown() const;
   bool layerShown(const Group& group) const;

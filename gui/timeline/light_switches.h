@@ -18,7 +18,7 @@ QString lightStateText(viz::LightState state);
 QString lightClickText(const Document& document, viz::LightState state);
 /// What a click would do; false for a light that was off as captured while no contours are synthesised: nothing shows it lit.
 bool canSwitch(const Document& document, viz::LightState state);
-/// Off if it is on (or nothing says that it is not), else on. Does nothing where it cannot.
+/// Off if it is on (or nothing says that it is not), else on. Does nothing if it cannot.
 void switchLight(Document& document, const viz::LightRow& row, int frame);
 /// All frames at once: off where it could be on, or every frame as captured.
 void switchLightEverywhere(Document& document, const viz::LightRow& row, bool asCaptured);

@@ -25,7 +25,7 @@ class Autosave : public QObject {
 
   struct Found {
     QString file;
-    QString of;  ///< session or scene that it is about; "" when the file does not tell
+    QString of;  ///< session or scene that it is about; "" if the file does not tell
     QDateTime when;
   };
   /// The newest file left behind by a program that runs no more; this program's own file does not count.

@@ -47,16 +47,16 @@ class FileActions : public QObject {
   /// Opens what was refused, because a person says that its folder may be read. That is remembered, for this file and this
   /// folder; a file cannot say it itself.
   void allow(const glint::gui::OutsidePtr& outside);
-  /// Opens a session or scene of which a file lies elsewhere now. False when the user gave up.
+  /// Opens a session or scene of which a file lies elsewhere now. False if the user gave up.
   bool openRelinked(const QString& path, const glint::Relinked& instead);
   /// Takes over what is on screen with another scene; layout and 3D camera stay.
   void reopen(const glint::gui::OpenedPtr& opened);
-  /// Asks where a scene or mesh is, starting in `folder`; "" when the user gave up.
+  /// Asks where a scene or mesh is, starting in `folder`; "" if the user gave up.
   static QString whereIs(const QString& file, bool mesh, const QString& folder, QWidget* window);
   /// Asks where a missing scene or mesh is, then opens what needs it with it. Other meshes that are missing are looked for
-  /// beside it. False when the user gave up.
+  /// beside it. False if the user gave up.
   bool locate(const glint::gui::MissingPtr& missing);
-  /// Save in the background; false when there was nothing to save or the user gave up. Message or problem tells how it ended.
+  /// Save in the background; false if there was nothing to save or the user gave up. Message or problem tells how it ended.
   bool save();
   bool saveAs();
   /// Save as, to a file that was chosen; ".glint" is appended to a name without an ending. Asks before it replaces a session, and

@@ -36,7 +36,7 @@ struct PaletteMatch {
   friend auto operator<=>(const PaletteMatch&, const PaletteMatch&) = default;
 };
 /// Every word that was typed must occur in the item. A whole word counts more than the start of one, that more than the inside;
-/// the title counts most, then the place, then the starts of its other words; American spelling is understood. Nothing when a
+/// the title counts most, then the place, then the starts of its other words; American spelling is understood. Nothing if a
 /// word does not occur.
 std::optional<PaletteMatch> matchOf(const QString& typed, const PaletteItem& item);
 

@@ -16,7 +16,7 @@ class ShortcutDialog : public QDialog {
   Q_OBJECT
  public:
   explicit ShortcutDialog(Actions& actions, QWidget* parent = nullptr);
-  /// Gives an action one key (none when empty).
+  /// Gives an action one key (none if empty).
   void setShortcut(QAction* action, const QKeySequence& key);
 
  private:

@@ -37,7 +37,7 @@ class UnreadableFiles : public QObject {
   QMap<int, QString> all(FrameFile kind = FrameFile::Photograph) const;
   bool busy() const { return job_.busy(); }
 
-  /// Shows a failure with the offer to locate the mesh that it is about; false when it is about none of the scene's.
+  /// Shows a failure with the offer to locate the mesh that it is about; false if it is about none of the scene's.
   bool offerMesh(const QString& oneLine);
 
  public slots:

@@ -53,7 +53,7 @@ class WindowLayout : public QObject {
   QString name_;
   bool own_ = false;
   bool hidden_ = false;                ///< see hideUntilOpen()
-  std::optional<Arrangement> before_;  ///< to go back to; none where makeRoomFor() found what it wants
+  std::optional<Arrangement> before_;  ///< to go back to; none if makeRoomFor() found what it wants
 };
 
 }  // namespace glint::gui

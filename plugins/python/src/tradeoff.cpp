@@ -24,7 +24,7 @@ struct TradeoffHandle {
   std::optional<Failure> failure;  ///< why nothing was chosen
 };
 
-/// Why nothing was chosen; nothing where something was.
+/// Why nothing was chosen; nothing if something was.
 std::optional<Failure> whyNothingChosen(const Tradeoff& t, const SceneHandle& scene, InspectionRequest request,
                                         const ProgressFn& report) {
   if (!t.points.empty()) return t.chosen ? std::nullopt : std::optional(Failure{Reason::NotReached, t.reason});

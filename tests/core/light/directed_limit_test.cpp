@@ -94,7 +94,7 @@ void expectDerivatives(double limit, const Vector6& extent, const Eigen::Vector3
                   (2 * de);
   }
   EXPECT_LT((d.byExtent - byExtent).norm(),
-            kDifference * byExtent.norm() + 1e-12 / limit);  // none where the limit is held at its least
+            kDifference * byExtent.norm() + 1e-12 / limit);  // none if the limit is held at its least
 }
 
 TEST(DirectedLimit, DerivativesAreThoseOfTheAngle) {

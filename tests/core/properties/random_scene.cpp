@@ -122,7 +122,7 @@ Camera cameraAt(const Eigen::Vector3d& eye, const Eigen::Vector3d& target, Rando
 
 using Field = std::function<std::optional<double>(const Pixel&)>;
 
-/// The level set `level` of a field that rises away from `centre`, at 72 points of equal chords. Nothing where it is no star or
+/// The level set `level` of a field that rises away from `centre`, at 72 points of equal chords. Nothing if it is no star or
 /// leaves the image.
 std::optional<std::vector<Pixel>> contourOf(const Field& field, const Pixel& centre, double level, const Camera& camera) {
   const auto at = [&](double angle) -> std::optional<Pixel> {
@@ -194,7 +194,7 @@ struct Lamp {
   Eigen::Vector3d at;
 };
 
-/// One light's highlight in one view, nothing where it is not whole.
+/// One light's highlight in one view, nothing if it is not whole.
 std::optional<Highlight> highlightOf(const Surface& surface, const Camera& camera, const Lamp& lamp, const Draw& what,
                                      double width, Random& random) {
   const Light light = Light::at(lamp.at);
