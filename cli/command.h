@@ -73,7 +73,7 @@ struct Command {
   std::function<int(const Context&)> run;
 };
 
-/// Parses and runs; the whole of main. Never throws. Ctrl-C and SIGTERM end the program within 200 ms, also where the work
+/// Parses and runs; the whole of main. Never throws. Ctrl-C and SIGTERM end the program within 200 ms, even if the work
 /// does not ask for progress: temporary files of unfinished writes are removed then.
 int runCommandLine(int argc, char** argv, const std::function<std::vector<Command>()>& makeCommands);
 

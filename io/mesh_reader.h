@@ -39,7 +39,7 @@ MeshContent parseStlBinary(std::string_view bytes, const std::string& file);
 /// Coordinates are taken as they are; the format says right-handed, y up, metres. A node that mirrors turns its triangles
 /// around, so that their outer side stays outside. Primitives with the same positions share their vertices; those of a
 /// primitive without them are zero. Buffers are in the file, or are files in its folder or below: no other file is ever opened.
-/// @throw InputError also when the nodes are no trees, for skins and morph targets in use, for meshes repeated so often that
+/// @throw InputError also if the nodes are no trees, for skins and morph targets in use, for meshes repeated so often that
 ///        memory would no longer go with the file's size, and, by name, for extensions without which the file cannot be
 ///        understood (Draco, meshopt). KHR_mesh_quantization is read.
 /// @see Khronos Group, glTF 2.0 Specification, 2021.

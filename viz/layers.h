@@ -131,7 +131,7 @@ struct LayerInput {
     std::string light;
   };
   std::vector<Mirror> mirrors(int frame) const;
-  /// Index of a training view's highlight in its frame's evidence; -1 if it is not there.
+  /// Index of a training view's highlight in its frame's evidence; -1 if it is missing.
   int highlightOf(const TrainingView& view) const;
   /// Ink that reads on the background.
   Colour ink() const { return dark ? kTextOnDark : kTextOnLight; }

@@ -97,7 +97,7 @@ void writeBeside(const fs::path& folder, const fs::path& given, const Write& wri
   parents.keep();
 }
 
-/// Moves one file, or a folder that is not there yet.
+/// Moves one file, or a folder that does not exist yet.
 void moveOne(const OpenFolder& from, const OpenFolder& to, const fs::path& name, const fs::path& given) {
   requireAsExpected(given / name, to);
   if (::renameat(from.descriptor(), from.at(name).c_str(), to.descriptor(), to.at(name).c_str()) != 0)

@@ -12,7 +12,7 @@ namespace glint {
 /// @see CIPA DC-008 (Exif 2.32), 4.6.5: tag 0xA405 in the Exif IFD, which tag 0x8769 of the first IFD points to.
 std::optional<double> focalLength35mm(std::string_view file);
 
-/// How a viewer turns the picture, 1 to 8: 1 = as stored (also where the file does not say, or is damaged before it), 3 = by 180
+/// How a viewer turns the picture, 1 to 8: 1 = as stored (or if the file does not say, or is damaged before it), 3 = by 180
 /// degrees, 6 = by 90 degrees clockwise, 8 = by 90 degrees counter-clockwise; 2, 4, 5 and 7 also mirror. From 5 on width and
 /// height change places. Glint applies no quarter turns; of TIFF files OpenCV applies 2 to 4. Formats and checks as above.
 /// @see CIPA DC-008 (Exif 2.32), 4.6.4: tag 0x0112 in the first IFD.

@@ -24,7 +24,7 @@ std::size_t endingNumber(const fs::path& name) {
 bool isImageName(const fs::path& name) { return endingNumber(name) < kImageEndings.size(); }
 
 bool isFile(const fs::path& path) {
-  std::error_code ignored;  // what cannot be asked about is not there
+  std::error_code ignored;  // unreadable counts as missing
   return fs::is_regular_file(path, ignored);
 }
 
@@ -62,7 +62,7 @@ std::string FileFinder::imageLike(const Folder& folder, const std::string& name)
 fs::path FileFinder::similar(const fs::path& folder, const std::string& name, Ending ending) {
   const fs::path parts = fs::path(name).relative_path().lexically_normal();
   fs::path place = folder;
-  std::error_code ignored;  // what cannot be asked about is not there
+  std::error_code ignored;  // unreadable counts as missing
   for (auto part = parts.begin(); part != parts.end(); ++part) {
     const bool last = std::next(part) == parts.end();
     const std::string text = part->string();

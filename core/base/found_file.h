@@ -9,7 +9,7 @@
 namespace glint {
 
 /// Finds files by names that another system wrote: exactly so; else the only file whose name differs in case, in its Unicode form
-/// (fileNameKey) or by backslashes between folders. Lists each folder once, and only where a name is not there exactly. Rights
+/// (fileNameKey) or by backslashes between folders. Lists each folder once, and only if no name matches exactly. Rights
 /// are the caller's matter.
 class FileFinder {
  public:

@@ -246,7 +246,7 @@ fs::path bundlerListOf(const fs::path& file) {
     places.insert(places.begin(), folder / (name.replace(at, std::string("bundle").size(), "list") + ".txt"));
   places.insert(places.begin(), {fs::path(file.string() + ".list.txt"), folder / (file.stem().string() + ".list.txt")});
   if (folder.filename() == "bundle") places.push_back(folder.parent_path() / "list.txt");
-  std::error_code ignored;  // what cannot be asked about is not there
+  std::error_code ignored;  // unreadable counts as missing
   for (const fs::path& p : places)
     if (fs::is_regular_file(p, ignored)) return p;
   return {};
@@ -254,7 +254,7 @@ fs::path bundlerListOf(const fs::path& file) {
 
 bool isBundlerFile(const fs::path& file) { return capture::firstLineOf(file).rfind(kBundlerMagic, 0) == 0; }
 
-/// bundle.out, also where Bundler put it, else the first other file *.out.
+/// bundle.out, even in Bundler's own subfolder, else the first other file *.out.
 std::vector<fs::path> bundlerFilesIn(const fs::path& folder) {
   std::vector<fs::path> files{folder / "bundle.out", folder / "bundle" / "bundle.out"}, others;
   std::error_code error;  // what cannot be listed holds none
@@ -320,7 +320,7 @@ class BundlerReader : public CaptureReader {
   std::string describe() const override { return "Bundler (bundle.out and list.txt)"; }
 
   fs::path recognise(const fs::path& input) const override {
-    std::error_code ignored;  // what cannot be asked about is not there
+    std::error_code ignored;  // unreadable counts as missing
     if (!fs::is_directory(input, ignored)) return isBundlerFile(input) ? input : fs::path();
     for (const fs::path& p : bundlerFilesIn(input))
       if (!bundlerListOf(fs::absolute(p, ignored).lexically_normal()).empty()) return p;

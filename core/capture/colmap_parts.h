@@ -57,7 +57,7 @@ using EachPoint = std::function<void(const Eigen::Vector3d& point, const std::ve
 
 // Readers of both kinds, by Files::binary. `bytes` is the content of the file.
 
-// In a text, a line that cannot be read is a warning; its camera, image or point is not there. InputError if nothing is left.
+// In a text, a line that cannot be read is a warning; its camera, image or point is missing. InputError if nothing is left.
 
 std::vector<ModelCamera> readCameras(const Files& files, std::vector<std::string>& warnings);
 /// Poses and names; the 2D points are skipped. An image that is there twice, word for word, counts once. `warnings`: one line for

@@ -77,7 +77,7 @@ std::string colmapPoseText(const Eigen::Isometry3d& pose) {
 
 /// Files that would be read instead of the text, or with it.
 void refuseOtherModel(const fs::path& folder) {
-  std::error_code ignored;  // what cannot be asked about is not there
+  std::error_code ignored;  // unreadable counts as missing
   for (const char* file : {"cameras.bin", "images.bin", "points3D.bin", "rigs.bin", "frames.bin", "rigs.txt", "frames.txt"})
     if (fs::exists(folder / file, ignored))
       throw InputError(

@@ -32,7 +32,7 @@ class ImageSizes {
  private:
   /// Its first bytes; "" if it cannot be read.
   static std::string startOf(const std::filesystem::path& image) {
-    std::error_code ignored;  // what cannot be asked about is not there; a pipe would make the program wait
+    std::error_code ignored;  // unreadable counts as missing; a pipe would make the program wait
     if (!std::filesystem::is_regular_file(image, ignored)) return "";
     constexpr std::size_t kSize = 3 << 15;  // bytes: a JPEG's notes with a thumbnail are a segment of at most two thirds of it
     std::string start(kSize, '\0');

@@ -316,7 +316,7 @@ Eigen::Isometry3d nerfPose(const JsonNode& node, NerfContext& context) {
   return worldFromCam.inverse();
 }
 
-/// A path without "./", with slashes also where Windows wrote it.
+/// A path without "./", with slashes even if Windows wrote it.
 std::string nerfPath(const JsonNode& node) {
   if (node.text().empty()) node.fail("the path is empty");
   return fs::path(slashed(node.text())).lexically_normal().generic_string();
@@ -389,7 +389,7 @@ CaptureView readNerfFrame(const JsonNode& frame, NerfContext& context) {
 
 struct NerfPoints {
   std::string named;
-  fs::path file;  ///< empty if it is not there: programs read the cameras without it
+  fs::path file;  ///< empty if it is missing: programs read the cameras without it
 };
 
 /// What ply_file_path names.
@@ -397,7 +397,7 @@ std::optional<NerfPoints> nerfPointsOf(const JsonNode& root, const fs::path& fol
   const std::optional<JsonNode> node = givenNerfPath(root, "ply_file_path");
   if (!node) return std::nullopt;
   NerfPoints points{node->text(), names.other(folder, node->text(), node->file(), node->place())};
-  std::error_code ignored;  // what cannot be asked about is not there
+  std::error_code ignored;  // unreadable counts as missing
   if (!fs::is_regular_file(points.file, ignored)) points.file.clear();
   return points;
 }
@@ -484,7 +484,7 @@ bool nerfTextHasKey(const std::string& text, const std::string& key) {
 /// A file of the format; never throws.
 bool isNerfFile(const fs::path& file) {
   try {
-    std::error_code ignored;  // what cannot be asked about is not there
+    std::error_code ignored;  // unreadable counts as missing
     if (!fs::is_regular_file(file, ignored)) return false;
     char first = ' ';
     std::ifstream in(file, std::ios::binary);
@@ -526,7 +526,7 @@ class NerfstudioReader final : public CaptureReader {
   std::string describe() const override { return "transforms.json of nerfstudio, instant-ngp or the original NeRF data"; }
 
   fs::path recognise(const fs::path& input) const override {
-    std::error_code ignored;  // what cannot be asked about is not there
+    std::error_code ignored;  // unreadable counts as missing
     if (!fs::is_directory(input, ignored)) return isNerfFile(input) ? input : fs::path();
     if (const fs::path file = input / "transforms.json"; isNerfFile(file)) return file;
     const std::vector<fs::path> files = nerfFilesIn(input);

@@ -286,7 +286,7 @@ class NvmReader : public CaptureReader {
   std::string describe() const override { return "NVM of VisualSFM"; }
 
   fs::path recognise(const fs::path& input) const override {
-    std::error_code ignored;  // what cannot be asked about is not there
+    std::error_code ignored;  // unreadable counts as missing
     if (fs::is_directory(input, ignored)) {
       const std::vector<fs::path> files = nvmFilesIn(input);
       return files.empty() ? fs::path() : files.front();

@@ -303,7 +303,7 @@ class ImagesReader : public CaptureReader {
   std::string name() const override { return "images"; }
   std::string describe() const override { return "folder of images with --poses"; }
   fs::path recognise(const fs::path& input) const override {
-    std::error_code ignored;  // what cannot be asked about is not there
+    std::error_code ignored;  // unreadable counts as missing
     if (!fs::is_directory(input, ignored))
       return looksLikeImageName(input) && fs::is_regular_file(input, ignored) ? input : fs::path();
     const std::vector<fs::path> images = filesIn(input, looksLikeImageName);
@@ -328,7 +328,7 @@ class VideoReader : public CaptureReader {
   std::string name() const override { return "video"; }
   std::string describe() const override { return "video with --poses"; }
   fs::path recognise(const fs::path& input) const override {
-    std::error_code ignored;  // what cannot be asked about is not there
+    std::error_code ignored;  // unreadable counts as missing
     if (!fs::is_directory(input, ignored)) return looksLikeVideo(input) ? input : fs::path();
     const std::vector<fs::path> videos = filesIn(input, looksLikeVideo);
     return videos.size() == 1 ? videos.front() : fs::path();

@@ -53,7 +53,7 @@ inline std::size_t possibleCount(long long count, std::size_t bytesEach, std::si
 /// The first line without its line break, as far as it matters for what the file is; "" if it cannot be read.
 inline std::string firstLineOf(const std::filesystem::path& file) {
   constexpr std::size_t kMost = 256;  // bytes; the headers that are looked for are shorter
-  std::error_code ignored;            // what cannot be asked about is not there
+  std::error_code ignored;            // unreadable counts as missing
   if (!std::filesystem::is_regular_file(file, ignored)) return {};
   std::ifstream in(file, std::ios::binary);
   std::string start(kMost, '\0');

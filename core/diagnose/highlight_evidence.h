@@ -16,7 +16,7 @@ struct HighlightEvidence {
   int highlight = -1;  ///< its index in the frame's evidence; -1 if it is not among it
   Pixel peak{0, 0};    ///< ideal pixels
   double radiusPx = 0;
-  /// What the model leaves of its contour (residualMeaning()), also where the fit was refused for it; none if there is no fit.
+  /// What the model leaves of its contour (residualMeaning()), also if the fit was refused for it; none if there is no fit.
   std::optional<double> residualPx;
   /// rad: median of alpha along its contour under the common light; of the peaks alone where its
   /// bundle failed. None if there is no light, or the view is not usable.

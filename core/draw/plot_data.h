@@ -23,7 +23,7 @@ struct PlotTarget {
 };
 
 struct PlotPoint {
-  double x = 0, y = 0;   ///< in the axes' units, also where an axis is logarithmic; y NaN = a gap in the line
+  double x = 0, y = 0;   ///< in the axes' units, even if an axis is logarithmic; y NaN = a gap in the line
   bool noValue = false;  ///< y is NaN, and that is to be seen: a cross at the top of the plot, see PlotData::noValue
   std::optional<std::pair<double, double>> band;  ///< lower and upper end of the error bar
   std::string label;                              ///< lines for a tool tip

@@ -26,7 +26,7 @@ struct WalkTrace {
 };
 
 /// @param direction  of a canonical contour of this walk, without failure.
-/// @param n  places of each walk, >= 2. Failure: that of the direction, or of the first foot that is not there.
+/// @param n  places of each walk, >= 2. Failure: that of the direction, or of the first foot that is missing.
 Outcome<WalkTrace> traceWalk(const TangentWalk& walk, const Surface& surface, const DirectionResult& direction, int n);
 
 }  // namespace glint

@@ -15,7 +15,7 @@ namespace glint {
 
 /// How the highlights of several lights are detected (DetectOptions::separatePeaks).
 struct SeparateLights {
-  bool separate = false;                  ///< also where the frame does not state several lights
+  bool separate = false;                  ///< also if the frame does not state several lights
   std::vector<PeakReference> references;  ///< ideal pixels
 };
 
@@ -38,7 +38,7 @@ FrameEvidence gatherEvidence(const Scene& scene, int frame, FrameSource source, 
 
 /// Traces the detected highlights of a frame again on their specular part alone, where its colours allow it
 /// (`separateHighlights`). Highlights that the scene gives stay as they are.
-/// @return what came of it; the reason also where the lens distortion has no inverse
+/// @return what came of it; the reason also if the lens distortion has no inverse
 SpecularSeparation separateEvidence(const Scene& scene, int frame, FrameSource source, const Settings& settings,
                                     FrameEvidence& evidence);
 

@@ -24,7 +24,7 @@ class Ellipsoid {
   /// NotAnEllipsoid if S has a negative eigenvalue (below -1e-12 of the largest) or more than one zero; NotFinite.
   static Outcome<Ellipsoid> fromCentreAndShape(const Eigen::Vector3d& centre, const Eigen::Matrix3d& shape);
   /// With Q* scaled so that (3,3) = +1 and c its last column: the same conditions on S = c c^T - Q*_3x3.
-  /// NotAnEllipsoid also when (3,3) vanishes (an ellipsoid at infinity). Signature (3,1) alone would admit a hyperboloid.
+  /// NotAnEllipsoid also if (3,3) vanishes (an ellipsoid at infinity). Signature (3,1) alone would admit a hyperboloid.
   static Outcome<Ellipsoid> fromDual(const DualQuadric& dual);
 
   DualQuadric dual() const;

@@ -18,7 +18,7 @@ bool hasEdits(const WhatIf& whatIf, int frame);
 /// Applies a frame's edits in their order. Highlights that are left keep their number (FrameEvidence::asFound); of merged ones
 /// the first, of a cut one the part that holds the peak keeps it, and what is new gets numbers behind those found. What was taken
 /// out by Ignore is in FrameEvidence::ignored, and out of `truth`; the other kinds change nothing of the truth. An edit whose
-/// highlight is not there, or whose image cannot be read, changes nothing. Where no highlight is left the failure is NoHighlight.
+/// highlight is missing, or whose image cannot be read, changes nothing. Where no highlight is left the failure is NoHighlight.
 /// @param scene  with the request's what-if
 void applyEdits(FrameEvidence& evidence, const Scene& scene, const InspectionRequest& request);
 

@@ -172,7 +172,7 @@ void Run::highlights() {
   if (together && !missing.empty()) assignSeveralLights();
 }
 
-/// Frames whose evidence is not there yet and is asked for.
+/// Frames whose evidence does not exist yet and is asked for.
 std::vector<int> Run::framesToGather() const {
   std::vector<int> frames;
   const bool all = !only_.frame || r_.train.perSurface || lightsAreOpen();

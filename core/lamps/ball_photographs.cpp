@@ -67,7 +67,7 @@ std::vector<double> numbersOf(const std::string& text, std::size_t count, const 
 fs::path folderOf(const fs::path& input, const NamedBall& ball) {
   if (ball.folder.empty()) return input;
   const fs::path as = ball.folder, in = input / ball.folder;
-  std::error_code ignored;  // what cannot be asked about is not there
+  std::error_code ignored;  // unreadable counts as missing
   const bool here = fs::is_directory(as, ignored), inside = as.is_relative() && fs::is_directory(in, ignored);
   const std::string place = "--ball " + ball.text;
   if (here && inside && !fs::equivalent(as, in, ignored))
@@ -81,7 +81,7 @@ fs::path folderOf(const fs::path& input, const NamedBall& ball) {
 /// Folders beside those that balls name, with photographs of the same names.
 std::vector<std::string> foldersLeftOut(const std::vector<fs::path>& used, const std::vector<Shot>& shots) {
   std::set<fs::path> named, parents, found;
-  std::error_code ignored;  // what cannot be asked about is not there
+  std::error_code ignored;  // unreadable counts as missing
   for (const fs::path& folder : used) named.insert(fs::weakly_canonical(folder, ignored));
   for (const fs::path& folder : named) parents.insert(folder.parent_path());
   for (const fs::path& parent : parents)

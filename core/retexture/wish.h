@@ -36,7 +36,7 @@ struct RetexturedFrame {
 /// inspectOneFrame() and retexture() as wished.
 /// @param request   of the session: models, training frames, settings
 /// @param previous  an inspection of the same scene, whose stages are taken over; null = none
-/// Failures of both, the detail with model and frame. InputError: a model, light, mapping, shading or file that is not there or
+/// Failures of both, the detail with model and frame. InputError: a model, light, mapping, shading or file that is missing or
 /// not right; std::invalid_argument: a picture of another size; Stopped.
 RetexturedFrame retextureAsWished(std::shared_ptr<const Scene> scene, InspectionRequest request, int frame,
                                   const RetextureWish& wish, const ProgressFn& progress = {},

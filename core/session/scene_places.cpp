@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 
 namespace {
 void requireFolder(const std::string& folder, const std::string& given) {
-  std::error_code ignored;  // what cannot be asked about is not there
+  std::error_code ignored;  // unreadable counts as missing
   if (!fs::is_directory(folder, ignored)) throw InputError("", given, "this folder does not exist");
 }
 

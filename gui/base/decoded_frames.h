@@ -40,7 +40,7 @@ class DecodedFrames {
 
   /// @param mostBytes  of all images that are kept.
   explicit DecodedFrames(int mostBytes, Decode decode = decodeFrame);
-  Held find(const FramePictures& pictures, int frame, FrameSource source);  ///< null if it is not there
+  Held find(const FramePictures& pictures, int frame, FrameSource source);  ///< null if it is missing
   /// Serves a view: does not wait. @return, throws  as decodeFrame.
   Outcome<Held> whole(const FramePictures& pictures, int frame, FrameSource source, const ProgressFn& going = {});
   /// Serves a thumbnail, a texture, a value: waits for a file that is being read for a view. What a what-if renders comes at

@@ -30,7 +30,7 @@ QString nameIn(const QString& tip) {
   return text.section(end, 0, 0).trimmed();
 }
 
-/// What has no words of its own is called by its tip, also when that changes. A given name stays.
+/// What has no words of its own is called by its tip, even when that changes. A given name stays.
 void nameByTip(QWidget* widget) {
   const auto* button = qobject_cast<const QAbstractButton*>(widget);
   const bool wordless = button ? button->text().isEmpty() : holdsAValue(widget) && !qobject_cast<const QAbstractSpinBox*>(widget);

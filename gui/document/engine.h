@@ -46,7 +46,7 @@ struct Opened {
 /// Everything that the desktop program asks of `core`. `coreEngine()` is the real one; tests replace single
 /// functions to make a run long, to count runs or to fail. All of them may be called from a worker thread.
 struct Engine {
-  /// InputError (file, place, reason) if the input cannot be used; MissingScene for a session whose scene is not there,
+  /// InputError (file, place, reason) if the input cannot be used; MissingScene for a session whose scene is missing,
   /// MissingMesh for a scene whose mesh is not.
   /// @param instead  where these are now.
   std::function<Opened(const std::string& path, const Relinked& instead)> open;

@@ -23,7 +23,7 @@ bool isOpenLesson(const Document& document);
 std::vector<std::filesystem::path> filesOfInput(const Document& document);
 /// Whether a path is one of them.
 bool isOfInput(const Document& document, const QString& file);
-/// What a file holds, to see later whether it is still the same; "" if it is not there or cannot be read.
+/// What a file holds, to see later whether it is still the same; "" if it is missing or cannot be read.
 std::string stampOf(const QString& file);
 
 }  // namespace glint::gui

@@ -44,7 +44,7 @@ constexpr double kEquationEm = 20;  ///< EM of docs/make_equations.py
 /// Read once from the program's resources.
 const QList<EquationSymbol>& equationSymbols();
 const QList<Equation>& equations();
-/// Null for one that is not there.
+/// Null for one that is missing.
 const Equation* equationById(const QString& id);
 const EquationSymbol* symbolById(const QString& id);
 

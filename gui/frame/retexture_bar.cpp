@@ -233,7 +233,7 @@ void RetextureBar::setOn(bool on) {
 RetextureRequest RetextureBar::request() const {
   RetextureRequest r;
   r.model = document_.plottedModel();
-  r.light = light_->currentData().toString().toStdString();  // "" also where the option names one that this model has no fit of
+  r.light = light_->currentData().toString().toStdString();  // "" even if the option names one that this model has no fit of
   r.base = chosen() == QLatin1String("texture")      ? RetextureBase::Texture
            : chosen() == QLatin1String("background") ? RetextureBase::Background
                                                      : RetextureBase::Removed;

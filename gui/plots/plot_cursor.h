@@ -12,7 +12,7 @@
 namespace glint::gui {
 
 /// A point of a plot that the keyboard goes to, and the points from another one up to it. It stays with its point when the plot
-/// is drawn anew, also where the point is in another series then; it is gone where there is no such point any more.
+/// is drawn anew, even if the point is in another series then; it goes if that point no longer exists.
 class PlotCursor {
  public:
   /// Where a sample is drawn; nothing for what is not in sight.

@@ -206,7 +206,7 @@ void PlotsPanel::refresh() {
     if (!pane.dirty || !pane.canvas->isVisible()) continue;
     pane.dirty = false;
     draw::PlotData plot = data(kind(i), pane);
-    plot.id = kind(i);  // also where there is nothing to show
+    plot.id = kind(i);  // even if there is nothing to show
     pane.canvas->show(plot);
     pane.canvas->setSelection(document_.selection());
   }

@@ -21,7 +21,7 @@ class Reader : public QDialog {
   /// Shows a page, and brings the window to the front.
   /// @param page   "manual", "method", "notation" or "glossary"; another one leaves the page as it is.
   /// @param place  of the method: a section's number ("8a"); of the glossary: a word; of the others: how a heading begins. "" or
-  ///               what is not there = the beginning.
+  ///               a missing one = the beginning.
   void openPage(const QString& page, const QString& place = {});
 
  private:

@@ -128,7 +128,7 @@ SceneHandle sceneFrom(const std::vector<Frame>& frames, const std::map<std::stri
   for (const auto& [id, file] : meshes) {
     SurfaceSource source;
     source.mesh = std::filesystem::absolute(file).lexically_normal();
-    std::error_code ignored;  // what cannot be asked about is not there
+    std::error_code ignored;  // unreadable counts as missing
     if (!std::filesystem::is_regular_file(*source.mesh, ignored))
       throw InputError(file, "surfaces." + id, "there is no such mesh file");
     scene->surfaces[id] = source;

@@ -201,7 +201,7 @@ TEST(HighlightMotion, APatternOfSpotsWhoseTracksCross) {
   EXPECT_GT(j.count(true, Kind::Texture), 0);
 }
 
-/// What is found there by chance is not there in most views.
+/// What is found there by chance is missing in most views.
 TEST(HighlightMotion, ViewsThatDoNotFindItSpeakAgainstIt) {
   Painted p = paintedBall();
   p.paint = {{onBall(0, 0.2), 0.04, 1.0}};
