@@ -28,8 +28,8 @@ class OpenFolder {
 };
 
 /// A program writes long after it has checked where: in a folder of several users somebody may put a link or a file there
-/// meanwhile. Says that the check passed for this file or folder; the next `requireAsExpected` of this path in this process holds
-/// it against what is there then. A later call for the same path takes the place of an earlier one.
+/// meanwhile. Says that the check passed for this file or folder; the next `requireAsExpected` of this path in this process
+/// compares it with what is there then. A later call for the same path takes the place of an earlier one.
 /// @param stillAllowed  the check once more, false = what is there now must not be replaced
 void expectOutput(const std::filesystem::path& path, std::function<bool()> stillAllowed);
 

@@ -18,7 +18,7 @@ class Mat;
 namespace glint {
 
 /// libglint-codecs is missing, cannot be loaded or is of another version. One line with its file. Not an InputError: a program
-/// that goes on without a file that cannot be read must not go on without all of them.
+/// that goes on without one unreadable file must not go on without all of them.
 class CodecsMissing : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -36,11 +36,11 @@ struct Conditioning {
   Verdict worst() const;  ///< of the findings; Unknown when none is known
 };
 
-/// One entry per fit of every model, in the models' order. A fit that failed has a red finding with its reason beside what can
-/// still be said. The linear system for Q* is solved again here, whatever solver the fit used: `refined` with a prior is an
+/// One entry per fit of every model, in the models' order. A failed fit has a red finding with its reason, and the findings that
+/// can still be made. The linear system for Q* is solved again here, whatever solver the fit used: `refined` with a prior is an
 /// ellipsoid always, and only the linear solution shows that the contours alone would have given a hyperboloid.
 /// Where a training peak lies outside its own contour (see outsideOfContour), a model that uses peaks has a red finding "peaks",
-/// and nothing that rests on its views is green: a wide angle between rays that were never seen is no good news.
+/// and nothing that rests on its views is green: a wide angle between rays that were never seen means nothing.
 std::vector<Conditioning> conditioningOf(const Inspection& inspection);
 
 /// Widest angle between two of the unit vectors, rad; 0 for fewer than two. Above 256 vectors, that many evenly spread ones are

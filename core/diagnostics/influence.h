@@ -13,10 +13,10 @@ namespace glint {
 /// What one training frame does for one model: the model is fitted again without the frame.
 ///
 /// Every error in it is capped at kNoPredictionPct (100 %): from there on the prediction lies as far from the highlight as the
-/// highlight is large, which is no better than none, and none counts as just that. Without the cap one prediction that went
-/// wrong (a near-degenerate fit predicts 10,000 %) would decide a mean over all probes, and a frame that turns such a failure
-/// into a missing prediction would seem to help by its removal. So a model whose errors are all beyond the cap (`primal` off the
-/// plane) shows no influence of any frame: its changes are 0.
+/// highlight is large, which is no better than a missing one, and a missing one counts as 100 %. Without the cap one prediction
+/// that went wrong (a near-degenerate fit predicts 10,000 %) would decide a mean over all probes, and a frame that turns such a
+/// failure into a missing prediction would seem to help by its removal. So a model whose errors are all beyond the cap (`primal`
+/// off the plane) shows no influence of any frame: its changes are 0.
 struct ModelInfluence {
   std::optional<double> leftOutPct;  ///< contour error on the frame itself, predicted from the others, mean over its highlights
   /// Mean contour error on the probes without the frame; a missing prediction counts as kNoPredictionPct.

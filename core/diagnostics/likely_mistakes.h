@@ -38,7 +38,7 @@ struct LikelyMistake {
 
 /// Images that are mirrored or turned, meshes turned by quarters and halves about an axis, meshes of another unit or size, poses
 /// of another convention, images that were resized where the principal point is their middle. Those that people meet most come
-/// first: of equals the first one is named.
+/// first: if several fit equally well, the first one is named.
 const std::vector<LikelyMistake>& likelyMistakes();
 
 }  // namespace glint

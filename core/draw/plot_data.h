@@ -65,11 +65,11 @@ struct PlotShade {
   std::string name{};  ///< for the legend, which says the same name once; "" = not there
 };
 
-/// One plot: everything that is drawn and written, without how. Plain data.
+/// One plot: all its content, without its look. Plain data.
 struct PlotData {
   std::string id;  ///< "error", "lobe", ...
   std::string title;
-  std::string empty;  ///< one sentence in place of a plot that there is not
+  std::string empty;  ///< one sentence in place of a missing plot
   /// y by direction x (rad) around a circle, 0 = right and pi/2 = down as in the photograph; the circle is y = 0.
   bool dial = false;
   PlotAxis x, y;

@@ -14,7 +14,7 @@ struct PlotStyle {
   friend bool operator==(const PlotStyle&, const PlotStyle&) = default;
 };
 
-/// What a plot marks of its samples.
+/// The samples that a plot marks.
 struct PlotMarks {
   std::vector<PlotSample> selected;
   std::optional<PlotSample> hovered;

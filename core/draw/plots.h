@@ -15,7 +15,7 @@
 
 namespace glint::draw {
 
-/// The plots that there are, in the order of a list to choose from.
+/// All plots, in the order of a list to choose from.
 struct PlotKind {
   const char* id;
   const char* title;
@@ -23,7 +23,7 @@ struct PlotKind {
 };
 const std::vector<PlotKind>& plotKinds();
 
-/// What reading a frame's image and surface told about it, off the interface thread.
+/// Samples of a frame's image and surface, read off the interface thread.
 struct FrameSamples {
   int frame = -1;
   std::string frameId;
@@ -40,7 +40,7 @@ struct FrameSamples {
     std::optional<Failure> comparisonFailure{};
   };
   std::vector<Lobe> lobes;
-  std::string failure;  ///< why there is nothing; "" if there is
+  std::string failure;  ///< why there are no samples; "" if there are some
 };
 /// Reads the frame's linear image, mask and surface, and samples its highlights for the model's light. Slow: tens of milliseconds
 /// and more.

@@ -9,7 +9,7 @@
 
 namespace glint {
 
-/// A fit's band (predict.band), and what is to be said about it in words.
+/// A fit's band (predict.band), and remarks about it, in words.
 struct FittedBand {
   std::shared_ptr<const Band> band;  ///< null without one
   std::vector<std::string> remarks;

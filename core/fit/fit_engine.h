@@ -29,7 +29,7 @@ FitInput fitInput(const HighlightModel& model, std::vector<TrainingView> views,
                   const std::optional<Outcome<LightEstimate>>& light, const Settings& settings,
                   std::shared_ptr<const PixelFit> pixelFit = nullptr, const ProgressFn& progress = {});
 
-/// Fits a model to that. The model's failures.
+/// Fits a model to that input. Fails as the model does.
 Outcome<ModelFit> fitModel(const HighlightModel& model, std::vector<TrainingView> views,
                            const std::optional<Outcome<LightEstimate>>& light, const Settings& settings,
                            std::shared_ptr<const PixelFit> pixelFit = nullptr, const ProgressFn& progress = {});

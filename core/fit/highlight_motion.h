@@ -44,8 +44,8 @@ std::vector<std::vector<int>> motionPanels(const Scene& scene, const SurfaceCach
 /// With P the surface point under the middle of a contour, every other view that sees P answers by the two places
 ///   paint:      the contour, carried over on the surface
 ///   highlight:  predicted brightest points of lamps along the mirrored ray at P, from a fifth of the camera's distance to
-///               infinity, at rest in the world or with the camera (which serves an object that is turned before a still camera
-/// as well) It speaks for paint if a candidate of like size and strength lies on the first, and the second is farther away than
+///               infinity, at rest in the world or with the camera (which serves objects that turn before a still camera)
+/// It speaks for paint if a candidate of like size and strength lies on the first, and the second is farther away than
 /// twice the match's tolerance, at least 4 px; against it if the spot would be strong enough to be found at the first and is not.
 /// Paint needs two views for it, three times as many as against it (views within one degree count once), and a remaining motion
 /// towards the second place below what a lamp at a fiftieth of the camera's distance would cause. Nearer lamps look like paint,

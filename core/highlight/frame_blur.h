@@ -20,7 +20,7 @@ struct FrameBlur {
 };
 
 /// Measures step edges: along the gradient, the variance of its derivative, less that of interpolation and of a pixel. The
-/// lower quartile of each of eight directions counts(soft shading is no blur); a fit of three coefficients over the directions
+/// lower quartile of each of eight directions counts (soft shading is no blur); a fit of three coefficients over the directions
 /// separates motion from the rest. Tells motion only if six directions follow the fit well; else the sharpest direction counts.
 /// This is the blur of edges. A moving object before a still wall is more blurred. A matt object whose silhouette fades
 /// into a dark ground is less: rendered ellipsoids without blur gave up to 2.6 px, at times a motion of 12 px. Callers say so.

@@ -14,7 +14,7 @@ namespace glint {
 /// highlight counted alike. Nothing without predict.band.
 std::optional<BandScore> bandSummary(const Inspection& inspection, const ModelResult& result);
 
-/// What to say beside the bands of a model: how wide they are, how many vertices they hold, and the remarks of its fits, each
+/// Remarks on the bands of a model: how wide they are, how many vertices they hold, and the remarks of its fits, each
 /// with the light where there are several fits. Empty without predict.band.
 std::vector<std::string> bandLines(const Inspection& inspection, const ModelResult& result);
 

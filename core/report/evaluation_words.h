@@ -14,7 +14,7 @@ struct EvaluationWords {
   std::string best;  ///< the model that they are about: the chosen one, else bestModel(); "" = none answered
   /// A diagnosis' advice, how good it is, what it misses and invents, the next best, models without answer and why.
   std::vector<std::string> inShort;
-  /// Why all that may be wrong: what it is scored against, how few frames, remarks of the best model's fits.
+  /// Reasons for doubt: what it is scored against, how few frames, remarks of the best model's fits.
   std::vector<std::string> doubts;
 };
 EvaluationWords evaluationWords(const Inspection& inspection, const ReportContext& context);

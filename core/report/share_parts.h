@@ -62,7 +62,7 @@ std::string trueLightsJson(const Inspection& inspection);
 /// Title, what there is to see, steps with their texts and layers, questions with answers, the typeset equations of all these
 /// (SVG), and the names of their symbols: "null" where there is no such lesson.
 std::string lessonJson(const std::string& id);
-/// `evaluationJson` without what was measured by a clock.
+/// `evaluationJson` without times.
 std::string untimed(const std::string& evaluation);
 
 /// Files of resources/share and resources/explain, and three.js, as they were when the program was built.

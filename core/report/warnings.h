@@ -17,7 +17,7 @@ std::vector<std::string> warningsOf(const Inspection& inspection);
 std::string fitWarning(const std::string& model, const std::string& light, const std::optional<std::string>& surface,
                        const std::string& remark);
 
-/// That of a fit that is poor, before its reason.
+/// The warning of a poor fit, before its reason.
 std::string poorWarning(const std::string& reason);
 
 /// What the predictions of held-out frames are scored against: "truth" (--truth), "given contours" (of the scene file) or "own

@@ -62,7 +62,7 @@ Outcome<HighlightAppearance> learnAppearance(const Inspection& inspection, const
 /// Those of the newest inputs alone are kept. For one caller at a time.
 class LearnedAppearances {
  public:
-  /// learnAppearance(), or what it said before of the same scene, model and inputs of the fits.
+  /// learnAppearance(), or its earlier answer for the same scene, model and inputs of the fits.
   Outcome<HighlightAppearance> of(const Inspection& inspection, const std::string& model, const ModelResult::Fit& fit);
 
  private:

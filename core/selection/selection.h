@@ -60,7 +60,7 @@ struct Selection {
 
 /// An error as large as the highlight itself is worth no more than no prediction; a missing prediction counts as this.
 inline constexpr double kNoPredictionPct = 100;
-/// Beyond this the error of the mean says enough, and the work would grow with the square of the views.
+/// More views tell little about the error of the mean, and the work grows with their square.
 inline constexpr int kMostLeftOut = 24;
 /// Errors nearer than this are equal: a twentieth of a pixel on a highlight of 100 px. Detection alone costs more (0.08 to 0.27 %
 /// on 8-bit frames, docs/accuracy.md), and a plane has a contour that is an ellipse only to about 0.02 %.
@@ -90,7 +90,7 @@ inline constexpr double kAsGood = 1.1;
 /// where views to predict lie outside the training views, what it predicts there must be reproduced within the tolerance by its
 /// left-out fits and by `limit-angle`. Nothing richer is computed.
 /// Without `goodEnoughPct` it stops early only at `primal` on what is a plane as far as contours resolve; and a model that cannot
-/// become as good as the best any more is not tried on its other views.
+/// become as good as the best is not tried on its other views.
 /// A view that one model answers and another does not counts as kNoPredictionPct for the other; one that no model answers
 /// counts for none.
 /// Where frames to predict show a surface that no training view shows, `primal` and `dual` are not eligible: their ellipsoid
@@ -98,8 +98,8 @@ inline constexpr double kAsGood = 1.1;
 /// The light and the canonical contours without a view are computed once for all models that need them.
 /// Then, for a model that walks: local quadrics are good enough where the curvature varies little over the highlights of the
 /// left-out views and of some frames to predict (kLargestVariation, core/model/star.h), where they answer the left-out views
-/// with the same highlights and an error that the rule would still take, and where they are faster. Each question is asked
-/// only when those before it are answered by yes.
+/// with the same highlights and an error that the rule would still take, and are faster. Each condition is checked
+/// only if those before it hold.
 /// @param inspection  needs evidence and views; models need not have been fitted.
 Selection selectModel(const Inspection& inspection, const std::optional<double>& goodEnoughPct, const ProgressFn& progress = {});
 

@@ -85,10 +85,10 @@ Session readSession(const std::filesystem::path& file);
 Session parseSession(const std::string& json, const std::filesystem::path& file);
 /// Atomically; paths relative to the session's folder. InputError if it cannot be written.
 void writeSession(const Session& session, const std::filesystem::path& file);
-/// What `writeSession` writes there.
+/// The text that `writeSession` writes.
 std::string sessionText(const Session& session, const std::filesystem::path& file);
 
-/// The scene of a session is not where the session says: the one failure that a person can mend by pointing at it.
+/// The scene of a session is not where the session says: the one failure that a person can repair by pointing at it.
 class MissingScene : public InputError {
  public:
   MissingScene(const std::filesystem::path& session, std::filesystem::path scene);

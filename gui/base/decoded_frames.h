@@ -13,7 +13,7 @@
 
 namespace glint::gui {
 
-/// Whose pictures: those of a scene's files, or those that a what-if renders in their place.
+/// The source of pictures: a scene's files, or a what-if that renders them.
 struct FramePictures {
   std::shared_ptr<const Scene> scene;
   std::shared_ptr<const Inspection> synthesis{};  ///< null: the scene's files
@@ -30,8 +30,8 @@ struct FramePictures {
 /// photographOf return and throw.
 Outcome<Image> decodeFrame(const FramePictures& of, int frame, FrameSource source, int every, const ProgressFn& going);
 
-/// The whole frames that were decoded for the screen last, shared by all that show them. A frame that is looked at stays as long
-/// as there is room for it; one that only something small was made of stays while little else is there. Those of a scene that is
+/// The whole frames that were decoded for the screen last, shared by all that show them. A frame on screen stays as long
+/// as there is room for it; one decoded for something small stays only while there is plenty. Those of a scene that is
 /// gone, and those of another what-if on the same scene, make room first. Thread-safe.
 class DecodedFrames {
  public:

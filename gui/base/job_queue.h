@@ -44,8 +44,8 @@ struct JobResult : JobEnd {
 };
 
 enum class Asks {
-  AsWell,   ///< beside what was asked for before
-  Newest,   ///< in place of it: what waits is dropped, what runs can ask whether it was overtaken
+  AsWell,   ///< in addition to earlier jobs
+  Newest,   ///< replaces earlier jobs: waiting ones are dropped, running ones can ask whether they were overtaken
   Instead,  ///< and what runs is stopped
   Lasting   ///< as AsWell, and nothing that is asked for later overtakes or stops it
 };
@@ -105,18 +105,18 @@ class JobQueue : public QObject, private QRunnable {
     post(
         result, std::move(fill), [result, done = std::move(done)]() mutable { done(*result); }, asks);
   }
-  /// Nothing that was asked for is of use any more: what waits is dropped, what runs is overtaken.
+  /// No job is needed any longer: drops waiting ones, overtakes running ones.
   void drop() { overtake(false), tellBusy(); }
-  /// What was asked for ends soon, and as stopped.
+  /// All jobs end soon, as stopped.
   void stop() {
     for (const auto& job : jobs_) job->stopped = true;
   }
-  /// Until everything that was asked for has run; what it tells comes later, as always.
+  /// Waits until all jobs have run; their ends are reported later, as always.
   void wait() {
     std::unique_lock<std::mutex> lock(mutex_);
     rested_.wait(lock, [this] { return !running_; });
   }
-  /// Drops what waits, stops what runs and waits for it.
+  /// Drops waiting jobs, stops running ones and waits for them.
   void close() { overtake(true, true), wait(); }
   /// Jobs are waiting or running, or the end of the last one is being told.
   bool busy() const { return !jobs_.empty(); }
@@ -143,7 +143,7 @@ class JobQueue : public QObject, private QRunnable {
   bool running_ = false;
 };
 
-/// Failures of jobs that no panel has a place for, for the window to tell: each cause once, not once for each frame.
+/// Failures of jobs without a place in a panel, for the window to report: each cause once, not once per frame.
 class Unexpected : public QObject {
   Q_OBJECT
  public:

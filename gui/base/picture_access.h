@@ -18,7 +18,7 @@ struct PictureParts {
   std::function<void(int part)> choose;
 };
 
-/// A painted widget tells screen readers what it is and what it shows in words, which would otherwise hear of an empty area.
+/// Makes a painted widget tell screen readers what it is and shows, in words; else they report an empty area.
 /// @param name   what it is, unless the widget has an accessible name of its own
 /// @param words  what it shows by now; asked for only while a screen reader listens
 void describePicture(QWidget* picture, const QString& name, std::function<QString()> words, PictureParts parts = {});

@@ -9,7 +9,7 @@
 
 namespace glint::gui {
 
-/// A plain table for reading: rows of texts, each with what it is sorted by.
+/// A plain table for reading: rows of texts, each with its sort key.
 class RowsModel : public QAbstractTableModel {
   Q_OBJECT
  public:

@@ -11,7 +11,7 @@
 
 namespace glint::gui {
 
-/// For people: control characters, marks that turn the direction of writing, and bytes that are not UTF-8 are shown escaped,
+/// Text for people: control characters, marks that turn the direction of writing, and bytes that are not UTF-8 are shown escaped,
 /// whatever its origin. Line ends and tabs stay.
 QString toQString(const std::string& s);
 /// The same for a name: line ends and tabs are shown escaped, too, so that it stays one line.
