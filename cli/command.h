@@ -56,7 +56,7 @@ class Context {
   void info(const std::string& line) const;  ///< on standard error, on a terminal only
   /// To standard output, control characters from files escaped. InputError if that is full or closed.
   void print(const std::string& text) const;
-  /// "-" = standard output, unchanged; else a file written atomically, and said so. InputError if it cannot be written.
+  /// "-" = standard output, unchanged; else a file written atomically, with a message. InputError if it cannot be written.
   void write(const std::string& fileOrDash, const std::string& content) const;
   /// "wrote FILE", on standard error, on a terminal only. For files that a command writes by other means than `write`.
   void wrote(const std::string& file) const;

@@ -20,7 +20,7 @@ bool interrupted();
 /// The command is done, only its result remains to be said: a Ctrl-C changes nothing from now on. False if one came before.
 bool finish();
 
-/// Says once that the program was stopped: the thread and the command may both come to it. It has been said when this returns.
+/// Prints once that the program was stopped, whether the thread or the command comes first. Returns after the message.
 void sayStopped();
 
 /// Ends an interrupted process without waiting for destructors, which may take too long. Removes unfinished writes.

@@ -51,7 +51,7 @@ class LayerCache {
  public:
   struct Photograph {
     vtkSmartPointer<vtkImageData> texture;  ///< null: see `arriving`
-    bool arriving = false;                  ///< asked for, not there yet; else it cannot be read
+    bool arriving = false;                  ///< requested, but not loaded yet; else unreadable
   };
   /// Gives photographs that are read elsewhere, so that drawing does not wait for files. @param frame  index.
   using PhotographSource = std::function<Photograph(int frame, int maxWidth)>;
@@ -158,7 +158,7 @@ struct DrawnLabel {
   double clear = 0;                       ///< m: radius about the anchor, of the thing beside the text
 };
 
-constexpr std::size_t kMostGlyphs = 64;  ///< of more cameras there is nowhere a picture that is free of them
+constexpr std::size_t kMostGlyphs = 64;  ///< more cameras leave no place free of them
 
 /// What one layer puts into the picture.
 struct LayerContent {
@@ -183,7 +183,7 @@ struct LayerContent {
   }
   /// Prepares the camera of the picture that is drawn next.
   void bringNearer(vtkCamera* camera, int heightPx) const;
-  /// To the end of what VTK draws in order: of two things at one depth, the one that is drawn last shows.
+  /// Moves them to the end of VTK's drawing order: at equal depth, the last thing drawn shows.
   void drawLast(vtkRenderer& renderer) const;
 };
 

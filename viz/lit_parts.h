@@ -25,7 +25,7 @@ vtkSmartPointer<vtkActor> named(vtkSmartPointer<vtkActor> thing, const std::stri
 void nameLayer(vtkProp* thing, const std::string& layer);
 
 /// Lights up what is drawn in a renderer, by the names that nameLayer() left: in another colour, with thick lines, until told
-/// otherwise, also what is built anew meanwhile. Knows neither scene nor layers.
+/// otherwise, including what is rebuilt meanwhile. Knows neither scene nor layers.
 class LitParts {
  public:
   explicit LitParts(vtkRenderer* renderer);

@@ -39,7 +39,7 @@ class PhotographStand {
   /// Where an ideal pixel of the camera is drawn, display coordinates.
   Eigen::Vector2d displayOf(const Camera& camera, const Pixel& ideal) const { return placement(camera).at(ideal) + origin(); }
 
-  /// Shows the photograph where it belongs to the frame.
+  /// Shows the photograph if it belongs to the frame.
   void show(int frame, const Camera& camera);
   void hide() { overlay_.hide(); }
 

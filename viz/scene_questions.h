@@ -15,14 +15,14 @@ void addFrustum(const LayerInput& in, std::vector<Eigen::Vector3d>& points, int 
 /// The selected highlight on the surface, else the selected model's ellipsoids, else the selected camera with its highlights;
 /// never empty.
 std::vector<Eigen::Vector3d> selectedExtent(const LayerInput& in);
-/// What a view is to hold, and from where.
+/// What a view must hold, and from where.
 struct Framing {
   std::vector<Eigen::Vector3d> points;
   Eigen::Vector3d back{0, 0, 1}, up{0, 1, 0};  ///< unit, square to each other; back: towards the eye
   Eigen::Vector3d reference{0, 0, 0};          ///< the focal point's depth
   double leastDepth = 0;
 };
-/// What else is drawn, and is to be held.
+/// Other drawn parts that the view must hold.
 struct DrawnParts {
   bool normal = false, ellipsoids = false, virtualCameras = false, tangentPlanes = false, walk = false;
 };

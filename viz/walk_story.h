@@ -15,7 +15,7 @@
 namespace glint::viz {
 
 /// The limit-angle walk of one direction, step by step: forwards (an observed contour: on S, then on T) or inverse (a prediction:
-/// on T, then on S). Everything that draws it draws this.
+/// on T, then on S). All pictures of the walk draw this.
 struct WalkStory {
   int frame = -1;
   std::string light, model;  ///< model: of the inverse walk, else ""

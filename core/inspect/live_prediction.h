@@ -53,7 +53,7 @@ class LivePredictor {
 
   /// @param id      of a frame of the scene: its surface and the lights that are on in it count, and its intrinsics. Another id:
   ///                all fitted lights, and the surface and intrinsics that all frames share
-  /// @param camera  intrinsics and size, where they are given; its pose is not looked at
+  /// @param camera  intrinsics and size, where they are given; ignores its pose
   /// @return  NotSupported if the intrinsics are not known. That a surface is not known is the failure of a prediction.
   Outcome<LiveAnswer> predict(const std::string& id, const Eigen::Isometry3d& cameraFromWorld,
                               const std::optional<Camera>& camera) const;

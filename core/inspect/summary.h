@@ -9,9 +9,9 @@
 
 namespace glint {
 
-/// What counts, in % of a highlight's diameter, where a contour error cannot: for an observed highlight that is not predicted,
-/// and at most for one that is; for one that is predicted where none is observed. That is little, because a filter may take it
-/// out, while nothing mends a contour: it decides between equal contours.
+/// The error, in % of a highlight's diameter, that counts without a contour error: for an observed highlight that is not
+/// predicted, and at most for one that is; for one that is predicted where none is observed. That is little, because a filter may
+/// take it out, while nothing repairs a contour: it decides between equal contours.
 inline constexpr double kMissedPct = 100, kSpuriousPct = 0.1;
 
 /// What `evaluate` prints of one model (docs/formats.md, "evaluate --json"): held-out frames only, except per surface.

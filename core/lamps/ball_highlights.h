@@ -19,7 +19,7 @@ struct StillReflections {
   bool cover(const Eigen::Vector2d& place) const;
 };
 
-/// What is bright in three of four photographs. A lamp that moves is at no place in so many.
+/// Finds what is bright in three of four photographs. A moving lamp never stays in place for so many.
 /// @param photographs  of one size, as for findLampHighlight(); fewer than two tell nothing. @param corner,ball  as there
 StillReflections stillReflections(std::span<const Image> photographs, const Eigen::Vector2d& corner, const BallOutline& ball);
 
@@ -35,7 +35,7 @@ StillReflections stillReflections(std::span<const Image> photographs, const Eige
 /// @param photograph  8-bit values 0 to 255 as float, 1 or 3 channels.
 /// @param corner      the place of its first pixel in the shot.
 /// @param balls       the outlines of all balls in the shot. @param which  the ball to look at.
-/// @param still       what is not looked at.
+/// @param still       places to ignore.
 /// @return  `frame` stays empty. The covariance has the scatter of the levels and the core's shape, but nothing of the outline.
 ///          NoHighlight: nothing stands out, two are equal, or the largest is another ball or at the outline; Clipped:
 ///          as wide as a fifth of the ball's radius, no single place; OutsideImage: cut by the photograph's border; NotFinite.

@@ -11,7 +11,7 @@
 
 namespace glint {
 
-/// What the outline of a sphere needs to know of the camera: a pinhole with square pixels, lens distortion removed.
+/// The camera as the outline of a sphere needs it: a pinhole with square pixels, lens distortion removed.
 struct OutlineCamera {
   double focalPx = 0;                                   ///< > 0
   Eigen::Vector2d principal = Eigen::Vector2d::Zero();  ///< px, in the shot
@@ -41,12 +41,12 @@ Outcome<RefinedOutline> refineBallOutline(std::span<const Image> photographs, co
 /// Which of two outlines counts.
 struct OutlineChoice {
   RefinedOutline outline;
-  std::string refused;  ///< why the one of the edges does not; empty = it does
+  std::string refused;  ///< why the outline of the edges does not count; empty = it does
   /// How far it lies inside of the given one all around, if more than its standard deviation; else 0.
   double withinPx = 0;
 };
 
-/// The outline of the edges where these tell it better than the one that is given is known. Where it lies inside of that all
+/// The outline of the edges, if they determine it better than the given one is known. If it lies inside of that all
 /// around, it may be a reflection's edge within a rim that does not stand out: its radius is then uncertain by as much.
 /// @param given  with its covariance
 OutlineChoice chosenOutline(const Outcome<RefinedOutline>& found, const RefinedOutline& given);

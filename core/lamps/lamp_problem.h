@@ -57,7 +57,7 @@ class LampProblem {
   /// Whether the peaks say anything about the lamp's distance, beyond round-off.
   bool tellsDistance(const LampUnknowns& lamp) const;
 
-  /// Moves the lamps and, if asked, the outlines to the least sum of squares. False if it does not settle.
+  /// Moves the lamps and, if asked, the outlines to the least sum of squares. False if it does not converge.
   bool solve(std::vector<LampUnknowns>& lamps, bool outlinesToo);
 
   /// Covariance of z, (I + sum E^T E)^-1, and the step to the least sum of squares, for all lamps but `without`.

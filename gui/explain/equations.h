@@ -48,8 +48,8 @@ const QList<Equation>& equations();
 const Equation* equationById(const QString& id);
 const EquationSymbol* symbolById(const QString& id);
 
-/// An equation's picture in HTML for an EquationBrowser, and its plain form, too small to be seen, for who searches, copies or
-/// listens. What has no picture is in plain form. `base` is the colour of the page.
+/// An equation's picture in HTML for an EquationBrowser, and its plain form, too small to be seen, for searching, copying and
+/// screen readers. What has no picture is in plain form. `base` is the colour of the page.
 QString equationHtml(const QString& plain, const QColor& base);
 /// HTML in which the plain forms of equations have become that.
 QString withEquations(QString html, const QColor& base);

@@ -87,7 +87,7 @@ class ExplainPanel : public QWidget {
   std::string soloBefore_;                    ///< and whether of the selected frame alone
   std::string linesBefore_;                   ///< and which epipolar lines
   bool explaining_ = false;                   ///< a step was shown last
-  bool lookPending_ = false;                  ///< the step on screen was gone to, and what it is about is not computed yet
+  bool lookPending_ = false;                  ///< the step on screen has nothing computed to show yet
   InspectionRequest lessonRequest_;           ///< what was asked for when the scene was opened: lessons speak of that
   QString lookedAt_;                          ///< what the views were sent to last; "" = wherever a session left them
   Actions* actions_ = nullptr;

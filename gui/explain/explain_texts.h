@@ -21,7 +21,7 @@ struct ExplainText {
   QString id, title, text, equation, section;
   QStringList layers;             ///< of the scene, that show it
   QStringList frameLayers;        ///< "frame/NAME"
-  QString look;                   ///< what of the scene is to be seen, see ScenePanel::look
+  QString look;                   ///< which part of the scene to show, see ScenePanel::look
   bool solo = false;              ///< of the selected frame alone: what belongs to the others would lie over it
   bool epipolar = false;          ///< with the epipolar lines of two frames side by side, which are no other step's geometry
   QMap<QString, Words> ofModels;  ///< where a model does something else: by its id, "" = as for the others

@@ -18,7 +18,7 @@ class NumberBox;
 class FolderRow;
 class LongJob;
 
-/// Says which fault is meant and asks how near the smaller one has to come, and for the folder to write.
+/// Names the fault, asks how near the smaller one must come to it, and for the folder to write.
 class ReproDialog : public QDialog {
   Q_OBJECT
  public:

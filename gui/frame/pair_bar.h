@@ -25,7 +25,7 @@ class PairBar : public QWidget {
 
   bool on() const;
   int secondFrame() const;
-  /// Adds the lines to both overlays and says what they miss by.
+  /// Adds the lines to both overlays and shows by how much they miss.
   void addLines(draw::FrameOverlay& first, draw::FrameOverlay& second);
   /// A kind of line that is drawn: its colour, and whose it is with what it misses by.
   struct KeyEntry {

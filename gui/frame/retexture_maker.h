@@ -30,8 +30,8 @@ struct RetextureAnswer {
   QString failure;  ///< one line; "" = none
 };
 
-/// Retextures frames off the interface thread. What runs for the same frame goes on to its end, so that pictures follow a slider
-/// that is being dragged; of what is asked for meanwhile, the newest is next.
+/// Retextures frames off the interface thread. A run for the same frame goes on to its end, so that pictures follow a slider
+/// that is being dragged; then comes the newest request.
 class RetextureMaker : public QObject {
   Q_OBJECT
  public:
@@ -39,7 +39,7 @@ class RetextureMaker : public QObject {
   ~RetextureMaker() override;
   /// made() follows; at once where nothing has changed since.
   void want(const RetextureWish& wish);
-  /// Nothing that was asked for is of use any more.
+  /// No request is needed any longer.
   void forget();
   /// An answer is on its way.
   bool busy() const { return running_ || waiting_; }

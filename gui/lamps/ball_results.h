@@ -13,7 +13,7 @@ class LampsPanel;
 class PlotCanvas;
 class RowsModel;
 
-/// What photographs of balls gave: the lamps, what each ball leaves, and what each photograph contributes.
+/// Results from photographs of balls: the lamps, each ball's residuals, and each photograph's contribution.
 class BallResults : public QTabWidget {
   Q_OBJECT
  public:

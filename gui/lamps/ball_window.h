@@ -19,7 +19,7 @@ class BallControls;
 class BallResults;
 class FrameCanvas;
 
-/// Lamps from photographs of mirror balls: draw each ball's outline, measure, look at what came out. One lamp in each
+/// Lamps from photographs of mirror balls: draw each ball's outline, measure, look at the results. One lamp in each
 /// photograph. It asks the same as `glint lights FOLDER --ball …`, and knows no scene.
 class BallWindow : public QWidget {
   Q_OBJECT
@@ -30,7 +30,7 @@ class BallWindow : public QWidget {
   bool open(const QString& folder);
   /// Opens the folder and shows what is asked, for measure(). False, with a problem, where it has no photographs; InputError.
   bool ask(const BallQuestion& question);
-  /// The photograph of this name, with or without its ending; none: nothing changes.
+  /// Shows the photograph of this name, with or without its ending, if it exists.
   void showPhotograph(const QString& name);
   /// Nothing runs, and the photograph is there.
   bool idle() const { return !jobs_.busy() && !loader_->busy(); }

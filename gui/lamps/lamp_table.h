@@ -11,7 +11,7 @@ class QSortFilterProxyModel;
 
 namespace glint::gui {
 
-/// One row for each lamp: where it is and how surely, what its highlights leave, which were dropped, and why there is no more.
+/// One row for each lamp: its place with the uncertainty, the residuals of its highlights, dropped ones, and why more is unknown.
 class LampTable : public QTableView {
   Q_OBJECT
  public:

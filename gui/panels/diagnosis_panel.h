@@ -46,7 +46,7 @@ class DiagnosisPanel : public QWidget {
   void problemsChanged(int count);  ///< models that do not answer, and frames with missed or spurious highlights or large errors
   void problem(const QString& oneLine);
   void message(const QString& oneLine);
-  /// How the fits that were asked about went, for the 3D view; null = nothing is known, or of an earlier state.
+  /// Runs of the requested fits, for the 3D view; null = unknown, or of an earlier state.
   void runsChanged(const std::shared_ptr<const std::vector<glint::viz::DrawnRuns>>& runs);
 
  private:
@@ -55,12 +55,12 @@ class DiagnosisPanel : public QWidget {
   void fillProblems();
   /// The model that is selected, if nothing is wrong with it; else "".
   std::string goodModel() const;
-  /// Says so first, where the list has something about others.
+  /// Says first that the selected model is good, if the list is about others.
   void fillGood();
   /// What the highlights that this model gets wrong have in common.
   void addShared(QTreeWidgetItem* top, const Inspection& inspection, const std::string& model);
   bool isOf(const Inspection& inspection) const;
-  /// What is known by now.
+  /// Takes the diagnosis so far.
   void take(Diagnosis diagnosis);
   bool advised() const;  ///< there is an answer, and nothing has changed since
   void fillAdvice();

@@ -59,7 +59,7 @@ class ErrorModel : public QAbstractTableModel {
   static QString idOf(int column);
   /// The models among the rows, from simple to rich.
   QStringList models() const;
-  /// All rows are of an earlier request than what is asked for: faded.
+  /// All rows belong to an earlier request: faded.
   void setEarlier(bool earlier);
 
  private:

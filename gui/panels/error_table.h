@@ -61,7 +61,7 @@ class ErrorTable : public QWidget {
   void showWarnings();
   void fitReason();
   void selectFromDocument();
-  /// The current row is not left half behind the lower edge.
+  /// Scrolls so that the lower edge does not cut the current row.
   void uncutCurrent();
   void selectFromTable();
 

@@ -16,7 +16,7 @@ class QTabBar;
 
 namespace glint::gui {
 
-/// A coloured chip: a value with its verdict as colour and as a sign, so that it can be told without the colour.
+/// A coloured chip: a value with its verdict as colour and as a sign, which works without the colour.
 class Chip : public QAbstractButton {
   Q_OBJECT
  public:
@@ -25,7 +25,7 @@ class Chip : public QAbstractButton {
   void show(Verdict verdict, const QString& text);
   /// "%" or "px" after a space; "" = none.
   QString unit() const;
-  /// Where the row's name has it, no chip of the row does.
+  /// The chips show no unit if the row's name has it.
   void setUnitShown(bool shown);
   QSize sizeHint() const override;
   QSize minimumSizeHint() const override;

@@ -69,7 +69,7 @@ class SceneViews : public QWidget {
   void renderNow();
   /// Draws now as while something moves, and in full when nothing moved for a while.
   void renderMoving();
-  /// Something that is looked through says so; else what it says is "".
+  /// Names the camera that is looked through; else "".
   QString eyeText() const;
 
  signals:
@@ -77,7 +77,7 @@ class SceneViews : public QWidget {
   void picked(const glint::viz::Picked& picked);
   void emptyClicked();
   void activeChanged();
-  /// The picture is of another selection or other results than were set. It ends only after a pause, so that a mark does not
+  /// The picture shows an older selection or older results. It ends only after a pause, so that a mark does not
   /// flicker while one picture after the other is late.
   void behindChanged(bool behind);
   void wipeMoved(double share, bool released);

@@ -11,9 +11,9 @@ class QUndoCommand;
 
 namespace glint::gui {
 
-/// Where the 3D views stood in every arrangement of the undo history. Moving a view is no step of undo, but a step that arranges
-/// the views otherwise moves them: linked views follow one, new views start at one. Going back over such a step brings each view
-/// back to where it stood.
+/// The places of the 3D views in every arrangement of the undo history. Moving a view is no step of undo, but a step that
+/// arranges the views otherwise moves them: linked views follow one, new views start at one. Going back over such a step brings
+/// each view back to its place.
 class ViewHistory {
  public:
   using Places = std::vector<viz::ViewPoint>;  ///< of all views, shown or not

@@ -22,7 +22,7 @@ bool canSwitch(const Document& document, viz::LightState state);
 void switchLight(Document& document, const viz::LightRow& row, int frame);
 /// All frames at once: off where it could be on, or every frame as captured.
 void switchLightEverywhere(Document& document, const viz::LightRow& row, bool asCaptured);
-/// A ticked entry for each light of the frame; one that says why where there is only one light.
+/// A ticked entry for each light of the frame; if there is only one, an entry that says why.
 void addLights(QMenu& menu, Document& document, const std::vector<viz::LightRow>& rows, int frame);
 
 }  // namespace glint::gui

@@ -40,7 +40,7 @@ class TimelineStrip : public QWidget {
   /// Frames that are marked as without a readable photograph, with the reason.
   void setUnreadable(const QMap<int, QString>& reasons);
   QList<int> unreadable() const { return unreadable_.keys(); }
-  /// What the tool tip says there: of a light's row which light it is, and of the frame all there is; "" = none.
+  /// The tool tip there: for a light's row its light, for a frame all that is known; "" = none.
   QString tipAt(const QPoint& position) const;
   int backgroundsPainted() const { return backgroundsPainted_; }
   const Thumbnails& thumbnails() const { return thumbnails_; }
@@ -91,7 +91,7 @@ class TimelineStrip : public QWidget {
   QString toolTip(int frame) const;
   QString lightTip(int row, int frame) const;  ///< frame -1: of the row
   int lightAt(double y) const;                 ///< row, -1 outside
-  /// As everywhere else in the window; the end of a long one.
+  /// The id as elsewhere in the window; of a long one its end.
   QString idText(int frame) const;
   bool namesLights() const;  ///< their rows are high enough for their names
 

@@ -46,7 +46,7 @@ class Autosave : public QObject {
   std::function<Opened()> snapshot_;
   QString folder_, file_;
   std::unique_ptr<QLockFile> lock_;
-  bool reported_ = false;  ///< a folder that cannot be written is told once
+  bool reported_ = false;  ///< a folder that cannot be written is reported once
   JobQueue jobs_{JobQueue::Rank::Foreground};
 };
 

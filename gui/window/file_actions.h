@@ -42,14 +42,14 @@ class FileActions : public QObject {
   /// scene or in the one that lies above it.
   void drop(const QString& path);
   void open(const QString& path);
-  /// What a program left behind that died. @param of  the session or scene that it is about.
+  /// Opens what a program left behind that died. @param of  the session or scene that it is about.
   void openRecovered(const QString& file, const QString& of);
-  /// Opens what was refused, because a person says that its folder may be read. That is remembered, for this file and this
-  /// folder; a file cannot say it itself.
+  /// Opens what was refused, because the user allows its folder. Remembers the permission, for this file and this
+  /// folder; a file cannot give it to itself.
   void allow(const glint::gui::OutsidePtr& outside);
   /// Opens a session or scene of which a file lies elsewhere now. False if the user gave up.
   bool openRelinked(const QString& path, const glint::Relinked& instead);
-  /// Takes over what is on screen with another scene; layout and 3D camera stay.
+  /// Keeps what is on screen, with another scene; layout and 3D camera stay.
   void reopen(const glint::gui::OpenedPtr& opened);
   /// Asks where a scene or mesh is, starting in `folder`; "" if the user gave up.
   static QString whereIs(const QString& file, bool mesh, const QString& folder, QWidget* window);

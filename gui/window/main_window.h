@@ -81,7 +81,7 @@ class MainWindow : public QMainWindow {
 
  protected:
   void closeEvent(QCloseEvent* e) override;
-  /// As Qt's, but past what lies behind another tab.
+  /// As Qt's, but skips what lies behind another tab.
   bool focusNextPrevChild(bool next) override;
   void resizeEvent(QResizeEvent* e) override;
   bool event(QEvent* e) override;

@@ -12,7 +12,7 @@ class QUrl;
 
 namespace glint::gui {
 
-/// A window beside the others in which one reads: the manual, the method, the notation, and the glossary. It needs no network:
+/// A separate window for reading: the manual, the method, the notation, and the glossary. It needs no network:
 /// the pages are part of the program.
 class Reader : public QDialog {
   Q_OBJECT

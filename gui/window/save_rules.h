@@ -18,7 +18,7 @@ class SaveRules {
   enum class Answer { Write, SaveAs, Cancel };
 
   SaveRules(const Document& document, QWidget* window) : document_(document), window_(window) {}
-  /// A session was opened from, or saved to this file, which held this then; "" = not known.
+  /// A session was opened from, or saved to, this file with this stamp; "" = unknown.
   void follow(const QString& session, const std::string& stamp);
   /// Another window or program that has the open session open, in words; "" = none.
   QString otherHolder() { return lock_.otherHolder(document_.sessionFile()); }

@@ -29,7 +29,7 @@ class Tile : public QAbstractButton {
   QPixmap picture_;
 };
 
-/// What an empty window shows: what this is, what to do first, lessons and sessions to look at, and the recent files. Tab and the
+/// The content of an empty window: what this is, what to do first, lessons and sessions, and the recent files. Tab and the
 /// arrow keys go through all of it.
 class StartPage : public QWidget {
   Q_OBJECT

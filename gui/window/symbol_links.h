@@ -16,8 +16,8 @@ class DualityWindow;
 class EquationBrowser;
 class SceneViews;
 
-/// Joins a text's symbols with the 3D views: what one points at in either lights up in both. Also the plane that is lit in the
-/// window of primal and dual, which touches its cone in 3D; and back, what is clicked in 3D lights its plane there.
+/// Joins a text's symbols with the 3D views: what the user points at in either lights up in both. Also the plane that is lit in
+/// the window of primal and dual, which touches its cone in 3D; and back, what is clicked in 3D lights its plane there.
 class SymbolLinks : public QObject {
   Q_OBJECT
  public:

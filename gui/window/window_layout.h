@@ -14,11 +14,11 @@ class QSplitter;
 namespace glint::gui {
 
 /// How the docks and the views in the middle of the window are arranged: as one of the layouts says, as the user keeps them, or
-/// for a while as something needs that the user has started.
+/// for a while, as a task needs that the user has started.
 class WindowLayout : public QObject {
   Q_OBJECT
  public:
-  /// @param views  what shares the middle of the window.
+  /// @param views  the views that share the middle of the window.
   WindowLayout(QMainWindow* window, Docks& docks, QSplitter* views);
   /// Name of the layout that was applied last.
   const QString& name() const { return name_; }
