@@ -80,7 +80,7 @@ bool finish() {
 }
 
 void sayStopped() {
-  // Whoever holds it writes one line; a standard error that takes none must not keep the program.
+  // Its holder writes one line; a blocked standard error must not keep the program.
   const std::unique_lock<std::timed_mutex> lock(sayMutex, std::chrono::milliseconds(20));
   if (!lock || said) return;
   said = true;

@@ -18,7 +18,7 @@ namespace {
 
 struct LightsArguments {
   std::string input, json, on, ballRadius, exclude, source = "radiance", outlines = "fitted";
-  double outlineSigmaPx = 1;  // what a person who draws a circle gets right
+  double outlineSigmaPx = 1;  // the accuracy of a circle that a person draws
   std::vector<std::string> balls, set, out;
   SceneArguments places;
 };

@@ -101,7 +101,7 @@ void addVirtualCameras(const LayerInput& in, std::vector<Eigen::Vector3d>& point
 
 constexpr double kLeansUp = 0.5;                       // cosine: a normal that leans less upwards is of a side
 constexpr double kAlongUp = 0.9;                       // cosine: a view that is closer to upwards cannot have it up
-constexpr double kDot = 0.125;                         // of the picture: a smaller ellipsoid is no shape any more
+constexpr double kDot = 0.125;                         // of the picture: a smaller ellipsoid has no visible shape
 constexpr double kEllipsoidShare = 1.6;                // of its diagonal: then it fills about a quarter of the picture
 constexpr double kWalkDisc = 1.15, kWalkArrow = 0.85;  // of the walk's reach, see walkLayer()
 }  // namespace

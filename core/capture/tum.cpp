@@ -276,7 +276,7 @@ class TumReader : public CaptureReader {
       const bool isFolder = fs::is_directory(input, ignored);
       const fs::path list = isFolder ? input / "rgb.txt" : input;
       if (list.filename() != "rgb.txt" || !looksLikeTumList(list)) return {};
-      // Who names the list itself is told that the poses are missing; in a folder it might be a list of another program.
+      // For the list itself, report that the poses are missing; a list in a folder might be another program's.
       if (isFolder && !fs::is_regular_file(input / kTumPoses, ignored)) return {};
       return list;
     } catch (const std::exception&) {  // no memory, a path that the system refuses: not recognised

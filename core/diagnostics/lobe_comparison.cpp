@@ -16,7 +16,7 @@ constexpr int kLeastLobePixels = 24;                 // three numbers of each lo
 constexpr int kAlphaBins = 24;                       // of alpha: a curve that one can follow
 constexpr int kLeastInBin = 3;                       // fewer have no spread
 constexpr int kWidthSteps = 36;                      // of the search, equal in log m: a lobe's width changes by 18 % a step
-constexpr double kNarrowest = 0.003, kWidest = 1.3;  // of m: a mirror, and what is hardly a highlight any more
+constexpr double kNarrowest = 0.003, kWidest = 1.3;  // of m: a mirror, and what is hardly a highlight
 constexpr int kBits = 20;                            // of log m: a millionth
 constexpr double kToldApart = 9;                     // of chi squared: three standard deviations of one number
 

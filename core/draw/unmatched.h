@@ -34,7 +34,7 @@ struct FrameUnmatched {
 };
 /// Those of all models, by frame; leaves out frames in which all have a partner. One pass, for lists of long sequences.
 std::map<int, FrameUnmatched> unmatchedByFrame(const Inspection& inspection);
-/// The spurious highlight that is selected; null if nothing is, or if it is not spurious any more.
+/// The spurious highlight that is selected; null if nothing is, or if it is no longer spurious.
 const PredictedHighlight* selectedSpurious(const Inspection& inspection, const Selection& selection);
 /// The comparison of the selected model that a missed or spurious selection is a row of, and that row; nulls without one.
 struct UnmatchedRow {

@@ -270,7 +270,7 @@ double shareOfNearest(const std::vector<const Answer*>& stays) {
   return std::max(0.0, share) + 2 * sigma / std::sqrt(along);
 }
 
-/// Views that see the spot from one side say the same, and are counted once; whoever of them speaks against paint is heard.
+/// Views that see the spot from one side agree and count once; one of them that contradicts paint counts.
 std::set<int> sidesWith(const std::vector<Answer>& answers, Answer::Says says) {
   std::set<int> sides;
   for (const Answer& a : answers)

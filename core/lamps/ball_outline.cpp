@@ -40,7 +40,7 @@ constexpr double kLeastGain = 0.1;   // of squared heights at twice the blur: a 
 constexpr double kLevelShare = 0.5;  // of a grey level: rounding
 constexpr double kShiftShare = 0.8,
                  kAside = 0.25;       // of the shift, along it and across: 95 % of the errors within three of it (tests)
-constexpr double kRoughShare = 0.01;  // of the radius: what a person who draws a circle gets right on a large ball
+constexpr double kRoughShare = 0.01;  // of the radius: the accuracy of a circle that a person draws on a large ball
 constexpr double kCovered = 2;        // standard deviations to a given outline around the edges
 constexpr int kLeftOut = 12;          // parts of the outline, each left out once
 

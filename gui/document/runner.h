@@ -81,7 +81,7 @@ class Runner : public QObject {
   /// What every training frame does; answers with influenceMeasured().
   void influence(InspectionPtr inspection);
   void cancel() { jobs_.stop(); }
-  /// Nothing that was asked for is of use any more, except saving: results are there already.
+  /// No request is needed any longer, except saving: results exist already.
   void drop() { jobs_.drop(); }
   bool busy() const { return jobs_.busy(); }
 

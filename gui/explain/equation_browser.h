@@ -25,7 +25,7 @@ class EquationBrowser : public QTextBrowser {
 
  signals:
   void pageShown();
-  void symbolPointed(const QString& symbol);  ///< "" = none any more
+  void symbolPointed(const QString& symbol);  ///< "" = no longer any
 
  protected:
   bool viewportEvent(QEvent* e) override;
