@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Ways from a cloud of points to a surface, against the shape on which the points were drawn: the table in docs/captures.md, which
-// docs/make_clouds.py writes with what this prints. One line of JSON for each cloud and way.
+// Ways from a cloud of points to a surface, against the shape on which the points were drawn: the table in docs/captures.md,
+// which docs/make_clouds.py writes with what this prints. One line of JSON for each cloud and way.
 #include <pcl/kdtree/kdtree_flann.h>
 #include <pcl/point_types.h>
 #include <pcl/search/kdtree.h>
@@ -127,8 +127,8 @@ class Nearest {
   pcl::KdTreeFLANN<pcl::PointXYZ> tree_;
 };
 
-/// Where the ray meets the moving least squares surface: the quadric fitted to the neighbours of where it is now, met again and again.
-/// The fit is that of core/surface/point_surface.h. @see Adamson and Alexa, Ray tracing point set surfaces, SMI 2003.
+/// Where the ray meets the moving least squares surface: the quadric fitted to the neighbours of where it is now, met again and
+/// again. The fit is that of core/surface/point_surface.h. @see Adamson and Alexa, Ray tracing point set surfaces, SMI 2003.
 std::optional<SurfacePoint> onMovingLeastSquares(const Nearest& cloud, int neighbours, const Ray& ray, double begin) {
   constexpr int kMostSteps = 20;
   Vector3d at = ray.origin + begin * ray.direction, normal = -ray.direction;

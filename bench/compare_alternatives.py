@@ -128,7 +128,8 @@ def main():
 
     # Glint: fit and prediction of three models, errors of the held-out frames against the reference contours.
     def evaluated(models, *settings):
-        done = subprocess.run([a.glint, "evaluate", str(a.scene / "scene-analytic.json"), "--models", models, "--train", "spread:6",
+        done = subprocess.run([a.glint, "evaluate", str(a.scene / "scene-analytic.json"), "--models", models, "--train",
+                               "spread:6",
                                "--truth", str(a.scene / "contours"), "--json", "-", *settings], capture_output=True, text=True)
         if done.returncode:
             sys.exit(f"glint: {done.stderr.strip()}")
@@ -139,7 +140,8 @@ def main():
     held_out = [f["index"] for f in evaluation["models"]["limit-angle"]["frames"]]
     rows = []
     for name, results, model in (("`canonical`", evaluation, "canonical"), ("`limit-angle`", evaluation, "limit-angle"),
-                                 ("`limit-angle`, star and hints", fast, "limit-angle"), ("`reflectance`", evaluation, "reflectance")):
+                                 ("`limit-angle`, star and hints", fast, "limit-angle"),
+                                 ("`reflectance`", evaluation, "reflectance")):
         r = results["models"].get(model)
         if r and r["status"] == "ok":
             rows.append((f"Glint, {name}", r["summary"]["contour_error_pct"]["mean"], r["summary"]["time_us"]["median"] * 1e-6))
@@ -199,19 +201,22 @@ def main():
             points = predict(pose)
             times.append(time.perf_counter() - start)
         errors.append(error_pct(points, reference(frame["id"])[0]))
-    rows.append(("NumPy, the limit angle alone, 36 directions, on the formula of a sphere", statistics.mean(errors), statistics.median(times)))
+    rows.append(("NumPy, the limit angle alone, 36 directions, on the formula of a sphere", statistics.mean(errors),
+                 statistics.median(times)))
 
     # Cycles: the same radiance, the contour at half of the reference's peak (which a user would have to estimate as well).
     light_truth = about["lights"][0]
     chosen = held_out[:: max(1, len(held_out) // a.frames)][: a.frames]
     with tempfile.TemporaryDirectory() as out:
-        job = {"out": out, "width": scene["camera"]["width"], "height": scene["camera"]["height"], "focal": focal, "radius": radius,
+        job = {"out": out, "width": scene["camera"]["width"], "height": scene["camera"]["height"], "focal": focal,
+               "radius": radius,
                "roughness": about["material"]["blender_roughness"], "colour": about["material"]["glossy_color"],
                "power": light_truth["power_W"], "lamp_radius": light_truth["radius_m"], "lamp": light_truth["position"],
                "samples": [int(x) for x in a.samples.split(",")],
                "frames": [{k: scene["frames"][i][k] for k in ("id", "camera_from_world")} for i in chosen]}
         (pathlib.Path(out) / "job.json").write_text(json.dumps(job))
-        done = subprocess.run([a.blender, "--background", "--factory-startup", "-noaudio", "--python-exit-code", "3", "--python", __file__, "--",
+        done = subprocess.run([a.blender, "--background", "--factory-startup", "-noaudio", "--python-exit-code", "3", "--python",
+                               __file__, "--",
                                str(pathlib.Path(out) / "job.json")], capture_output=True, text=True)
         if done.returncode:
             sys.exit(f"blender: {done.stdout[-800:]} {done.stderr[-800:]}")

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Processor time of a diagnosis, as "Find out why" runs it on results that are there, until its first word, its first remedy (-1 = none) and its end;
-// the model on screen, the verdict and the flags of the first remedy. docs/make_debugging.py runs this program.
+// Processor time of a diagnosis, run as "Find out why" does: until its first word, its first remedy (-1 = none) and its end; the
+// model on screen, the verdict and the flags of the first remedy. docs/make_debugging.py runs this program.
 #include <cstdio>
 #include <ctime>
 #include <memory>

@@ -10,8 +10,10 @@ import sys
 # (program, benchmark, what it is, aim in milliseconds or None)
 ROWS = [
     ("bench_predict", "canonicalPredictionMesh", "canonical prediction, 36 directions, mesh of 1 million triangles", 0.12),
-    ("bench_predict", "canonicalPredictionMeshHints", "the same, brightest point from the training views' (`predict.search=hints`)", 0.12),
-    ("bench_predict", "canonicalPredictionMeshQuadric", "the same, walks on the local quadric (`predict.query=local-quadric`)", 0.01),
+    ("bench_predict", "canonicalPredictionMeshHints",
+     "the same, brightest point from the training views' (`predict.search=hints`)", 0.12),
+    ("bench_predict", "canonicalPredictionMeshQuadric", "the same, walks on the local quadric (`predict.query=local-quadric`)",
+     0.01),
     ("bench_predict", "canonicalPredictionAnalytic", "the same on the analytic surface", None),
     ("bench_predict", "partBrightestPointMesh", "of it: search of the brightest point", None),
     ("bench_predict", "partWalkMesh", "of it: the 36 walks", None),
@@ -98,7 +100,9 @@ def main():
         runs = {}
         for b in result["benchmarks"]:
             if b.get("run_type") == "iteration" and not b.get("error_occurred"):
-                runs.setdefault(b["run_name"], []).append(b["real_time" if b["run_name"].endswith("real_time") else "cpu_time"] * TO_MS[b["time_unit"]])
+                runs.setdefault(b["run_name"],
+                                []).append(b["real_time" if b["run_name"].endswith("real_time")
+                                             else "cpu_time"] * TO_MS[b["time_unit"]])
         for name, values in runs.items():
             times[program, name] = sorted(values)
 
@@ -121,7 +125,8 @@ of the project:
         verdict = "" if aim is None else "met" if median <= aim else f"**missed by {number(100 * (median / aim - 1))} %**"
         lines.append(f"| {text} (`{name}`) | {number(median)} | {number(values[0])} | {'' if aim is None else '≤ ' + str(aim)} | {verdict} |")
     for heading, unit, series, xs in CURVES:
-        lines += [f"\n## {heading}\n", "Microseconds (median).\n", f"| {unit} | " + " | ".join(label for _, _, label in series) + " |",
+        lines += [f"\n## {heading}\n", "Microseconds (median).\n",
+                  f"| {unit} | " + " | ".join(label for _, _, label in series) + " |",
                   "| --- |" + " --- |" * len(series)]
         for x in xs:
             cells = []

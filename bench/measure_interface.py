@@ -7,7 +7,7 @@
 A million triangles, 100 cameras, a preset that `glint tradeoff` measures first, software rendering on a virtual
 display (xvfb-run). Every slider is moved ten times a second whether the window keeps up or not, and a wait counts from the movement to the end
 of the event that painted the first overlay for that position or a later one: the observed contour where the slider changes what is
-observed, else those of the models, whose wait stands beside it. Then a test tells for how long the interface stood still (STANDSTILLS),
+observed, else those of the models, whose wait is listed beside it. Then a test tells for how long the interface stood still (STANDSTILLS),
 several times over. --page writes the tables into the page.
 """
 import argparse
@@ -28,7 +28,8 @@ SEMI_AXES = [0.6, 0.35, 0.25]
 PRESETS = ["fast", "balanced"]
 TELLING = ["detect.background", "fit.evidence"]  # what else says how much a preset computes
 STANDSTILLS = {"opening": r"opening: .* at most (\d+) ms", "computing": r"computing: .* at most (\d+) ms",
-               "first results": r"showing the first results: at most (\d+) ms", "another frame": r"another frame: at most (\d+) ms",
+               "first results": r"showing the first results: at most (\d+) ms",
+               "another frame": r"another frame: at most (\d+) ms",
                "from *Stop* to the end of the run": r"stopped (?:while \w+ )?after (\d+) ms"}
 STANDSTILL_TEST = ["session", "stopAndInterfaceOnAWholeSequence"]
 RUNS = 5
@@ -52,7 +53,8 @@ def make_sessions(glint, folder, frames):
             frame.pop(key, None)
     (folder / "scene.json").write_text(json.dumps(scene))
     measured = folder / "tradeoff.glint"
-    subprocess.run([glint, "tradeoff", folder / "scene.json", "--train", "spread:6", "--source", "image", "-o", measured], check=True,
+    subprocess.run([glint, "tradeoff", folder / "scene.json", "--train", "spread:6", "--source", "image", "-o", measured],
+                   check=True,
                    stdout=subprocess.DEVNULL)
     for preset in PRESETS:
         subprocess.run([glint, "reconstruct", measured, "--preset", preset, "-o", folder / f"{preset}.glint"], check=True,
@@ -60,7 +62,8 @@ def make_sessions(glint, folder, frames):
 
 
 def on_display(command, scratch):
-    environment = dict(os.environ, QT_QPA_PLATFORM="xcb", LIBGL_ALWAYS_SOFTWARE="1", XDG_DATA_HOME=scratch, XDG_CONFIG_HOME=scratch)
+    environment = dict(os.environ, QT_QPA_PLATFORM="xcb", LIBGL_ALWAYS_SOFTWARE="1", XDG_DATA_HOME=scratch,
+                       XDG_CONFIG_HOME=scratch)
     command = ["xvfb-run", "-a", "-s", "-screen 0 1600x1000x24", *(str(c) for c in command)]
     done = subprocess.run(command, capture_output=True, text=True, env=environment)
     if done.returncode:
@@ -82,7 +85,8 @@ def standstills(args, scratch):
 def measured(args, session, preset, scratch):
     request = json.loads(session.read_text())["request"]
     asked = ", ".join([*request["models"], *(f"`{key} = {request['settings'][key]}`" for key in TELLING)])
-    result = json.loads(on_display([args.build / "bin/bench_inspector", session, args.events, *(f"slider:{name}" for name, _ in SLIDERS)],
+    result = json.loads(on_display([args.build / "bin/bench_inspector", session, args.events,
+                                    *(f"slider:{name}" for name, _ in SLIDERS)],
                                    scratch).stdout)
     lines = [f"Preset `{preset}` ({asked}): from the start to the first photograph {result['first_photograph_ms']:.0f} ms, to the "
              f"first overlay {result['first_overlay_ms']:.0f} ms, to everything {result['everything_ms']:.0f} ms.", "",
@@ -113,7 +117,8 @@ def main():
     print(table)
     if args.page:
         text = args.page.read_text()
-        args.page.write_text(re.sub(re.escape(BEGIN) + ".*?" + re.escape(END), lambda _: f"{BEGIN}\n{table}\n{END}", text, flags=re.S))
+        args.page.write_text(re.sub(re.escape(BEGIN) + ".*?" + re.escape(END), lambda _: f"{BEGIN}\n{table}\n{END}", text,
+                                    flags=re.S))
 
 
 if __name__ == "__main__":

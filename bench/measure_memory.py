@@ -29,9 +29,11 @@ def main():
                 "surfaces": {"body": {"analytic": {"type": "ellipsoid", "semi_axes": [0.6, 0.35, 0.25]}}},
                 "lights": [{"id": "lamp", "position": [1.2, -1.0, 2.2]}], "contour": "radiance", "level": 0.5,
                 "render": {"reflectance": "torrance-sparrow", "roughness": 0.12, "bits": 8, "diffuse": 0.1},
-                "path": {"orbit": {"centre": [0, 0, 0], "radius": 2.1, "from": -1.6, "to": 0.4, "height": 0.9, "count": PICTURES}}}
+                "path": {"orbit": {"centre": [0, 0, 0], "radius": 2.1, "from": -1.6, "to": 0.4, "height": 0.9,
+                                   "count": PICTURES}}}
         (folder / "spec.json").write_text(json.dumps(spec))
-        subprocess.run([a.glint, "synth", str(folder / "spec.json"), "-o", str(folder / "scene")], check=True, capture_output=True)
+        subprocess.run([a.glint, "synth", str(folder / "spec.json"), "-o", str(folder / "scene")], check=True,
+                       capture_output=True)
         scene = json.loads((folder / "scene" / "scene.json").read_text())
         frames = []
         for i in range(a.frames):
@@ -42,7 +44,8 @@ def main():
         scene["frames"] = frames
         long = folder / "scene" / "long.json"
         long.write_text(json.dumps(scene))
-        done = subprocess.run([a.glint, "evaluate", str(long), "--models", a.models, "--train", "spread:6", "--source", "image", "--json", "-"],
+        done = subprocess.run([a.glint, "evaluate", str(long), "--models", a.models, "--train", "spread:6", "--source", "image",
+                               "--json", "-"],
                               capture_output=True, text=True)
         peak = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024
         if done.returncode:

@@ -30,7 +30,8 @@ def photograph(glint, folder):
             "surfaces": {"body": {"analytic": {"type": "ellipsoid", "semi_axes": SEMI_AXES}}},
             "lights": [{"id": "lamp", "position": [1.2, -1.0, 2.2]}],
             "path": {"orbit": {"centre": [0, 0, 0], "radius": 2.0, "from": -1.2, "to": -1.1, "height": 0.9, "count": 2}},
-            "render": {"reflectance": "torrance-sparrow", "roughness": 0.1, "diffuse": 0.6, "bits": 8, "samples": 1, "noise": 0.01, "seed": 1,
+            "render": {"reflectance": "torrance-sparrow", "roughness": 0.1, "diffuse": 0.6, "bits": 8, "samples": 1,
+                       "noise": 0.01, "seed": 1,
                        "jpeg_quality": 95}}
     (folder / "spec.json").write_text(json.dumps(spec))
     subprocess.run([glint, "synth", folder / "spec.json", "-o", folder / "one"], check=True, stdout=subprocess.DEVNULL)
@@ -40,7 +41,8 @@ def photograph(glint, folder):
 
 def quaternion(m):
     """w x y z of a rotation; of those used here w is not near 0, or x, y or z is the largest."""
-    squares = [1 + m[0][0] + m[1][1] + m[2][2], 1 + m[0][0] - m[1][1] - m[2][2], 1 - m[0][0] + m[1][1] - m[2][2], 1 - m[0][0] - m[1][1] + m[2][2]]
+    squares = [1 + m[0][0] + m[1][1] + m[2][2], 1 + m[0][0] - m[1][1] - m[2][2], 1 - m[0][0] + m[1][1] - m[2][2],
+               1 - m[0][0] - m[1][1] + m[2][2]]
     wx, wy, wz = m[2][1] - m[1][2], m[0][2] - m[2][0], m[1][0] - m[0][1]
     xy, xz, yz = m[0][1] + m[1][0], m[0][2] + m[2][0], m[1][2] + m[2][1]
     k = max(range(4), key=lambda i: squares[i])
@@ -67,7 +69,8 @@ def capture(folder, picture, pose, frames):
 
 
 def open_it(args, folder, scratch):
-    environment = dict(os.environ, QT_QPA_PLATFORM="xcb", LIBGL_ALWAYS_SOFTWARE="1", XDG_DATA_HOME=scratch, XDG_CONFIG_HOME=scratch)
+    environment = dict(os.environ, QT_QPA_PLATFORM="xcb", LIBGL_ALWAYS_SOFTWARE="1", XDG_DATA_HOME=scratch,
+                       XDG_CONFIG_HOME=scratch)
     command = ["xvfb-run", "-a", "-s", "-screen 0 1600x1000x24", args.build / "bin/bench_inspector", folder]
     done = subprocess.run([str(c) for c in command], capture_output=True, text=True, env=environment)
     if done.returncode:
@@ -88,7 +91,8 @@ def main():
         runs = [open_it(args, root / "capture", scratch) for _ in range(args.runs)]
     size = len(picture) * args.frames / 1e6
     print(f"| {args.frames} photographs of 1920 x 1080, {size:.0f} MB, {args.runs} runs | median s | most s |\n|---|---|---|")
-    for key, words in (("first_photograph_ms", "from the start to the first photograph"), ("first_overlay_ms", "to its first overlay")):
+    for key, words in (("first_photograph_ms", "from the start to the first photograph"),
+                       ("first_overlay_ms", "to its first overlay")):
         s = [r[key] / 1000 for r in runs]
         print(f"| {words} | {statistics.median(s):.2f} | {max(s):.2f} |")
 

@@ -52,7 +52,8 @@ def flat_jpeg(width, height, size):
     one_code = bytes([1] + 15 * [0] + [0])  # "0" says: no more coefficients, or no change of the mean
     scan = bytes(((width + 7) // 8 * ((height + 7) // 8) * 2 + 7) // 8)
     comments = b"".join(segment(0xFE, bytes(65000)) for _ in range(max(0, size // 65000)))
-    return (b"\xff\xd8" + segment(0xDB, bytes([0] + 64 * [1])) + segment(0xC0, struct.pack(">BHHB3B", 8, height, width, 1, 1, 0x11, 0)) +
+    return (b"\xff\xd8" + segment(0xDB, bytes([0] + 64 * [1]))
+            + segment(0xC0, struct.pack(">BHHB3B", 8, height, width, 1, 1, 0x11, 0)) +
             comments + segment(0xC4, b"\x00" + one_code) + segment(0xC4, b"\x10" + one_code) +
             segment(0xDA, bytes([1, 1, 0, 0, 63, 0])) + scan + b"\xff\xd9")
 

@@ -85,7 +85,8 @@ def main():
         else:
             for number, (title, options) in enumerate(SETTINGS + BANDS):
                 session = folder / ("%d.glint" % number)
-                subprocess.run([arguments.glint, "reconstruct", str(scene), "--train", "spread:6", *options, "-o", str(session)], check=True,
+                subprocess.run([arguments.glint, "reconstruct", str(scene), "--train", "spread:6", *options, "-o", str(session)],
+                               check=True,
                                stdout=subprocess.DEVNULL)
                 runs.append((title, session, []))
         print("| settings | triangles | poses | highlights | line to contours, median us | 99 % us | through both pipes, median us | 99 % us |")

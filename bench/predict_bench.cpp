@@ -43,7 +43,7 @@ const ModelFit& fitOf(const std::string& model) {
   }
   if (!fits.count(model)) {
     Settings settings;
-    settings.setFromText("fit.most_residual", "10");  // the time is of interest, also where `dual` leaves too much
+    settings.setFromText("fit.most_residual", "10");  // the time is of interest, even if `dual` leaves too much
     fits.emplace(model, *modelByName(model).fit(training(), settings));
   }
   return fits.at(model);

@@ -188,7 +188,7 @@ std::vector<std::string> namesOf(const std::vector<Command>& commands) {
   return names;
 }
 
-/// Which flag of the command was meant by the first one that it does not have, in words; "" where none is near.
+/// Which flag of the command was meant by the first one that it does not have, in words; "" if none is near.
 std::string meantOption(const CLI::App& app) {
   for (const CLI::App* sub : app.get_subcommands()) {
     std::vector<std::string> known;
@@ -203,7 +203,7 @@ std::string meantOption(const CLI::App& app) {
 /// What a command line that cannot be parsed ends with: a page that was asked for, or one line that says what is wrong.
 int answer(const CLI::App& app, const CLI::ParseError& e, const std::string& first, const std::vector<Command>& commands) {
   const bool known = std::any_of(commands.begin(), commands.end(), [&](const Command& c) { return c.name == first; });
-  const bool page = known || first.empty() || first[0] == '-';  // there is none of a command that does not exist
+  const bool page = known || first.empty() || first[0] == '-';  // an unknown command has no page
   if (page && e.get_exit_code() == 0) {                         // --help, --version
     std::ostringstream text;
     app.exit(e, text, text);
@@ -250,8 +250,8 @@ class Line {
   Line(const Line&) = delete;  // the options refer to its members
   Line& operator=(const Line&) = delete;
 
-  /// The plugins that the line names as options: not a value of another option, nothing behind "--", nothing of a line that is wrong in a
-  /// way that no plugin mends.
+  /// The plugins that the line names as options: not a value of another option, nothing behind "--", nothing of a line that is
+  /// wrong in a way that no plugin mends.
   std::vector<std::filesystem::path> plugins(const std::vector<std::string>& words) {
     try {
       parse(words);

@@ -54,9 +54,9 @@ class Context {
   /// On standard error when the command ends, together with its other warnings in one line; --all-warnings: at once, on its own.
   void warn(const std::string& line) const;
   void info(const std::string& line) const;  ///< on standard error, on a terminal only
-  /// To standard output, control characters from files escaped. InputError when that is full or closed.
+  /// To standard output, control characters from files escaped. InputError if that is full or closed.
   void print(const std::string& text) const;
-  /// "-" = standard output, unchanged; else a file written atomically, and said so. InputError when it cannot be written.
+  /// "-" = standard output, unchanged; else a file written atomically, with a message. InputError if it cannot be written.
   void write(const std::string& fileOrDash, const std::string& content) const;
   /// "wrote FILE", on standard error, on a terminal only. For files that a command writes by other means than `write`.
   void wrote(const std::string& file) const;
@@ -73,7 +73,7 @@ struct Command {
   std::function<int(const Context&)> run;
 };
 
-/// Parses and runs; the whole of main. Never throws. Ctrl-C and SIGTERM end the program within 200 ms, also where the work
+/// Parses and runs; the whole of main. Never throws. Ctrl-C and SIGTERM end the program within 200 ms, even if the work
 /// does not ask for progress: temporary files of unfinished writes are removed then.
 int runCommandLine(int argc, char** argv, const std::function<std::vector<Command>()>& makeCommands);
 

@@ -24,7 +24,7 @@
 namespace glint::cli {
 namespace {
 
-/// A contour that may be off by more than this, in percent of the diameter, is pointed out: predictions from exact contours are better.
+/// Points out contours that may be off by more than this, % of the diameter: predictions from exact contours are better.
 constexpr double kWorthSayingPct = 0.25;
 
 constexpr std::size_t kRejectedLines = 3;  // of a frame in the table; the JSON has them all
@@ -67,14 +67,14 @@ struct Seen {
   std::shared_ptr<const Surface> surface;
   std::vector<HighlightQuality> quality;
   std::optional<FrameBlur> blur;
-  std::optional<Parting> parting;
+  std::optional<SpecularSeparation> separation;
 };
 
-/// What is not known of a contour on the specular part: its noise, and what diffuse light is left. No tail passes for background there.
-void qualityOfParted(const Parting& parting, Seen& seen) {
-  for (std::size_t i = 0; parting.parted && i < seen.quality.size(); ++i) {
-    seen.quality[i].noisePx = movedBy(parting.regions[i].noise, seen.evidence.highlights[i]);
-    seen.quality[i].backgroundPx = movedBy(parting.regions[i].leftover, seen.evidence.highlights[i]);
+/// The uncertainty of a contour on the specular part: noise and leftover diffuse light. No tail passes for background there.
+void qualityOfSeparated(const SpecularSeparation& separation, Seen& seen) {
+  for (std::size_t i = 0; separation.separated && i < seen.quality.size(); ++i) {
+    seen.quality[i].noisePx = movedBy(separation.regions[i].noise, seen.evidence.highlights[i]);
+    seen.quality[i].backgroundPx = movedBy(separation.regions[i].leftover, seen.evidence.highlights[i]);
   }
 }
 
@@ -83,12 +83,12 @@ Seen seenIn(const Scene& scene, const SurfaceCache& surfaces, int index, FrameSo
   const Frame& frame = scene.frames[static_cast<std::size_t>(index)];
   Seen seen;
   seen.evidence = gatherEvidence(scene, index, source, settings);
-  if (separate) seen.parting = partEvidence(scene, index, source, settings, seen.evidence);
+  if (separate) seen.separation = separateEvidence(scene, index, source, settings, seen.evidence);
   if (const Outcome<LinearPixels> pixels = pixelsOf(frame, source, settings)) {
     seen.blur = blurOf(*pixels);
     seen.surface = surfaceIn(scene, surfaces, index, settings);
     seen.quality = highlightQualities(frame, *pixels, seen.surface.get(), seen.blur, seen.evidence.highlights);
-    if (seen.parting) qualityOfParted(*seen.parting, seen);
+    if (seen.separation) qualityOfSeparated(*seen.separation, seen);
   }
   return seen;
 }
@@ -96,15 +96,15 @@ Seen seenIn(const Scene& scene, const SurfaceCache& surfaces, int index, FrameSo
 /// What the motion over all frames says goes to the flags, or takes a highlight out.
 void applyMotion(const std::vector<MotionVerdict>& verdicts, MotionUse use, const Camera& camera, Seen& seen) {
   std::vector<HighlightQuality> kept;
-  std::vector<PartedRegion> regions;
+  std::vector<SeparatedRegion> regions;
   for (std::size_t i = 0; i < seen.quality.size() && i < verdicts.size(); ++i) {
     if (use == MotionUse::Reject && verdicts[i].kind == MotionVerdict::Kind::Texture) continue;
-    if (seen.parting && i < seen.parting->regions.size()) regions.push_back(seen.parting->regions[i]);
+    if (seen.separation && i < seen.separation->regions.size()) regions.push_back(seen.separation->regions[i]);
     if (const std::string text = verdicts[i].text(); !text.empty()) seen.quality[i].flags.push_back(text);
     kept.push_back(std::move(seen.quality[i]));
   }
   seen.quality = std::move(kept);
-  if (seen.parting) seen.parting->regions = std::move(regions);
+  if (seen.separation) seen.separation->regions = std::move(regions);
   if (use == MotionUse::Reject) withholdTextures(seen.evidence, verdicts, camera);
 }
 
@@ -114,7 +114,7 @@ DetectedFrame detectedIn(const Frame& frame, Seen seen) {
   DetectedFrame result;
   result.id = frame.id;
   result.failure = std::move(seen.evidence.failure);
-  result.parting = std::move(seen.parting);
+  result.separation = std::move(seen.separation);
   for (RejectedCandidate& r : seen.evidence.rejected) {
     r.place = frame.camera.undistorted(r.place);
     if (r.place.allFinite()) result.rejected.push_back(std::move(r));
@@ -183,9 +183,10 @@ std::string table(const std::vector<DetectedFrame>& frames) {
                         h.peak.y(), h.areaPx2, axes.c_str(), sigma.c_str()) +
               flagsText(frame, i) + "\n";
     }
-    if (frame.parting && !frame.highlights.empty())
-      text += formatted("%-12.40s  specular and diffuse %sparted%s%.300s\n", frame.id.c_str(),
-                        frame.parting->parted ? "" : "not ", frame.parting->parted ? "" : ": ", frame.parting->reason.c_str());
+    if (frame.separation && !frame.highlights.empty())
+      text += formatted("%-12.40s  specular and diffuse %sseparated%s%.300s\n", frame.id.c_str(),
+                        frame.separation->separated ? "" : "not ", frame.separation->separated ? "" : ": ",
+                        frame.separation->reason.c_str());
     for (std::size_t i = 0; i < std::min(kRejectedLines, frame.rejected.size()); ++i) {
       const RejectedCandidate& r = frame.rejected[i];
       text += formatted("%-12.40s  rejected    %8.3f  %8.3f  %12.1f   %s\n", frame.id.c_str(), r.place.x(), r.place.y(),
@@ -229,11 +230,12 @@ std::array<std::string, 2> partsOf(const Frame& frame) {
   return {pictureName(frame, "_specular"), pictureName(frame, "_diffuse")};
 }
 
-/// The two parts of a frame that was parted, as a screen shows them.
-void writeParts(const std::filesystem::path& folder, const Frame& frame, FrameSource source, const Parting& parting) {
+/// The two parts of a frame that was separated, as a screen shows them.
+void writeParts(const std::filesystem::path& folder, const Frame& frame, FrameSource source,
+                const SpecularSeparation& separation) {
   const Outcome<Image> linear = readLinear(frame, source);
   if (!linear || linear->channels != 3) return;
-  Image specular = specularPart(*linear, parting), diffuse = *linear;
+  Image specular = specularPart(*linear, separation), diffuse = *linear;
   for (std::size_t i = 0; i < diffuse.data.size(); ++i) {
     const float rest = diffuse.data[i] - specular.data[i];
     diffuse.data[i] = std::isfinite(rest) ? std::max(0.f, rest) : 0.f;
@@ -260,8 +262,8 @@ void writeFolder(const DetectArguments& a, const Scene& scene, const std::vector
           if (photograph)
             writePng(folder / pictureName(frame),
                      drawDetection(*photograph, frame.camera, frames[static_cast<std::size_t>(i)].highlights));
-          const std::optional<Parting>& parting = frames[static_cast<std::size_t>(i)].parting;
-          if (a.parts && parting && parting->parted) writeParts(folder, frame, source, *parting);
+          const std::optional<SpecularSeparation>& separation = frames[static_cast<std::size_t>(i)].separation;
+          if (a.parts && separation && separation->separated) writeParts(folder, frame, source, *separation);
         },
         context.progress(), "overlays");
     context.write((folder / "highlights.json").string(), json);
@@ -338,7 +340,7 @@ Command detectCommand() {
     o.choice(a->separate, "--separate", {"off", "auto"},
              "auto: contours and peaks on the specular part alone, where the colours of a frame allow to part it from the "
              "diffuse one");
-    o.flag(a->parts, "--parts", "With --out and --separate auto: write the two parts of each parted frame, too");
+    o.flag(a->parts, "--parts", "With --out and --separate auto: write the two parts of each separated frame, too");
     o.repeated(a->set, "--set", "KEY=VALUE", "Any setting by its dotted name, such as detect.min_area=20; may be repeated");
     o.option(a->out, "--out", "DIR", "Write highlights.json and PNG overlays to this folder");
     o.option(a->json, "--json", "FILE", "Write highlights.json to this file (- = standard output, replaces the table)");

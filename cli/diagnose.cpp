@@ -39,7 +39,7 @@ Command diagnoseCommand() {
   c.description =
       "Compares the models in the held-out frames (where none shows a highlight: in training frames that are left out), then\n"
       "measures what helps the best ones: settings, training frames, exclusions, filters. Ends in one verdict and at most three\n"
-      "remedies that beat the present state: the one model that was asked for, else the best of those. The evidence stands\n"
+      "remedies that beat the present state: the one model that was asked for, else the best of those. The evidence is\n"
       "below: why models fail or are poor, and where --models auto would choose otherwise.\n"
       "Exit code 3 if no model could be fitted; --json is written all the same.";
   c.examples =
@@ -67,7 +67,7 @@ Command diagnoseCommand() {
     options.mostTried = a->thorough ? kEvery : a->most;
     if (inspection.request.models.size() == 1) options.present = inspection.request.models.front();
     const Diagnosis diagnosis = diagnose(inspection, options, context.progress());
-    // What the input gets wrong no other model or setting puts right: it stands first.
+    // No other model or setting corrects a wrong input, so its findings come first.
     const ConventionReport input = fullReport(*scene, context.progress());
     if (!a->json.empty()) context.write(a->json, withFindings(diagnosisJson(inspection, diagnosis, a->input), input));
     if (!a->html.empty()) context.write(a->html, pageOf(inspection, diagnosis, a->input));

@@ -34,16 +34,16 @@ struct InspectionArguments {
   InspectionRequest request() const;
   /// `--set` names this setting.
   bool sets(const std::string& key) const;
-  /// Reads the scene, and puts the frames of --exclude and the level of --level auto into the request: only the scene knows them. InputError;
-  /// CannotAnswer where no training frame shows a highlight to choose a level by.
-  /// @param levelReason  optional: why this level; "" where it was not chosen here
+  /// Reads the scene, and puts the frames of --exclude and the level of --level auto into the request: only the scene knows them.
+  /// InputError; CannotAnswer if no training frame shows a highlight to choose a level by.
+  /// @param levelReason  optional: why this level; "" if it was not chosen here
   std::shared_ptr<const Scene> scene(InspectionRequest& request, std::string* levelReason = nullptr) const;
 };
 
 /// `--exclude` of a command that trains.
 inline constexpr const char* kExcludeHelp =
     "Frames to exclude from training and scoring: numbers, ids or ranges (default: the session's, else none)";
-/// Puts the frames of --exclude into the request; the request's own stay where the text is empty. InputError for one that names no frame, or all.
+/// Puts the frames of --exclude into the request; an empty text keeps the request's own. InputError if it names no frame, or all.
 void exclude(const std::string& spec, const Scene& scene, InspectionRequest& request);
 
 /// Every KEY=VALUE of --set, in its order. InputError for a text of another form, an unknown key or a value out of range.
@@ -55,7 +55,7 @@ inline constexpr const char* kAutoLevel = "auto";
 inline constexpr const char* kLevelRange = "must be a fraction of the peak, more than 0 and less than 1";
 
 /// Model and settings of a point of the session's trade-off: "fast", "balanced", "exact" or "chosen".
-/// InputError when the session has none.
+/// InputError if the session has none.
 void applyPreset(const Session& session, const std::string& preset, InspectionRequest& request);
 
 /// Ids of all models, for help: "primal, dual, ...".
@@ -67,7 +67,7 @@ std::vector<std::string> splitList(const std::string& text, const std::string& f
 /// One warning when training frames could not be used, with the first reason; silent when all could.
 void warnOfUnusedTrainingFrames(const Inspection& inspection, const Context& context);
 
-/// Throws CannotAnswer when no training view could be used at all, with the first reason.
+/// Throws CannotAnswer if no training view could be used at all, with the first reason.
 void requireUsableViews(const Inspection& inspection);
 
 }  // namespace glint::cli

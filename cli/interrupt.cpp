@@ -59,15 +59,15 @@ void waitForSignals() {
   if (signal == SIGUSR1) return;
   State before = State::Working;
   if (!state.compare_exchange_strong(before, State::Stopping)) return;
-  // The work should notice within this time; where it cannot (inside a library), nothing of it is kept anyway. Together with the end
-  // of the process it stays below the 200 ms that are promised.
+  // The work should notice within this time; where it cannot (inside a library), nothing of it is kept anyway. Together with the
+  // end of the process it stays below the 200 ms that are promised.
   std::this_thread::sleep_for(std::chrono::milliseconds(100));
   removeUnfinishedWrites();
   sayStopped();
   ::_exit(130);
 }
 
-// Before the constructors of the libraries and of this program: a signal that comes while they run ends the program as any other does.
+// Runs before the constructors of the libraries and of this program: a signal during these ends the program as any other does.
 __attribute__((section(".preinit_array"), used)) void (*const earliest)() = handleBySignal;
 
 }  // namespace
@@ -80,7 +80,7 @@ bool finish() {
 }
 
 void sayStopped() {
-  // Whoever holds it writes one line; a standard error that takes none must not keep the program.
+  // Its holder writes one line; a blocked standard error must not keep the program.
   const std::unique_lock<std::timed_mutex> lock(sayMutex, std::chrono::milliseconds(20));
   if (!lock || said) return;
   said = true;
@@ -115,7 +115,7 @@ InterruptGuard::~InterruptGuard() {
   }
   pthread_kill(waiter.native_handle(), SIGUSR1);
   waiter.join();
-  // The rest is the end of the process. It may wait for whoever reads the output, so that a signal has to end it as it did before main.
+  // The rest is the end of the process. It may wait for the reader of the output, so a signal has to end it as before main.
   const sigset_t set = stopSignals();
   pthread_sigmask(SIG_UNBLOCK, &set, nullptr);
 }

@@ -4,8 +4,8 @@
 namespace glint::cli {
 
 /// While it lives, Ctrl-C and SIGTERM ask the work to stop (`interrupted`), and a thread ends the program with code 130 when
-/// the work has not stopped 100 ms later. Create it in main before any other thread. Before it lives, from the start of the process on,
-/// and after it a signal ends the process at once, with the same message and code.
+/// the work has not stopped 100 ms later. Create it in main before any other thread. Before it lives, from the start of the
+/// process on, and after it a signal ends the process at once, with the same message and code.
 class InterruptGuard {
  public:
   InterruptGuard();
@@ -17,13 +17,13 @@ class InterruptGuard {
 /// True after the first Ctrl-C, unless the command was done before it.
 bool interrupted();
 
-/// The command is done and only its result remains to be said: a Ctrl-C from now on changes nothing more. False when one came before.
+/// The command is done, only its result remains to be said: a Ctrl-C changes nothing from now on. False if one came before.
 bool finish();
 
-/// Says once that the program was stopped: the thread and the command may both come to it. It has been said when this returns.
+/// Prints once that the program was stopped, whether the thread or the command comes first. Returns after the message.
 void sayStopped();
 
-/// Ends an interrupted process without waiting for destructors, which may take longer than is promised; unfinished writes are removed.
+/// Ends an interrupted process without waiting for destructors, which may take too long. Removes unfinished writes.
 [[noreturn]] void leaveAtOnce(int exitCode);
 
 }  // namespace glint::cli

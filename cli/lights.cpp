@@ -18,7 +18,7 @@ namespace {
 
 struct LightsArguments {
   std::string input, json, on, ballRadius, exclude, source = "radiance", outlines = "fitted";
-  double outlineSigmaPx = 1;  // what a person who draws a circle gets right
+  double outlineSigmaPx = 1;  // the accuracy of a circle that a person draws
   std::vector<std::string> balls, set, out;
   SceneArguments places;
 };
@@ -88,7 +88,7 @@ std::string writeOn(const LightsArguments& a, const Inspection& inspection, Lamp
   return lampsOnSummary(on);
 }
 
-/// Who has photographs of mirror balls is not helped by being asked for poses.
+/// It does not help users with photographs of mirror balls to be asked for poses.
 Scene sceneOf(const LightsArguments& a) {
   try {
     return a.places.read(a.input);
@@ -171,7 +171,7 @@ Command lightsCommand() {
     o.repeated(a->set, "--set", "KEY=VALUE", "Any setting of scenes by its dotted name (`glint settings`); may be repeated");
     o.repeated(a->out, "-o,--out", "FILE", "Write .json, .csv or .lp (RTI), by the ending; may be repeated");
     o.option(a->on, "--on", "FILE",
-             "Of a scene: write which lamps are on in each frame, with confidence, as CSV (- = standard output)");
+             "For a scene, write which lamps are on in each frame, with confidence, as CSV (- = standard output)");
     o.option(a->json, "--json", "FILE", "Write JSON to this file (- = standard output, replaces the table)");
     a->places.declare(o);
   };

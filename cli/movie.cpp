@@ -42,7 +42,7 @@ int run(const MovieArguments& a, const Context& context) {
   for (const std::string& file : viz::filesOfMovie(a.out, turning ? turns : static_cast<int>(frames.size())))
     outputs.file(file, "--out", file == a.out ? OutputKind::movie() : OutputKind::png());
   std::unique_ptr<viz::Offscreen> target;
-  if (a.of != "timeline") {  // a missing display is said before the long work
+  if (a.of != "timeline") {  // complains about a missing display before the long work
     Outcome<std::unique_ptr<viz::Offscreen>> display = viz::Offscreen::create(width, height);
     if (!display) throw CannotAnswer{display.failure()};
     target = std::move(*display);

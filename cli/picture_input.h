@@ -30,7 +30,7 @@ struct PictureInput {
     SessionView saved;             ///< of a session
     std::set<std::string> models;  ///< drawn; empty = all
   };
-  /// Reads the input and checks every argument, so that what is wrong is said before the long work. InputError; CannotAnswer for
+  /// Reads the input and checks every argument, so that mistakes are reported before the long work. InputError; CannotAnswer for
   /// an input without frames.
   Opened open(const Context& context) const;
   /// The look of a scene view: theme, models, sizes, layers, the session's 3D camera.
@@ -39,7 +39,7 @@ struct PictureInput {
 
 /// "1600x1000"; InputError (place --size) outside 64 .. 16384.
 std::pair<int, int> parseSize(const std::string& text);
-/// The first held-out frame, which shows what the models are worth; 0 when there is none.
+/// The first held-out frame, which shows what the models are worth; 0 without one.
 int firstHeldOut(const Inspection& inspection);
 
 }  // namespace glint::cli

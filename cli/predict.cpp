@@ -53,7 +53,7 @@ Command predictCommand() {
     std::vector<std::string> set;
     bool stream = false;
     SceneArguments places;
-    /// Bands take several fits: who says that none is wanted gets none.
+    /// Bands take several fits: a user who wants none gets none.
     bool saysBand() const {
       return std::any_of(set.begin(), set.end(), [](const std::string& entry) { return entry.rfind("predict.band=", 0) == 0; });
     }

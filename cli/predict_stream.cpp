@@ -91,8 +91,8 @@ int answerPoses(const OpenedSession& opened, const InspectionRequest& request, c
       context.write("-", line);  // flushes
       ++answered;
     }
-  } catch (
-      const ReaderGone&) {  // who reads a table with `head` wants no more; who waits for answers wants to know why there are none
+  } catch (const ReaderGone&) {
+    // A user of `head` wants no more lines; a program that waits for answers wants to know why they stop.
     throw InputError("standard output", "",
                      "was closed by its reader after " + std::to_string(answered) + (answered == 1 ? " answer" : " answers"));
   }

@@ -10,7 +10,7 @@ namespace glint::cli {
 
 /// `predict --stream`: answers each pose of a file, or of standard input, by one line on standard output, until the end.
 /// @param poses  "-" or "" = standard input
-/// @throw InputError where the poses cannot be read; CannotAnswer where no model was fitted
+/// @throw InputError if the poses cannot be read; CannotAnswer if no model was fitted
 int answerPoses(const OpenedSession& opened, const InspectionRequest& request, const std::string& poses, const Context& context);
 
 }  // namespace glint::cli

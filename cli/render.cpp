@@ -21,7 +21,7 @@ struct RenderArguments : PictureInput {
 
 Image scenePicture(const RenderArguments& a, const PictureInput::Opened& opened,
                    const std::shared_ptr<const Inspection>& inspection, int frame, int width, int height) {
-  // The display first: a missing one is said before anything is drawn.
+  // Checks the display before anything is drawn.
   Outcome<std::unique_ptr<viz::Offscreen>> target = viz::Offscreen::create(width, height);
   if (!target) throw CannotAnswer{target.failure()};
   viz::SceneView view;

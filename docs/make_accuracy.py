@@ -174,7 +174,8 @@ def held_in(run):
     return set() if run.train == "per-surface" else set(run.result["train"])
 
 
-MODEL_HEADER = ["model", "mean %", "median %", "p95 %", "max %", "mean px", "ellipse %", "IoU", "peak px", "predicted", "coverage",
+MODEL_HEADER = ["model", "mean %", "median %", "p95 %", "max %", "mean px", "ellipse %", "IoU", "peak px", "predicted",
+                "coverage",
                 "matched/missed/spurious", "reasons"]
 
 
@@ -199,9 +200,11 @@ def fit_rows(label, run, lamp):
             if f.get("ellipsoid"):
                 gaps.append(1e3 * math.dist(centre, lamp) if lamp else None)
                 axes.append(f["ellipsoid"]["semi_axes"])
-        spread = lambda v, d=3: "–" if not v else number(v[0], d) if len(v) == 1 else f"{number(min(v), d)} to {number(max(v), d)}"
+        spread = lambda v, d=3: "–" if not v else number(v[0],
+                                                         d) if len(v) == 1 else f"{number(min(v), d)} to {number(max(v), d)}"
         rows.append(label + [
-            name, ", ".join(sorted({f["solver"] for f in fits})) or "–", str(len(fits)) + (f" of {len(fits) + len(failed)}" if failed else ""),
+            name, ", ".join(sorted({f["solver"] for f in fits})) or "–",
+            str(len(fits)) + (f" of {len(fits) + len(failed)}" if failed else ""),
             spread(distances), spread(angles, 4), spread(gaps),
             " × ".join(number(1e3 * a) for a in axes[0]) if axes else "–",
             spread(residuals), "; ".join(sorted(set(failed))),
@@ -330,7 +333,8 @@ and on the paper's two synthetic experiments, which `glint synth` makes exactly 
 All runs use the defaults; the tables name what a run changes.
 
 """]
-    out.append(table(["setting", "value"], [[f"`{k}`", f"`{v}`" if isinstance(v, str) else f"`{json.dumps(v)}`"] for k, v in settings.items()]))
+    out.append(table(["setting", "value"],
+                     [[f"`{k}`", f"`{v}`" if isinstance(v, str) else f"`{json.dumps(v)}`"] for k, v in settings.items()]))
 
     out.append("\n## Bounds\nMean contour error in percent. A bound counts only where every frame is predicted, mean coverage is at least "
                f"{LEAST_COVERAGE} and no observed highlight stays unmatched.\n\nPath-traced sequences:\n\n")
@@ -346,7 +350,8 @@ All runs use the defaults; the tables name what a run changes.
         dual, canonical = run.error_pct("dual"), run.error_pct("canonical")
         value = dual / canonical if dual and canonical else None
         uncounted = run.uncounted("canonical") or run.uncounted("dual")
-        cells.append(f"{number(value)} – " + (f"does not count: {uncounted}" if uncounted else "met" if value >= ratio else "**missed**"))
+        cells.append(f"{number(value)} – "
+                     + (f"does not count: {uncounted}" if uncounted else "met" if value >= ratio else "**missed**"))
     rows.append([name, f"`{train}`", "dual / canonical", f"≥ {number(ratio, 2)}"] + cells)
     out.append(table(["sequence", "training", "model", "bound"] + [f"{k}, {s}" for k, s in columns], rows))
 
@@ -366,13 +371,15 @@ All runs use the defaults; the tables name what a run changes.
                 verdict = ""
                 if model == "reflectance" and key[3] == "radiance":
                     verdict = f" – {'met' if not run.uncounted(model) and iou >= VASE_LEAST_IOU else '**missed**'} (≥ {VASE_LEAST_IOU})"
-                rows.append([f"`{key[2]}`", key[3], model, f"{s['predicted']}/{s['frames']}", f"{s['matched']}/{s['missed']}/{s['spurious']}",
+                rows.append([f"`{key[2]}`", key[3], model, f"{s['predicted']}/{s['frames']}",
+                             f"{s['matched']}/{s['missed']}/{s['spurious']}",
                              number(iou, 4) + verdict])
     out.append("\nVase (highlights that split and merge):\n\n" +
                table(["training", "source", "model", "predicted", "matched/missed/spurious", "IoU"], rows))
     out.append("\nExact synthetic data:\n\n")
     out.append(table(["sequence", "training", "model", "bound", "measured"],
-                     [[n, f"`{t}`", m, f"≤ {b}", judged(runs[n, "analytic", t, "exact"], m, b)] for n, t, m, b in SYNTHETIC_BOUNDS]))
+                     [[n, f"`{t}`", m, f"≤ {b}", judged(runs[n, "analytic", t, "exact"], m, b)]
+                      for n, t, m, b in SYNTHETIC_BOUNDS]))
 
     out.append("\n## Compared with the prototype and the paper\nAn independent prototype (Python, analytic surfaces) and the paper, quoted from "
                "section 9 of method.md. On exact data, plane to cylinder:\n\n")
@@ -398,7 +405,8 @@ All runs use the defaults; the tables name what a run changes.
         for train in trains:
             run = runs[name, "analytic", train, "exact"]
             out.append(f"\n### `--train {train}`: {TRAIN_TEXT[train]}\n\n" + table(MODEL_HEADER, model_rows([], run)) +
-                       "\nWhat was estimated:\n\n" + table(FIT_HEADER, fit_rows([], run, lamps[name, "analytic", train, "exact"])))
+                       "\nWhat was estimated:\n\n"
+                       + table(FIT_HEADER, fit_rows([], run, lamps[name, "analytic", train, "exact"])))
     return "".join(out)
 
 

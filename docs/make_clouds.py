@@ -15,7 +15,8 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs/captures.md"
 BEGIN, END = "<!-- table: docs/make_clouds.py -->\n", "<!-- end of table -->\n"
 WAYS = {"facets": "facets through the points", "fitted normals": "fitted normals, points as they are",
-        "greedy": "PCL's greedy triangulation of the fitted points, as in its tutorial", "along the ray": "moving least squares along each ray",
+        "greedy": "PCL's greedy triangulation of the fitted points, as in its tutorial",
+        "along the ray": "moving least squares along each ray",
         "glint": "Glint: fitted points, triangles between tangent-plane neighbours"}
 
 
@@ -35,7 +36,8 @@ def cell(row, first):
 
 
 def table(rows):
-    lines = ["| 20,000 points, noise in units of their distance | " + " | ".join(WAYS.values()) + " |", "|---" * (1 + len(WAYS)) + "|"]
+    lines = ["| 20,000 points, noise in units of their distance | " + " | ".join(WAYS.values()) + " |",
+             "|---" * (1 + len(WAYS)) + "|"]
     for shape, noise in dict.fromkeys((row["shape"], row["noise"]) for row in rows):
         found = {row["way"]: row for row in rows if (row["shape"], row["noise"]) == (shape, noise)}
         cells = [cell(found[way], len(lines) == 2 and i == 0) for i, way in enumerate(WAYS)]

@@ -54,8 +54,10 @@ def write_mesh(file, parts):
     for v, f in parts:
         faces += [tuple(i + len(vertices) for i in face) for face in f]
         vertices += v
-    lines = ["ply", "format ascii 1.0", f"element vertex {len(vertices)}", *(f"property double {a}" for a in "xyz"), f"element face {len(faces)}",
-             "property list uchar int vertex_indices", "end_header", *("%.17g %.17g %.17g" % v for v in vertices), *("3 %d %d %d" % f for f in faces)]
+    lines = ["ply", "format ascii 1.0", f"element vertex {len(vertices)}", *(f"property double {a}" for a in "xyz"),
+             f"element face {len(faces)}",
+             "property list uchar int vertex_indices", "end_header",
+             *("%.17g %.17g %.17g" % v for v in vertices), *("3 %d %d %d" % f for f in faces)]
     file.write_text("\n".join(lines) + "\n")
 
 
@@ -66,7 +68,8 @@ def specification(folder):
     return {"glint_scene": 1, "name": "ears", "units": "m", "camera": CAMERA, "surfaces": {"body": {"mesh": "ears.ply"}},
             "lights": [{"id": "lamp", "position": [1.2, -1.4, 2.2], "radius": 0.05}],
             "path": {"orbit": {"centre": [0, 0, 0.1], "radius": 3, "from": -110, "to": -30, "height": 0.9, "count": 16}},
-            "render": {"reflectance": "torrance-sparrow", "roughness": 0.12, "diffuse": [0.6, 0.8, 1.2], "bits": 8, "samples": 2, "seed": 1}}
+            "render": {"reflectance": "torrance-sparrow", "roughness": 0.12, "diffuse": [0.6, 0.8, 1.2], "bits": 8, "samples": 2,
+                       "seed": 1}}
 
 
 class Failed(Exception):
@@ -126,8 +129,10 @@ def table(glint, times, sequences):
 def picture(inspector):
     """The window after *Find out why*: what its button does, the menu's action does, too."""
     target = ROOT / "docs/pictures/debugging-vase.png"
-    run(["xvfb-run", "-a", "-s", "-screen 0 1600x1000x24 -noreset", "env", "QT_QPA_PLATFORM=xcb", "LIBGL_ALWAYS_SOFTWARE=1", inspector,
-         ROOT / "sessions/vase", "--theme", "dark", "--size", "1500x940", "--run", "plots.diagnose", "--screenshot", target, "--wait-idle"])
+    run(["xvfb-run", "-a", "-s", "-screen 0 1600x1000x24 -noreset", "env", "QT_QPA_PLATFORM=xcb", "LIBGL_ALWAYS_SOFTWARE=1",
+         inspector,
+         ROOT / "sessions/vase", "--theme", "dark", "--size", "1500x940", "--run", "plots.diagnose", "--screenshot", target,
+         "--wait-idle"])
     run(["mogrify", "-strip", "-colors", "128", "-define", "png:compression-level=9", target])
 
 
@@ -148,7 +153,8 @@ def main():
         os.makedirs(folder, exist_ok=True)
         glint = options.glint.resolve()
         sequences = {"ears": make(glint, folder)}
-        for name, scene in {"vase": ROOT / "sessions/vase", "torus": SHARED / "cycles/torus", "panel": SHARED / "ladder/panel", "plastic": SHARED / "ladder/plastic"}.items():
+        for name, scene in {"vase": ROOT / "sessions/vase", "torus": SHARED / "cycles/torus", "panel": SHARED / "ladder/panel",
+                            "plastic": SHARED / "ladder/plastic"}.items():
             if (scene / "scene.json").exists():
                 sequences[name] = scene / "scene.json"
         text = table(glint, options.times.resolve(), sequences)

@@ -98,7 +98,7 @@ class Maker:
         return a
 
     def score(self, key):
-        """Of each model: mean contour error in percent, predicted and all frames, mean peak offset in pixels."""
+        """Each model's mean contour error in percent, predicted and all frames, and mean peak offset in pixels."""
         name, models, settings = key
         extra = ["--truth", str(self.truth)] if name.startswith("sphere") else []
         found = json.loads(run([self.glint, "evaluate", *self.arguments(name, models, settings), *extra, "--json", "-"]))
@@ -112,7 +112,8 @@ class Maker:
     def jitter(self, settings):
         """Root mean square distance of the predicted peaks of the still frames from their mean, px; None where the model failed."""
         session = self.folder / f"still{abs(hash(settings))}.glint"
-        done = subprocess.run([self.glint, "reconstruct", *self.arguments("still", ["limit-angle"], settings), "-o", str(session)], capture_output=True, text=True)
+        done = subprocess.run([self.glint, "reconstruct", *self.arguments("still", ["limit-angle"], settings), "-o",
+                               str(session)], capture_output=True, text=True)
         if done.returncode == 3:
             return None
         if done.returncode:
@@ -133,7 +134,7 @@ class Maker:
 
 
 def peaks_of(node):
-    """Every predicted highlight with a peak, wherever it stands."""
+    """Every predicted highlight with a peak, wherever it is."""
     if isinstance(node, dict):
         if isinstance(node.get("peak"), list):
             yield node
@@ -158,7 +159,8 @@ def noisy(times, seed, **settings):
 
 
 def table(head, rows):
-    return "\n".join(["| " + " | ".join(head) + " |", "|" + "---|" * len(head), *("| " + " | ".join(r) + " |" for r in rows)]) + "\n"
+    return "\n".join(["| " + " | ".join(head) + " |", "|" + "---|" * len(head),
+                      *("| " + " | ".join(r) + " |" for r in rows)]) + "\n"
 
 
 FIT = dict(smoothing="fit")
@@ -199,7 +201,8 @@ def sections(maker, scenes):
     out.append(("radius", table(["smoothing", "radius", "limit-angle", "reflectance", "jitter of the peak"], rows)))
     rows = []
     for times in NOISES:
-        for label, settings in (("none, default", {}), ("bilateral, 6 cm", dict(smoothing="bilateral", radius=0.06)), ("fit, 6 cm", dict(FIT, radius=0.06))):
+        for label, settings in (("none, default", {}), ("bilateral, 6 cm", dict(smoothing="bilateral", radius=0.06)),
+                                ("fit, 6 cm", dict(FIT, radius=0.06))):
             st = lambda s: noisy(times, s, **settings)
             rows.append([f"{times:g}", label, *(cell("ellipsoid", tuple(MODELS), m, st, SEEDS[:1]) for m in MODELS)])
     out.append(("noise", table(["noise", "smoothing, radius", *MODELS], rows)))
@@ -207,12 +210,15 @@ def sections(maker, scenes):
     for k in FUSED:
         for smoothing, r in (("bilateral", 0.06), ("fit", 0.06), ("fit", BEST)):
             st = lambda s: noisy(1, s, fuse=k, radius=r, smoothing=smoothing)
-            rows.append([str(k), f"{smoothing}, {100 * r:.0f} cm", *(cell("ellipsoid", TWO, m, st, SEEDS) for m in TWO), still(st(1))])
+            rows.append([str(k), f"{smoothing}, {100 * r:.0f} cm",
+                         *(cell("ellipsoid", TWO, m, st, SEEDS) for m in TWO), still(st(1))])
     out.append(("fusion", table(["frames fused", "smoothing, radius", "limit-angle", "reflectance", "jitter of the peak"], rows)))
     if "sphere" in scenes:
         rows = []
         bilateral = dict(smoothing="bilateral", radius=0.06)
-        for label, settings in (("none, default", {}), ("bilateral, 6 cm", bilateral), ("bilateral, 6 cm, 6 fused", dict(bilateral, fuse=6)), ("fit, 6 cm", dict(FIT, radius=0.06)), (f"fit, {100 * BEST:.0f} cm", dict(FIT, radius=BEST)),
+        for label, settings in (("none, default", {}), ("bilateral, 6 cm", bilateral),
+                                ("bilateral, 6 cm, 6 fused", dict(bilateral, fuse=6)), ("fit, 6 cm", dict(FIT, radius=0.06)),
+                                (f"fit, {100 * BEST:.0f} cm", dict(FIT, radius=BEST)),
                                 (f"fit, {100 * BEST:.0f} cm, 6 fused", dict(FIT, radius=BEST, fuse=6))):
             st = lambda s: noisy(1, s, **settings)
             rows.append([label, *(cell("sphere", TWO, m, st, SEEDS[:1]) for m in TWO)])
@@ -223,7 +229,8 @@ def sections(maker, scenes):
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--glint", default="build/release/bin/glint")
-    parser.add_argument("--data", default=os.environ.get("GLINT_DATA", ""), help="folder with cycles/sphere; without it the path-traced rows are left out")
+    parser.add_argument("--data", default=os.environ.get("GLINT_DATA", ""),
+                        help="folder with cycles/sphere; without it the path-traced rows are left out")
     parser.add_argument("--jobs", type=int, default=2, help="programs at once")
     parser.add_argument("--out", default="docs/depth.md")
     a = parser.parse_args()

@@ -22,10 +22,10 @@ EXPLAIN = pathlib.Path(__file__).resolve().parent.parent / "resources" / "explai
 EM = 20.0  # units of one em: digits after the point then count a hundredth of a pixel
 GAP = 0.45 * EM  # between lines
 MARGIN = 0.1 * EM  # italics overhang their boxes
-ABOVE = 0.2 * EM  # and below: text stands close to a picture
+ABOVE = 0.2 * EM  # and below: text is close to a picture
 SYMBOL = re.compile("⟦([a-z0-9-]+):([^⟧]*)⟧")
 MATRIX = re.compile(r"\\matrix\{(.*)\}$")
-# One glyph each, that no equation has: they show where in the order of glyphs a symbol stands.
+# One glyph each, that no equation has: they show the place of a symbol in the order of glyphs.
 MARKERS = [r"\aleph", r"\beth", r"\gimel", r"\daleth", r"\clubsuit", r"\spadesuit", r"\natural", r"\sharp", r"\flat", r"\wp"]
 
 matplotlib.rcParams["mathtext.fontset"] = "stix"

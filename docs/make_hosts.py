@@ -22,7 +22,8 @@ class Missing(Exception):
 
 
 def run(command, **options):
-    done = subprocess.run([str(c) for c in command], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, errors="replace", **options)
+    done = subprocess.run([str(c) for c in command], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, errors="replace",
+                          **options)
     if done.returncode:
         sys.exit(f"{' '.join(map(str, command))}\n{done.stdout[-3000:]}{done.stderr[-3000:]}")
     return done.stdout
@@ -58,13 +59,15 @@ print(json.dumps([[m, inspection.scene.frames[c.frame].id, c.light, row.observed
 def python(job):
     if not (job.build / "python/glint").is_dir():
         raise Missing("the module is not part of this build")
-    return printed(run(["/usr/bin/python3", "-c", PYTHON, job.session], env=dict(os.environ, PYTHONPATH=str(job.build / "python"))))
+    return printed(run(["/usr/bin/python3", "-c", PYTHON, job.session],
+                       env=dict(os.environ, PYTHONPATH=str(job.build / "python"))))
 
 
 def cpp(job):
     prefix = job.folder / "prefix"
     run(["cmake", "--install", job.build, "--prefix", prefix])
-    run(["cmake", "-S", ROOT / "resources/examples/cpp", "-B", job.folder / "cpp", f"-DCMAKE_PREFIX_PATH={prefix}", "-DCMAKE_BUILD_TYPE=Release"])
+    run(["cmake", "-S", ROOT / "resources/examples/cpp", "-B", job.folder / "cpp", f"-DCMAKE_PREFIX_PATH={prefix}",
+         "-DCMAKE_BUILD_TYPE=Release"])
     run(["cmake", "--build", job.folder / "cpp", "--target", "session_errors"])
     rows = [line.split() for line in run([job.folder / "cpp/session_errors", job.session]).splitlines()]
     return {(model, frame, light, int(highlight)): float(error) for model, frame, light, highlight, error in rows}
@@ -106,8 +109,10 @@ def paraview(job):
         raise Missing("there is no pvpython, or no xvfb-run")
     script = job.folder / "in_paraview.py"
     # Debian's plugin loader asks for a function that Python 3.11 no longer has (docs/paraview.md).
-    script.write_text("import inspect\nif not hasattr(inspect, 'getargspec'):\n    inspect.getargspec = inspect.getfullargspec\n" + PARAVIEW)
-    return printed(run(["xvfb-run", "-a", "-s", "-screen 0 1600x1000x24 -noreset", *command, script, job.session, ROOT / "plugins/paraview/glint_paraview.py"], env=environment))
+    script.write_text("import inspect\nif not hasattr(inspect, 'getargspec'):\n    inspect.getargspec = inspect.getfullargspec\n"
+                      + PARAVIEW)
+    return printed(run(["xvfb-run", "-a", "-s", "-screen 0 1600x1000x24 -noreset", *command, script, job.session,
+                        ROOT / "plugins/paraview/glint_paraview.py"], env=environment))
 
 
 BLENDER = """
@@ -137,10 +142,12 @@ def blender(job):
     # The add-on asks its own question, of the scene; so the command line answers that one, too.
     scene, models = job.session.parent / "scene.json", ",".join(json.loads(job.session.read_text())["request"]["models"])
     run([job.glint, "evaluate", scene, "--models", models, "--train", "spread:6", "--json", job.folder / "asked.json"])
-    environment = dict(os.environ, GLINT_ROOT=str(ROOT), GLINT_SCENE=str(scene), GLINT_MODELS=models, GLINT_PROGRAM=str(job.glint), GLINT_FOLDER=str(job.folder / "blender"),
+    environment = dict(os.environ, GLINT_ROOT=str(ROOT), GLINT_SCENE=str(scene), GLINT_MODELS=models,
+                       GLINT_PROGRAM=str(job.glint), GLINT_FOLDER=str(job.folder / "blender"),
                        BLENDER_USER_RESOURCES=str(job.folder / "user"), PYTHONDONTWRITEBYTECODE="1",
                        PATH=os.pathsep.join(["/usr/bin", "/bin", os.environ.get("PATH", "")]))
-    found = printed(run(["blender", "-b", "--factory-startup", "--python-exit-code", "1", "-P", script], env=environment, stdin=subprocess.DEVNULL))
+    found = printed(run(["blender", "-b", "--factory-startup", "--python-exit-code", "1", "-P", script], env=environment,
+                        stdin=subprocess.DEVNULL))
     return found, errors_of(json.loads((job.folder / "asked.json").read_text()))
 
 

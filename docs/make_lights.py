@@ -26,7 +26,7 @@ the mirrored rays of the peaks alone, which give a direction. A highlight whose 
 `error` is the distance from the true lamp, `stated` the root of the trace of the covariance.
 
 SCENES
-The covariance has two parts: the noise that the residuals show, and how the lamp moves when an eighth of the frames is left out, by their contours. It knows nothing of what all frames have wrong in the
+The covariance has two parts: the noise that the residuals show, and how the lamp moves when an eighth of the frames is left out, by their contours. It cannot know an error that all frames share in the
 same way: a lobe of another shape, a lamp with a size, a scale; an error may then be larger than stated, as on the path-traced sphere. Where fewer than four views
 remain, each is taken to be 0.2 px off on its own.
 
@@ -34,7 +34,7 @@ All frames from one place see one mirrored ray: then there is no position, whate
 Twelve distant lamps around a rough ball, each on in one 8-bit frame of one camera, as a scene and as photographs (next section):
 
 ROUGH
-The camera stands at 24 radii of the ball. Whoever does not say so pays the angle under which it sees the ball's radius, 2.4 degrees at the edge.
+The camera is at 24 radii of the ball. A user who does not say so pays the angle under which it sees the ball's radius, 2.4 degrees at the edge.
 
 ## Photographs of mirror balls
 One fit of all lamps and all outlines: a lamp is a direction and an inverse distance, a ball the circle (with a focal length the sphere) of its outline. The mirror point on the sphere is solved
@@ -89,7 +89,7 @@ BODY = {"glint_scene": 1, "name": "body", "camera": {"width": 160, "height": 120
         "path": {"orbit": {"centre": [0, 0, 0], "radius": 1.9, "height": 0.9, "from": -1.9, "to": -0.5, "count": 8}},
         "render": {"reflectance": "ggx", "roughness": 0.2, "diffuse": 0.05, "bits": 32, "samples": 1}}
 TURNS = 12  # distant lamps around a rough ball
-# Balls of psbox: outlines as somebody clicked them (circle_data.txt), from the left and the bottom, counted from 1; x of the cut-out in the shot.
+# Balls of psbox: outlines as a person clicked them (circle_data.txt), from the left and the bottom, counted from 1; x of the cut-out in the shot.
 PSBOX = [("LightProbe-1", 0, 0), ("LightProbe-2", 2750, 50)]
 
 
@@ -147,7 +147,8 @@ def scenes(program, folder, shared):
     rows += positioned("ellipsoid, exact contours", program.lights(exact), {"lamp": LAMP})
     coarse = json.loads(json.dumps(BODY))
     coarse["render"].update({"bits": 8, "noise": 0.003, "seed": 1, "samples": 2})
-    rows += positioned("ellipsoid, 8 bits and noise of 0.3 %", program.lights(bare(program.synth(coarse, folder / "coarse"))), {"lamp": LAMP})
+    rows += positioned("ellipsoid, 8 bits and noise of 0.3 %", program.lights(bare(program.synth(coarse, folder / "coarse"))),
+                       {"lamp": LAMP})
     for name in ("sphere", "plane_to_cylinder", "vase"):
         scene = shared / "data/cycles" / name / "scene.json"
         truth = {light["id"]: light["position"] for light in json.loads(scene.read_text())["lights"]}
@@ -163,10 +164,13 @@ def rough_balls(program, folder):
     still = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
     rows = []
     for lobe, roughness in (("torrance-sparrow", 0.15), ("ggx", 0.12)):
-        spec = {"glint_scene": 1, "name": "ball", "camera": {"width": 300, "height": 300, "fx": 3000, "fy": 3000, "cx": 149.5, "cy": 149.5},
+        spec = {"glint_scene": 1, "name": "ball",
+                "camera": {"width": 300, "height": 300, "fx": 3000, "fy": 3000, "cx": 149.5, "cy": 149.5},
                 "surfaces": {"ball": {"analytic": {"type": "sphere", "radius": 0.05,
-                                                   "world_from_surface": [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 1.2], [0, 0, 0, 1]]}}},
-                "frames": [{"id": f"{i:03}", "camera_from_world": still, "surface": "ball", "lights_on": [f"l{i:02}"]} for i in range(TURNS)],
+                                                   "world_from_surface": [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 1.2],
+                                                                          [0, 0, 0, 1]]}}},
+                "frames": [{"id": f"{i:03}", "camera_from_world": still, "surface": "ball", "lights_on": [f"l{i:02}"]}
+                           for i in range(TURNS)],
                 "lights": [{"id": f"l{i:02}", "direction": d} for i, d in enumerate(lamps)],
                 "render": {"reflectance": lobe, "roughness": roughness, "diffuse": 0.1, "bits": 8, "noise": 0.003, "seed": 1}}
         found = bare(program.synth(spec, folder / lobe))
@@ -175,9 +179,11 @@ def rough_balls(program, folder):
                                ("photographs, `--ball`, `--camera`", photographs + ["--camera", "3000,3000,149.5,149.5"]),
                                ("photographs, `--ball` alone", photographs)):
             answer = program.lights(*arguments)
-            errors = sorted(angle(light["direction"], lamps[int(light["frames"][0])]) for light in answer["lights"] if light["direction"])
+            errors = sorted(angle(light["direction"], lamps[int(light["frames"][0])]) for light in answer["lights"]
+                            if light["direction"])
             positions = sum(light["position"] is not None for light in answer["lights"])
-            rows.append([lobe, how, f"{len(errors)} of {TURNS}", positions, f"{errors[len(errors) // 2]:.2g}", f"{errors[-1]:.2g}"])
+            rows.append([lobe, how, f"{len(errors)} of {TURNS}", positions, f"{errors[len(errors) // 2]:.2g}",
+                         f"{errors[-1]:.2g}"])
     return rows
 
 
@@ -194,7 +200,8 @@ def picture(inspector, shared, output):
     """The window of balls on one photograph of psbox; needs xvfb-run."""
     data = shared / "data/psbox"
     environment = dict(os.environ, QT_QPA_PLATFORM="xcb")
-    subprocess.run(["xvfb-run", "-a", "-s", "-screen 0 1600x1000x24", inspector, str(data), *psbox_balls(data, ""), "--exclude", "ref", "--frame",
+    subprocess.run(["xvfb-run", "-a", "-s", "-screen 0 1600x1000x24", inspector, str(data), *psbox_balls(data, ""), "--exclude",
+                    "ref", "--frame",
                     "Image_11", "--theme", "dark", "--screenshot", output, "--wait-idle"], env=environment, check=True)
     if shutil.which("mogrify"):  # a third of the size, as docs/make_pictures.sh does
         subprocess.run(["mogrify", "-strip", "-colors", "128", "-define", "png:compression-level=9", output], check=True)
@@ -204,11 +211,13 @@ def psbox(program, shared):
     data = shared / "data/psbox"
     balls = psbox_balls(data, f"{data}/")
     rows, published = [], []
-    columns = [[list(map(float, line.split())) for line in (data / n / "light_directions.txt").read_text().splitlines() if line.strip()]
+    columns = [[list(map(float, line.split())) for line in (data / n / "light_directions.txt").read_text().splitlines()
+                if line.strip()]
                for n, _, _ in PSBOX]
     for i in range(12):
         published.append(angle(*[[c[k][i] for k in range(3)] for c in columns]))
-    rows.append(["published (centroids, outlines as clicked)", 12, f"{sum(published) / 12:.2f}", f"{max(published):.2f}", "", "", "", ""])
+    rows.append(["published (centroids, outlines as clicked)", 12, f"{sum(published) / 12:.2f}", f"{max(published):.2f}", "", "",
+                 "", ""])
     for outlines in ("given", "edges", "fitted"):
         answer = program.lights(data, *balls, "--exclude", "ref", "--outlines", outlines)
         both = [light for light in answer["lights"] if light.get("parallax")]
@@ -219,7 +228,8 @@ def psbox(program, shared):
         answered = sum(light["status"] == "ok" for light in answer["lights"])
         rms = math.sqrt(sum(a * a for a in across) / len(across))
         rows.append([f"`--outlines {outlines}`", answered, f"{sum(apart) / len(apart):.2f}", f"{max(apart):.2f}",
-                     f"{sum(along) / len(along):.2f}", f"{sum(across) / len(across):.2f}", f"{rms:.2f}", f"{sum(left) / len(left):.1f}"])
+                     f"{sum(along) / len(along):.2f}", f"{sum(across) / len(across):.2f}", f"{rms:.2f}",
+                     f"{sum(left) / len(left):.1f}"])
     return rows
 
 
@@ -233,7 +243,8 @@ def main():
     parser.add_argument("--program", default="build/release/bin/glint")
     parser.add_argument("--shared", default="../shared", type=pathlib.Path)
     parser.add_argument("--output", default="docs/lights.md", help="file to write; - prints it")
-    parser.add_argument("--picture", metavar="PROGRAM", help="draw docs/pictures/lamps-balls.png with this glint-inspector, and nothing else")
+    parser.add_argument("--picture", metavar="PROGRAM",
+                        help="draw docs/pictures/lamps-balls.png with this glint-inspector, and nothing else")
     a = parser.parse_args()
     if a.picture:
         return picture(a.picture, a.shared, "docs/pictures/lamps-balls.png")
@@ -243,8 +254,10 @@ def main():
         text = TEXT
         text = text.replace("SCENES", table(["scene", "highlights", "error, mm", "of the distance", "stated, mm", "from"],
                                             scenes(program, folder, a.shared)))
-        text = text.replace("ROUGH", table(["lobe", "given as", "answered", "positions", "median, degrees", "largest, degrees"], rough_balls(program, folder)))
-        text = text.replace("CHROME", table(["outlines", "lamps", "directions apart, mean", "largest", "along", "across", "across, rms",
+        text = text.replace("ROUGH", table(["lobe", "given as", "answered", "positions", "median, degrees", "largest, degrees"],
+                                           rough_balls(program, folder)))
+        text = text.replace("CHROME", table(["outlines", "lamps", "directions apart, mean", "largest", "along", "across",
+                                             "across, rms",
                                              "left out, px"], psbox(program, a.shared)))
     if a.output == "-":
         print(text)

@@ -42,9 +42,9 @@ def boxes(tests):
 
 def cores(tests):
     """Clipped lobes and coloured surfaces in closed form, as the tests of detection print them."""
-    out = run([tests, "--gtest_filter=ClippedCore.Nominal*:ClippedBand.Noise*:PartHighlights.Nominal*"])
+    out = run([tests, "--gtest_filter=ClippedCore.Nominal*:ClippedBand.Noise*:SeparateHighlights.Nominal*"])
     rows = re.findall(r"clipped core: (\w+), ([\d.]+): peak ([\d.]+) \+- (\d+) %, (\w+), ([\d.]+) px, stated ([\d.]+) px, at half the clip value ([\d.]+) px", out)
-    parts = re.findall(r"parted: (.+): ([\d.]+) px, parted ([\d.]+) px", out)
+    parts = re.findall(r"separated: (.+): ([\d.]+) px, separated ([\d.]+) px", out)
     bands = re.findall(r"clipped band: ([^|\n]+)\|([\d.]+)\|(\d+)\|(\d+)\|([\d.]+)\|([\d.]+)\|(\d+)\n", out)
     if len(rows) != 12 or len(parts) != 4 or len(bands) != 20:
         sys.exit(f"{tests}: printed {len(rows)} of 12 clipped cores, {len(bands)} of 20 bands and {len(parts)} of 4 coloured surfaces")
@@ -55,8 +55,8 @@ def cores(tests):
     for lobe, share, outside, seeds, off, stated, within in bands:
         band += f"| {lobe} | {share} | {outside} of {seeds} | {off} | {stated} | {within} of {seeds} |\n"
     other = "| surface | contour off by, px | on the specular part, px |\n" + "| --- " * 3 + "|\n"
-    for surface, plain, parted in parts:
-        other += f"| {surface} | {plain} | {parted} |\n"
+    for surface, plain, separated in parts:
+        other += f"| {surface} | {plain} | {separated} |\n"
     return text, band, other
 
 
@@ -67,9 +67,9 @@ def coloured(tests):
     models = re.findall(r"coloured model: ([^|\n]+)\|(\w+)\|(\d+)\|(\d+)\|([\d.]+|nan)\|([\d.]+|nan)\n", out)
     if len(rows) != 24 or len(models) != 9:
         sys.exit(f"{tests}: printed {len(rows)} of 24 sequences and {len(models)} of 9 models (is the data there?)")
-    text = "| sequence | paint | parted | smooth, all frames | smooth, parted frames | colours, parted frames | why not the others |\n" + "| --- " * 7 + "|\n"
-    for sequence, paint, frames, parted, smooth, there, colours, why in rows:
-        text += f"| {sequence} | {paint} | {parted} of {frames} | {smooth} | {there} | {colours} | {why} |\n"
+    text = "| sequence | paint | separated | smooth, all frames | smooth, separated frames | colours, separated frames | why not the others |\n" + "| --- " * 7 + "|\n"
+    for sequence, paint, frames, separated, smooth, there, colours, why in rows:
+        text += f"| {sequence} | {paint} | {separated} of {frames} | {smooth} | {there} | {colours} | {why} |\n"
     model = "| paint | background | frames predicted | mean, % of the diameter | max, % |\n" + "| --- " * 5 + "|\n"
     for paint, background, frames, predicted, mean, largest in models:
         model += f"| {paint} | {background} | {predicted} of {frames} | {mean} | {largest} |\n"
@@ -92,7 +92,8 @@ def gymball_scene(data, folder):
         name = f"C{camera}_S{shot}"
         (folder / f"{name}.png").write_bytes((data / f"{name}.png").read_bytes())
         frames.append({"id": name, "image": f"{name}.png", "surface": name, "lights_on": ["sky"],
-                       "camera": {"width": int(w), "height": int(h), "fx": fx, "fy": fy, "cx": cx - float(x0), "cy": cy - float(y0)},
+                       "camera": {"width": int(w), "height": int(h), "fx": fx, "fy": fy, "cx": cx - float(x0),
+                                  "cy": cy - float(y0)},
                        "camera_from_world": [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]})
         x, y, z = (float(v) for v in sphere[:3])
         surfaces[name] = {"analytic": {"type": "sphere", "radius": 0.3,
@@ -117,7 +118,8 @@ def overlap(a, b, step=0.5):
     lowest, highest = min(p[1] for p in a + b), max(p[1] for p in a + b)
     for i in range(int((highest - lowest) / step) + 1):
         y = lowest + (i + 0.5) * step
-        edges = sorted([(x, 1 - 2 * (k % 2), 0) for k, x in enumerate(spans(a, y))] + [(x, 0, 1 - 2 * (k % 2)) for k, x in enumerate(spans(b, y))])
+        edges = sorted([(x, 1 - 2 * (k % 2), 0) for k, x in enumerate(spans(a, y))]
+                       + [(x, 0, 1 - 2 * (k % 2)) for k, x in enumerate(spans(b, y))])
         in_a = in_b = 0
         for (x, da, db), following in zip(edges, edges[1:]):
             in_a, in_b = in_a + da, in_b + db
@@ -163,13 +165,15 @@ def psbox_scene(data, folder):
     for ball in (1, 2):
         probe = data / f"LightProbe-{ball}"
         x, y, radius = (float(v) for v in (probe / "circle_data.txt").read_text().split())
-        directions = [[float(v) for v in line.split()] for line in (probe / "light_directions.txt").read_text().splitlines() if line.strip()]
+        directions = [[float(v) for v in line.split()] for line in (probe / "light_directions.txt").read_text().splitlines()
+                      if line.strip()]
         width, height = [(1100, 1000), (950, 950)][ball - 1]
         cx, cy = x - 1, height - y  # counted from 1, y from the bottom
         depth = 100.0
         focal = radius * math.sqrt(depth * depth - 1)
         surfaces[f"ball{ball}"] = {"analytic": {"type": "sphere", "radius": 1.0,
-                                                "world_from_surface": [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, depth], [0, 0, 0, 1]]}}
+                                                "world_from_surface": [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, depth],
+                                                                       [0, 0, 0, 1]]}}
         for shot in range(1, 13):
             name = f"ball{ball}-{shot:02}"
             (folder / f"{name}.jpg").write_bytes((probe / f"Image_{shot:02}.JPG").read_bytes())
@@ -205,12 +209,13 @@ def psbox(glint, data):
             largest += near[0] is by_area[0]
             rest = [h for h in by_area if h is not near[0]]
             others += len(rest)
-            flagged += sum(any("not the lamp" in f or "silhouette" in f or "off the surface" in f for f in h["flags"]) for h in rest)
+            flagged += sum(any("not the lamp" in f or "silhouette" in f or "off the surface" in f for f in h["flags"])
+                           for h in rest)
         mean = [sum(d[k] for d in off) / max(1, len(off)) for k in (0, 1)]
         rms = math.sqrt(sum(x * x + y * y for x, y in off) / max(1, len(off)))
         left = math.sqrt(sum((x - mean[0]) ** 2 + (y - mean[1]) ** 2 for x, y in off) / max(1, len(off)))
         text += f"| {ball} | {shots} | {len(off)} | {largest} | {others} | {flagged} | {mean[0]:.1f}, {mean[1]:.1f} | {rms:.1f} | {left:.1f} |\n"
-    return text + (f"\nEstimated peaks that are relied on: {sum(c['trusted'] for c in clipped)} of {len(clipped)} clipped highlights. "
+    return text + (f"\nEstimated peaks that are trusted: {sum(c['trusted'] for c in clipped)} of {len(clipped)} clipped highlights. "
                    "A chrome ball shows the lamp itself and the camera's star burst, no lobe.\n")
 
 
@@ -232,8 +237,10 @@ def motion_captures(glint, data):
         gym, box = pathlib.Path(name) / "gymball", pathlib.Path(name) / "psbox"
         gym.mkdir()
         box.mkdir()
-        captures = [(f"cycles/{c}", data / "cycles" / c / "scene.json", "radiance") for c in ("vase", "sphere", "plane_to_cylinder")]
-        captures += [("gymball", gymball_scene(data / "gymball", gym), "image"), ("psbox", psbox_scene(data / "psbox", box)[0], "image")]
+        captures = [(f"cycles/{c}", data / "cycles" / c / "scene.json", "radiance")
+                    for c in ("vase", "sphere", "plane_to_cylinder")]
+        captures += [("gymball", gymball_scene(data / "gymball", gym), "image"),
+                     ("psbox", psbox_scene(data / "psbox", box)[0], "image")]
         for title, scene, source in captures:
             frames = json.loads(run([glint, "detect", scene, "--source", source, "--json", "-"]))["frames"]
             highlights = [h for f in frames for h in f["highlights"]]
@@ -254,7 +261,7 @@ Eight calibrated views of six real objects with detection boxes (Aldoma et al., 
 given ellipsoids are read only to score.
 
 {boxes}
-- The published method inscribes an ellipse in each box and takes it for the outline. Of a tilted object such ellipses contradict each other: a box
+- The published method inscribes an ellipse in each box and takes it for the outline. The ellipses of a tilted object contradict each other: a box
   says where four lines touch, not more. Glint uses the four planes of these lines.
 - Objects 0 to 3 are packs. No ellipsoid touches their boxes to better than 1.8 px; a cuboid does. The answer is then the ellipsoid nearest to that cuboid
   in squared support over all directions (a closed form, `ellipsoidOfCuboid`). Nothing in it is chosen by the given ellipsoids. Other ellipsoids of a cuboid are
@@ -273,8 +280,8 @@ axes change by at most {gaussian:.1f} % and the contours overlap by at least {io
 {gymball}
 - The contour lies on the slope around the saturated core, at a level of the clipped maximum: the true peak is not known, so the true level is lower than the one named.
 - The highlight ends at the silhouette, where no level set does: the ellipse through such a contour reaches beyond the ball. It says where the highlight is, not what shape a lobe has.
-- Along the silhouette and the ball's grooves the contour has tongues, which join or leave the highlight between levels. They are cut off, and pieces of them beside the highlight are rejected (`withoutTongues`,
-  `core/highlight/tongues.h`). Without that the ellipse of C2_S3 moved by 6.5 px between these levels.
+- Along the silhouette and the ball's grooves the contour has streaks, which join or leave the highlight between levels. They are cut off, and pieces of them beside the highlight are rejected (`withoutStreaks`,
+  `core/highlight/streaks.h`). Without that the ellipse of C2_S3 moved by 6.5 px between these levels.
 - Other highlights in the count are on the ball's stand and in its grooves. No mask was given.
 
 ## Two chrome balls
@@ -302,11 +309,11 @@ Captures without bright texture that anybody knows of, by `glint detect`: none o
 
 CORES = """## Clipped cores
 Lobes in closed form, 60 x 36 px at 1/e, over a sloping background, noise of 0.5 % of the clip value, clipped at a share of the peak. The slope is traced at up to eleven levels; the
-areas of its contours tell the peak (`traceSkirt`, `core/highlight/clipped_skirt.h`). Truth: the lobe's own contour at half of its peak.
+areas of its contours tell the peak (`traceFlank`, `core/highlight/clipped_flank.h`). Truth: the lobe's own contour at half of its peak.
 
 {clipped}
 - Where level 0.5 lies inside the core, the contour stays at half of the clip value, and `glint detect` says so. It is then too large by about what the last column says, and the
-  stated uncertainty is as wide: the profile's own distance to the level, or, where no peak is relied on, anything up to the whole radius.
+  stated uncertainty is as wide: the profile's own distance to the level, or, without a trusted peak, anything up to the whole radius.
 - Outside of the core the stated uncertainty (one standard deviation) is that of the peak and of the background. The background is fitted again with the tail that the slope shows, up
   to three times: with a Gaussian's, GGX's tail passes for background (at 0.95 the contour was off by 1.32 px).
 - A narrow peak on top of a wide lobe that lies wholly inside the core shows in no slope: no uncertainty covers it.
@@ -314,13 +321,13 @@ areas of its contours tell the peak (`traceSkirt`, `core/highlight/clipped_skirt
 The same with lobes by their formulas over the angle, two sizes, four places and noises each. Errors of a lobe's shape are alike in all pictures of it; so the stated uncertainty is on the safe side for most.
 
 {bands}
-- Profiles of contours that are no ellipses (median over the levels: 8 % off) are not relied on: star bursts, mirrored lamps.
+- Profiles of contours that are no ellipses (median over the levels: 8 % off) are not trusted: star bursts, mirrored lamps.
 
 ## Coloured surfaces
 A lobe of 44 x 30 px at 1/e under a yellowish lamp, over diffuse paint in closed form. `--separate auto` finds the combination of the channels in which the diffuse colours around the highlight vanish
-(`partHighlights`, `core/highlight/parting.h`), and takes contours on it.
+(`separateHighlights`, `core/highlight/specular_separation.h`), and takes contours on it.
 
-{parted}
+{separated}
 - It is refused, in words, for grey images, clipped pixels, metal and black, paint of the lamp's colour, more than two colours, and where noise would be above 5 % of the peak.
 """
 
@@ -334,13 +341,13 @@ distance of the contours, mean and worst, px. `detect.background` = `smooth` or 
 - It does not help where pixels are noisy: the combination of the channels amplifies their noise, and at 0.5 % of the clip value the contour is worse than over the smooth background. Average several exposures, or stay with another background.
 - It is refused where paint has the lamp's colour (grey, or a mixture of paints that is grey on the whole), where there are three paints, and on the vase in three frames or more of eight: too much of what surrounds one of their highlights is left.
   The frames keep the smooth background, with its error.
-- On the vase a parted contour can still be off by more than a pixel (waves): the limits on noise and on what is left do not see every failure.
+- On the vase a separated contour can still be off by more than a pixel (waves): the limits on noise and on what is left do not see every failure.
 
-Models that are fitted on pixels (`reflectance`) take the specular part as well in frames that were parted. Sphere, twelve frames, `--train spread:6`, the other six scored against the same truth:
+Models that are fitted on pixels (`reflectance`) take the specular part as well in frames that were separated. Sphere, twelve frames, `--train spread:6`, the other six scored against the same truth:
 
 {models}
-Without the parted pixels the row *colours* would be nearly as poor as the others: contours alone would be right, and the lobe fitted to what the paint has changed. `lobe` takes the light of
-one smooth paint for background; blocks are none.
+Without the separated pixels the row *colours* would be nearly as poor as the others: contours alone would be right, and the lobe fitted to what the paint has changed. `lobe` takes the light of
+one smooth paint for background; blocks have no smooth part.
 """
 
 
@@ -355,14 +362,15 @@ def main():
     parser.add_argument("--coloured-tests", default="build/release/bin/test_core_coloured_cycles")
     parser.add_argument("--cores", action="store_true", help="print the sections that need no data, and stop")
     a = parser.parse_args()
-    clipped, bands, parted = cores(a.highlight_tests)
-    sections = CORES.format(clipped=clipped, bands=bands, parted=parted)
+    clipped, bands, separated = cores(a.highlight_tests)
+    sections = CORES.format(clipped=clipped, bands=bands, separated=separated)
     if a.cores:
         sys.stdout.write(sections)
         return
     page = PAGE.format(boxes=boxes(a.tests), gymball=gymball(a.glint, pathlib.Path(a.data) / "gymball"),
                        motion=motion(a.motion), captures=motion_captures(a.glint, pathlib.Path(a.data)),
-                       psbox=psbox(a.glint, pathlib.Path(a.data) / "psbox"), near=PSBOX_NEAR_PX, levels=", ".join(map(str, LEVELS)),
+                       psbox=psbox(a.glint, pathlib.Path(a.data) / "psbox"), near=PSBOX_NEAR_PX,
+                       levels=", ".join(map(str, LEVELS)),
                        centre=CENTRE_PCT, gaussian=GAUSSIAN_PCT, iou=GAUSSIAN_IOU) + "\n" + sections
     contours, models = coloured(a.coloured_tests)
     page += COLOURED.format(contours=contours, models=models)

@@ -36,14 +36,18 @@ TURNED = [[0, 1, 0, 0], [1, 0, 0, 0], [0, 0, -1, 0], [0, 0, 0, 1]]
 ELLIPSOID = {"type": "ellipsoid", "semi_axes": [0.6, 0.35, 0.25]}
 SHAPES = {
     "plane": ({"type": "plane"}, [{"position": [0.2, 1.2, 1.1]}], [1.6, -2.0, -1.1, 1.2]),
-    "cylinder": ({"type": "cylinder", "radius": 0.3, "world_from_surface": TURNED}, [{"position": [0.3, -1.5, 1.4]}], [1.8, -2.1, -1.0, 1.2]),
+    "cylinder": ({"type": "cylinder", "radius": 0.3, "world_from_surface": TURNED}, [{"position": [0.3, -1.5, 1.4]}],
+                 [1.8, -2.1, -1.0, 1.2]),
     "bent sheet": ({"type": "sheet", "curvature": 1.2}, [{"position": [0.3, 0.9, 1.3]}], [1.6, -2.2, -0.9, 1.2]),
     "ellipsoid": (ELLIPSOID, [{"position": [1.2, -1.0, 2.2]}], [1.9, -2.4, 0.4, 0.7]),
     "ellipsoid, near lamp": (ELLIPSOID, [{"position": [0.5, -0.6, 0.9]}], [1.9, -2.4, 0.0, 0.7]),
     "ellipsoid, light at infinity": (ELLIPSOID, [{"direction": [0.5, -0.5, 0.8]}], [1.9, -2.4, 0.0, 0.7]),
-    "ellipsoid, two lamps": (ELLIPSOID, [{"position": [1.2, -1.0, 2.2]}, {"position": [-1.4, -1.0, 1.4]}], [1.9, -2.2, -0.6, 0.7]),
-    "ellipsoid, lamp twice as wide as the lobe": (ELLIPSOID, [{"position": [1.2, -1.0, 2.2], "radius": 0.25}], [1.9, -2.4, 0.4, 0.7]),
-    "torus": ({"type": "torus", "major_radius": 0.4, "minor_radius": 0.15}, [{"position": [1.1, -1.2, 1.6]}], [1.7, -1.7, 0.2, 1.1]),
+    "ellipsoid, two lamps": (ELLIPSOID, [{"position": [1.2, -1.0, 2.2]}, {"position": [-1.4, -1.0, 1.4]}],
+                             [1.9, -2.2, -0.6, 0.7]),
+    "ellipsoid, lamp twice as wide as the lobe": (ELLIPSOID, [{"position": [1.2, -1.0, 2.2], "radius": 0.25}],
+                                                  [1.9, -2.4, 0.4, 0.7]),
+    "torus": ({"type": "torus", "major_radius": 0.4, "minor_radius": 0.15}, [{"position": [1.1, -1.2, 1.6]}],
+              [1.7, -1.7, 0.2, 1.1]),
 }
 SHAPE_LOBES = [("torrance-sparrow", 0.03), ("torrance-sparrow", 0.1), ("ggx", 0.3), ("blinn-phong", 0.1), ("phong", 0.05)]
 
@@ -80,7 +84,8 @@ def cell(model):
 
 
 def table(header, rows):
-    return "\n".join(["| " + " | ".join(header) + " |", "|" + " --- |" * len(header)] + ["| " + " | ".join(r) + " |" for r in rows]) + "\n"
+    return "\n".join(["| " + " | ".join(header) + " |", "|" + " --- |" * len(header)]
+                     + ["| " + " | ".join(r) + " |" for r in rows]) + "\n"
 
 
 def exact_table(glint, folder):
@@ -115,9 +120,12 @@ def shapes_table(glint, folder):
             if wide and m > 0.03:
                 continue
             name = f"shape-{len(rows)}"
-            spec = {"glint_scene": 1, "name": name, "units": "m", "camera": CAMERA, "contour": "radiance", "level": 0.5, "margin_px": 100,
-                    "surfaces": {"body": {"analytic": surface}}, "lights": [{"id": f"lamp{i}", **l} for i, l in enumerate(lights)],
-                    "path": {"orbit": {"centre": [0, 0, 0], "radius": radius, "from": start, "to": end, "height": height, "count": 12}},
+            spec = {"glint_scene": 1, "name": name, "units": "m", "camera": CAMERA, "contour": "radiance", "level": 0.5,
+                    "margin_px": 100,
+                    "surfaces": {"body": {"analytic": surface}},
+                    "lights": [{"id": f"lamp{i}", **l} for i, l in enumerate(lights)],
+                    "path": {"orbit": {"centre": [0, 0, 0], "radius": radius, "from": start, "to": end, "height": height,
+                                       "count": 12}},
                     "render": {"reflectance": lobe, "roughness": m, "bits": 32}}
             file = folder / (name + ".json")
             file.write_text(json.dumps(spec))
@@ -134,8 +142,10 @@ def shapes_table(glint, folder):
 
 def cycles_table(glint, cycles):
     rows = []
-    for name, scene, trains in [("sphere", "scene-analytic.json", ["first:6", "spread:6"]), ("sphere, mesh", "scene.json", ["first:6", "spread:6"]),
-                                ("plane_to_cylinder", "scene-analytic.json", ["0-5"]), ("plane_to_cylinder, mesh", "scene.json", ["0-5"]),
+    for name, scene, trains in [("sphere", "scene-analytic.json", ["first:6", "spread:6"]),
+                                ("sphere, mesh", "scene.json", ["first:6", "spread:6"]),
+                                ("plane_to_cylinder", "scene-analytic.json", ["0-5"]),
+                                ("plane_to_cylinder, mesh", "scene.json", ["0-5"]),
                                 ("vase, mesh", "scene.json", ["first:6", "spread:6"])]:
         path = cycles / name.split(",")[0] / scene
         for train in trains:
@@ -155,7 +165,8 @@ def noise_table(glint, cycles, seeds):
         for models in ["limit-angle", "reflectance"]:
             errors, lobes = [], {}
             for seed in range(1, seeds + 1):
-                m = evaluate(glint, cycles / "sphere" / "scene-analytic.json", models, train, extra=["--noise-px", "1", "--seed", str(seed)])[models]
+                m = evaluate(glint, cycles / "sphere" / "scene-analytic.json", models, train,
+                             extra=["--noise-px", "1", "--seed", str(seed)])[models]
                 s = m["summary"]
                 if s["predicted"] != s["frames"] or s["missed"] or s["spurious"]:
                     fail(f"noise seed {seed}, {train}: not every frame is answered")
@@ -175,7 +186,8 @@ def main():
     parser.add_argument("--shared", default="../shared", type=pathlib.Path)
     parser.add_argument("--seeds", default=20, type=int)
     parser.add_argument("-o", default="docs/reflectance.md", type=pathlib.Path)
-    parser.add_argument("--sections", default="exact,shapes,cycles,noise", help="sections to make again, separated by commas; the page keeps the others")
+    parser.add_argument("--sections", default="exact,shapes,cycles,noise",
+                        help="sections to make again, separated by commas; the page keeps the others")
     arguments = parser.parse_args()
     wanted = arguments.sections.split(",")
     cycles = arguments.shared / "data" / "cycles"

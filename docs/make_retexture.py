@@ -31,7 +31,8 @@ FRAMES, TRAIN = 12, "spread:6"
 HELD_OUT = [1, 5, 9]
 REMOVED = 5  # one of them: filling a frame takes as long as a composite, for each of them all is fitted again
 DIM = 2  # by how much less exposed a rendering is that shows the true peak of a clipped core
-SAID = [("its own tail", "tail"), ("core is clipped", "core clipped"), ("clipped (saturated)", "clipped frames"), ("strength differs", "strength differs"),
+SAID = [("its own tail", "tail"), ("core is clipped", "core clipped"), ("clipped (saturated)", "clipped frames"),
+        ("strength differs", "strength differs"),
         ("fades out", "fades out"), ("pixels that are left", "seen everywhere")]
 
 
@@ -105,7 +106,8 @@ def make_scene(glint, folder, surface, lobe, m, blur, noise, exposure):
             "camera": {"width": 320, "height": 240, "fx": 400, "fy": 400, "cx": 159.5, "cy": 119.5},
             "surfaces": {"body": {"analytic": surface}}, "lights": [{"id": "lamp", "position": [1.2, -1.0, 2.2]}],
             "path": {"orbit": {"centre": [0, 0, 0], "radius": 2.0, "from": -2.2, "to": 0.8, "height": 0.9, "count": FRAMES}},
-            "render": {"reflectance": lobe, "roughness": m, "diffuse": [0.3, 0.18, 0.1], "bits": 8, "samples": 2, "exposure": exposure, "seed": 1}}
+            "render": {"reflectance": lobe, "roughness": m, "diffuse": [0.3, 0.18, 0.1], "bits": 8, "samples": 2,
+                       "exposure": exposure, "seed": 1}}
     if surface is PLANE:  # over the plane the cameras look from where the lamp is mirrored
         spec["path"]["orbit"].update({"height": 2.0, "radius": 1.2, "from": 1.6, "to": 3.4})
     matt = {"specular": 1e-12, "blur_px": 0, "noise": 0}
@@ -129,7 +131,8 @@ def true_peak(folder, ids):
     peaks = []
     for i in range(0, FRAMES, 2):  # spread:6 of 12
         shiny, matt = (pixels(folder / name / "frames" / f"{ids[i]}.png") for name in ["dim", "dim-matt"])
-        peaks.append(DIM * max(sum(LINEAR[shiny[k + c]] - LINEAR[matt[k + c]] for c in range(3)) for k in range(0, len(shiny), 3)) / 3)
+        peaks.append(DIM * max(sum(LINEAR[shiny[k + c]] - LINEAR[matt[k + c]] for c in range(3))
+                               for k in range(0, len(shiny), 3)) / 3)
     return statistics.median(peaks)
 
 
@@ -141,7 +144,7 @@ def strength_in(printed):
 
 def score(glint, folder, model, ids, peak):
     """Medians over held-out frames: PSNR of the composite, error of its highlight, its strength as a share of the true peak; PSNR without highlight,
-    of the frame as it is; what warnings say. Or why there is none."""
+    of the frame as it is; what warnings say. Or why the picture is missing."""
     session = folder / "shiny" / f"{model}.glint"
     fitted = run(glint, "reconstruct", folder / "shiny", "--model", model, "--train", TRAIN, "-o", session)
     if fitted.returncode:
@@ -158,7 +161,8 @@ def score(glint, folder, model, ids, peak):
         truth, matt = kept(folder / "shiny" / "frames" / name), kept(clean)
         image = pixels(out)
         where = [k for k in range(len(truth)) if truth[k] > matt[k] + 1 or image[k] > matt[k] + 1]  # more than rounding and noise
-        rows.append((psnr(image, truth, where), error_of_highlight(image, truth, matt, where), 100 * strength_in(done.stdout) / peak))
+        rows.append((psnr(image, truth, where), error_of_highlight(image, truth, matt, where),
+                     100 * strength_in(done.stdout) / peak))
         if i == REMOVED:
             removed = run(glint, *common, "--remove", "--all-warnings", "-o", plain)
             if removed.returncode:

@@ -32,11 +32,13 @@ CYCLES = [
     ("sphere", "spread:6", {"reflectance"}, LEVEL_SET, LEVEL_SET),
     ("vase", "spread:6", {"reflectance"}, {"reflectance"}, LEVEL_SET),
 ]
-RUNS = [("no tolerance", []), ("tolerance 0.5 %", ["--good-enough-pct", "0.5"]), ("1 px noise", ["--noise-px", "1", "--seed", "3"])]
+RUNS = [("no tolerance", []), ("tolerance 0.5 %", ["--good-enough-pct", "0.5"]),
+        ("1 px noise", ["--noise-px", "1", "--seed", "3"])]
 
 
 def choose(glint, scene, train, more):
-    run = subprocess.run([glint, "evaluate", scene, "--models", "auto", "--train", train, "--json", "-", *more], capture_output=True, text=True)
+    run = subprocess.run([glint, "evaluate", scene, "--models", "auto", "--train", train, "--json", "-", *more],
+                         capture_output=True, text=True)
     if run.returncode not in (0, 3):
         sys.exit(f"{scene}: {run.stderr}")
     return json.loads(run.stdout)
@@ -91,7 +93,8 @@ def main():
         for name, train, *right in SYNTHETIC:
             made = pathlib.Path(folder) / name
             if not made.exists():
-                subprocess.run([args.glint, "synth", ROOT / f"resources/specs/auto/{name}.json", "-o", made], check=True, stdout=subprocess.DEVNULL)
+                subprocess.run([args.glint, "synth", ROOT / f"resources/specs/auto/{name}.json", "-o", made], check=True,
+                               stdout=subprocess.DEVNULL)
             scenes.append((name, made, train, right))
         for name, train, *right in CYCLES:
             file = args.shared / "data/cycles" / name / "scene.json"

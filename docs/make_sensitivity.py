@@ -18,7 +18,8 @@ TRAIN = [0, 13, 26, 39, 53, 66]                  # spread over the 80 poses
 HELD_OUT = [4, 11, 18, 30, 35, 44, 49, 60, 70, 76]
 FOCAL = 800.0
 DISTANCE = 2.1                                   # m, cameras to the object
-COLOURS = {"primal": "#e69f00", "dual": "#56b4e9", "canonical": "#009e73", "limit-angle": "#d55e00", "reflectance": "#cc79a7"}  # ModelTraits::rgb
+COLOURS = {"primal": "#e69f00", "dual": "#56b4e9", "canonical": "#009e73", "limit-angle": "#d55e00",
+           "reflectance": "#cc79a7"}  # ModelTraits::rgb
 
 
 def fail(text):
@@ -92,7 +93,8 @@ class Maker:
         return self.score(folder / "scene.json", trained, extra)
 
     def score(self, scene_file, trained, extra=()):
-        done = subprocess.run([self.glint, "evaluate", str(scene_file), "--train", f"0-{trained - 1}", "--level", str(LEVEL), "--json", "-", *extra],
+        done = subprocess.run([self.glint, "evaluate", str(scene_file), "--train", f"0-{trained - 1}", "--level", str(LEVEL),
+                               "--json", "-", *extra],
                               capture_output=True, text=True)
         if done.returncode not in (0, 3):
             fail(f"glint evaluate {scene_file}: {done.stderr.strip()}")
@@ -231,7 +233,8 @@ def study(maker, seeds):
         scene = maker.scene(TRAIN)
         axes = scene["surfaces"]["body"]["analytic"]["semi_axes"]
         scene["surfaces"] = {"body": {"mesh": "body.ply"}}  # the scene of the other runs keeps its own
-        return maker.evaluate(scene, len(TRAIN), files={"body.ply": ellipsoid_mesh(axes, sigma, random.Random(f"normals {sigma} {seed}"))})
+        return maker.evaluate(scene, len(TRAIN),
+                              files={"body.ply": ellipsoid_mesh(axes, sigma, random.Random(f"normals {sigma} {seed}"))})
 
     def views(k):
         train = [p for p in ([round(i * 79 / max(1, k - 1)) for i in range(k)] if k > 1 else [39])]
@@ -244,19 +247,24 @@ def study(maker, seeds):
 
     width = 457  # px of the object at scale 1
     return [
-        ("resolution", "Image resolution", "width of the object, px", "8-bit images at this size, detected; scored against exact contours",
+        ("resolution", "Image resolution", "width of the object, px",
+         "8-bit images at this size, detected; scored against exact contours",
          [(width * s, f"{width * s:.0f}", [lambda s=s: resolution(maker, s)]) for s in (0.22, 0.3, 0.4, 0.6, 1.0)]),
         ("peak", "Error of the peaks", "px", "Gaussian, per coordinate, training peaks only",
          [(v, f"{v:g}", noisy(with_peak_noise, "peak", v)) for v in (0, 0.3, 1, 3, 10)]),
         ("contour", "Noise of the contours", "px", "Gaussian, per coordinate, on 72 points of each training contour",
          [(v, f"{v:g}", noisy(with_contour_noise, "contour", v)) for v in (0, 0.1, 0.3, 1, 3)]),
-        ("pose", "Error of the poses", "px", "training cameras turned by sigma / f about each axis and shifted by sigma Z / f along each",
+        ("pose", "Error of the poses", "px",
+         "training cameras turned by sigma / f about each axis and shifted by sigma Z / f along each",
          [(v, f"{v:g}", noisy(with_pose_noise, "pose", v)) for v in (0, 0.1, 0.3, 1, 3)]),
-        ("normal", "Error of the normals", "degrees", "a mesh of 51,000 vertices whose normals are tilted by a smooth random field, RMS",
-         [(v, f"{v:g}", [lambda v=v, s=s: normals(v, s) for s in range(1 if v == 0 else min(seeds, 3))]) for v in (0, 0.03, 0.1, 0.3, 1)]),
+        ("normal", "Error of the normals", "degrees",
+         "a mesh of 51,000 vertices whose normals are tilted by a smooth random field, RMS",
+         [(v, f"{v:g}", [lambda v=v, s=s: normals(v, s) for s in range(1 if v == 0 else min(seeds, 3))])
+          for v in (0, 0.03, 0.1, 0.3, 1)]),
         ("views", "Number of training views", "views", "spread over all 80 poses, exact contours",
          [(k, str(k), [lambda k=k: views(k)]) for k in (2, 3, 4, 6, 10, 20)]),
-        ("baseline", "Baseline", "degrees of the arc between the first and the last of 6 training views", "exact contours; held-out views of the whole arc",
+        ("baseline", "Baseline", "degrees of the arc between the first and the last of 6 training views",
+         "exact contours; held-out views of the whole arc",
          [(s * maker.degrees / 79, f"{s * maker.degrees / 79:.1f}", [lambda s=s: baseline(s)]) for s in (5, 10, 20, 40, 75)]),
     ]
 
@@ -282,7 +290,8 @@ def svg(title, unit, points, models, values):
     def py(y):
         return h - bottom - (y - low) / (high - low) * (h - top - bottom)
     out = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {w} {h}" font-family="sans-serif" font-size="12">',
-           f'<rect width="{w}" height="{h}" fill="white"/>', f'<text x="{left}" y="20" font-size="14">{title}: mean contour error, %</text>']
+           f'<rect width="{w}" height="{h}" fill="white"/>',
+           f'<text x="{left}" y="20" font-size="14">{title}: mean contour error, %</text>']
     for e in range(low, high + 1):
         out.append(f'<line x1="{left}" x2="{w - right}" y1="{py(e):.1f}" y2="{py(e):.1f}" stroke="#ddd"/>'
                    f'<text x="{left - 6}" y="{py(e) + 4:.1f}" text-anchor="end">{10.0 ** e:g}</text>')
@@ -291,7 +300,8 @@ def svg(title, unit, points, models, values):
     out.append(f'<text x="{(left + w - right) / 2:.0f}" y="{h - 10}" text-anchor="middle">{unit}</text>')
     for i, m in enumerate(models):
         colour = COLOURS.get(m, "#999999")
-        run = [(px(x), py(math.log10(max(v, 1e-4)))) if v is not None and math.isfinite(v) else None for x, v in zip(place, values[m])]
+        run = [(px(x), py(math.log10(max(v, 1e-4)))) if v is not None and math.isfinite(v) else None
+               for x, v in zip(place, values[m])]
         for a, b in zip(run, run[1:]):
             if a and b:
                 out.append(f'<line x1="{a[0]:.1f}" y1="{a[1]:.1f}" x2="{b[0]:.1f}" y2="{b[1]:.1f}" stroke="{colour}" stroke-width="2"/>')

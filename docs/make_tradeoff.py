@@ -32,7 +32,8 @@ def table(glint, title, scene, train):
     with tempfile.TemporaryDirectory() as folder:
         file = pathlib.Path(folder) / "t.json"
         start = time.monotonic()
-        subprocess.run([glint, "tradeoff", scene, "--models", "primal,dual,canonical,limit-angle,reflectance", "--train", train, "--json", file],
+        subprocess.run([glint, "tradeoff", scene, "--models", "primal,dual,canonical,limit-angle,reflectance", "--train", train,
+                        "--json", file],
                        check=True, stdout=subprocess.DEVNULL)
         seconds = time.monotonic() - start
         t = json.loads(file.read_text())
@@ -55,10 +56,13 @@ def main():
     parser.add_argument("--only", nargs="*")
     args = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
-        scenes = [("ellipsoid", "Ellipsoid, rendered images (`sessions/ellipsoid`)", lambda: ROOT / "sessions/ellipsoid/scene.json", "spread:6"),
+        scenes = [("ellipsoid", "Ellipsoid, rendered images (`sessions/ellipsoid`)",
+                   lambda: ROOT / "sessions/ellipsoid/scene.json", "spread:6"),
                   ("million", "The same on a mesh of a million triangles", lambda: large_mesh(pathlib.Path(folder)), "spread:6"),
-                  ("vase", "Vase, path-traced, its mesh (`sessions/vase`)", lambda: ROOT / "sessions/vase/scene.json", "spread:6"),
-                  ("sphere", "Sphere, path-traced (`data/cycles/sphere`)", lambda: args.shared / "data/cycles/sphere/scene.json", "spread:6")]
+                  ("vase", "Vase, path-traced, its mesh (`sessions/vase`)", lambda: ROOT / "sessions/vase/scene.json",
+                   "spread:6"),
+                  ("sphere", "Sphere, path-traced (`data/cycles/sphere`)", lambda: args.shared / "data/cycles/sphere/scene.json",
+                   "spread:6")]
         for name, title, scene, train in scenes:
             if (args.only and name not in args.only) or not (file := scene()).exists():
                 continue

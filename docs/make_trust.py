@@ -167,7 +167,8 @@ def writeRows(arguments):
     earlier = checked(json.loads(file.read_text(encoding="utf-8"))) if file.exists() else {"rows": []}
     whole = {row[0] for row in arguments.row}
     # A part that ran before the whole is in it ("io, 3 of 16 tests" in "io").
-    kept = [row for row in earlier["rows"] if re.sub(r", \d+ of \d+ tests$", "", row["name"]) not in whole or row["name"] in whole]
+    kept = [row for row in earlier["rows"] if re.sub(r", \d+ of \d+ tests$", "", row["name"]) not in whole
+            or row["name"] in whole]
     write(file, arguments, kept, f", {today()}", arguments.needs or earlier.get("needs", []))
 
 

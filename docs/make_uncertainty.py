@@ -40,7 +40,8 @@ def table(rows, judged):
     out += (" 93 to 97 % |" if judged else "") + "\n" + "| --- " * (11 if judged else 10) + "|\n"
     for r in rows:
         error = r["spread"] / math.sqrt(max(1, r["trials"] - r["failed"]))
-        cells = [r["model"], r["scene"], f"{r['noise']:g}", r["trials"], r["failed"], f"{100 * r['share']:.1f} %", f"{100 * error:.1f} %",
+        cells = [r["model"], r["scene"], f"{r['noise']:g}", r["trials"], r["failed"], f"{100 * r['share']:.1f} %",
+                 f"{100 * error:.1f} %",
                  number(r["sigma"]), number(r["error"]), number(r["estimated"])]
         if judged:
             cells.append("met" if LOW <= r["share"] <= HIGH else "**missed**")
@@ -55,7 +56,8 @@ def main():
     parser.add_argument("--ellipsoid-trials", type=int, default=100, help="for ellipsoid models, whose bands take longer")
     parser.add_argument("--models", default="limit-angle,reflectance")
     parser.add_argument("--output", default="docs/uncertainty.md", help="file to write; - prints it")
-    parser.add_argument("--earlier", nargs="*", default=[], help="files with earlier output of the program: their models are not tried again")
+    parser.add_argument("--earlier", nargs="*", default=[],
+                        help="files with earlier output of the program: their models are not tried again")
     a = parser.parse_args()
     models = a.models.split(",")
     exact = trials(a.program, a.trials, [m for m in models if m in LEVEL_SETS], a.earlier)

@@ -49,7 +49,7 @@ bool onlyX11() {
                      [](const QString& platform) { return platform.section(':', 0, 0) == QLatin1String("xcb"); });
 }
 
-/// Qt ends the program where it finds no display. InputError before that; null where it may find something else than X11.
+/// Qt ends the program where it finds no display. InputError before that; null if it may find something else than X11.
 std::unique_ptr<glint::viz::DisplayConnection> openDisplay() {
   if (!onlyX11()) return nullptr;
   glint::Outcome<std::unique_ptr<glint::viz::DisplayConnection>> display = glint::viz::DisplayConnection::open();
@@ -108,7 +108,7 @@ int run(int argc, char** argv) {
     throw glint::InputError("", "QT_QPA_PLATFORM",
                             "this Qt platform cannot draw 3D; use a display, or xvfb-run with QT_QPA_PLATFORM=xcb (see --help)");
 
-  // What can be said without opening the input is said before there is a window; Screenshot has the rest.
+  // Messages that do not need the input come before there is a window; Screenshot has the rest.
   const std::vector<std::filesystem::path> input{command.input.toStdString()};
   glint::Outputs(input).file(command.screenshot.toStdString(), "--screenshot", glint::OutputKind::png());
 
@@ -116,7 +116,7 @@ int run(int argc, char** argv) {
   QApplication::setAttribute(Qt::AA_EnableHighDpiScaling);
   QApplication::setAttribute(Qt::AA_UseHighDpiPixmaps);
 #endif
-  // What Qt notes for programmers (a folder that the system did not set, a style without a font) is no line for the user; a fatal one is.
+  // Qt's notes for programmers (a folder that the system lacks, a style without a font) are not for the user; a fatal one is.
   qInstallMessageHandler([](QtMsgType type, const QMessageLogContext&, const QString& text) {
     if (type != QtFatalMsg) return;
     printErrorLine(text.toStdString());

@@ -87,7 +87,7 @@ Matrix4d parentFromNode(const JsonNode& node) {
   const std::optional<JsonNode> translation = node.find("translation"), rotation = node.find("rotation"),
                                 scale = node.find("scale");
   if (const std::optional<JsonNode> matrix = node.find("matrix")) {
-    if (translation || rotation || scale) matrix->fail("stands beside a translation, rotation or scale: which one counts?");
+    if (translation || rotation || scale) matrix->fail("is beside a translation, rotation or scale: which one counts?");
     const Matrix4d m = gltfNumbers<16>(*matrix).reshaped(4, 4);
     constexpr double kRounding = 1e-6;  // of single precision
     if ((m.row(3).transpose() - Eigen::Vector4d::UnitW()).cwiseAbs().maxCoeff() > kRounding)
@@ -269,7 +269,7 @@ class GltfReader {
       }
   }
 
-  /// Memory for all. A mesh may stand at many nodes, so a small file could ask for any size: refused before it is taken.
+  /// Memory for all. A mesh may be at many nodes, so a small file could ask for any size: refused before it is taken.
   void reserve() {
     // Bytes of ours for each of the file: 12 are possible for one that nothing repeats (strips of one-byte indices).
     constexpr std::size_t kPerByte = 64, kAlways = 256'000'000;

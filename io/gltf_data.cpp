@@ -80,7 +80,7 @@ std::string unescaped(const std::string& uri) {
   return out;
 }
 
-/// "http:", "file:" and the like stand in front.
+/// "http:", "file:" and the like precede it.
 bool hasScheme(const std::string& uri) {
   const std::size_t end = uri.find_first_of(":/?#");
   return end != std::string::npos && end > 0 && uri[end] == ':';

@@ -25,7 +25,7 @@ struct GltfRow {
   std::size_t stride = 0;
 };
 
-/// Elements that stand in place of some others.
+/// Elements that replace some others.
 struct GltfSparse {
   std::size_t count = 0;
   GltfScalar scalar = GltfScalar::Uint32;  ///< of the numbers
@@ -51,7 +51,7 @@ class GltfData {
   GltfData(std::string_view bytes, const std::filesystem::path& file);
 
   const JsonNode& root() const { return *root_; }
-  /// Of the file and of the buffers that were read: memory is spent in proportion.
+  /// Size of the file and of the buffers that were read: memory is spent in proportion.
   std::size_t bytes() const { return total_; }
 
   /// Number in a list of the document, and the element itself: `index` is the place that names it.

@@ -21,7 +21,7 @@ const char* badCoordinate(const Eigen::Vector3d& v) {
 namespace {
 constexpr double kUnset = 1e-6;  // normals have length 1, whatever the scene's unit
 
-/// False where there is none to bring to length 1.
+/// False if its length is zero or not finite.
 bool madeUnit(Eigen::Vector3d& n) {
   const double length = n.norm();
   if (!(length > kUnset) || !std::isfinite(length)) return false;

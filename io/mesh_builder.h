@@ -21,8 +21,8 @@ std::string byteNo(std::size_t byte);
 /// Why a coordinate is refused, or nullptr. Beyond 1e30 squares of lengths leave the range of doubles in later sums.
 const char* badCoordinate(const Eigen::Vector3d& v);
 
-/// Collects the corners of one polygon after the other and appends fans of triangles. Vertices may come later in the file, so `cut` makes other
-/// triangles of the polygons that are not convex when all are there.
+/// Collects the corners of one polygon after the other and appends fans of triangles. Vertices may come later in the file, so
+/// `cut` makes other triangles of the polygons that are not convex when all are there.
 class Fan {
  public:
   explicit Fan(std::vector<Eigen::Vector3i>& triangles) : triangles_(triangles) {}
@@ -43,8 +43,8 @@ class Fan {
   }
   std::size_t corners() const { return corners_; }
 
-  /// Cuts each polygon whose fan leaves it along diagonals inside of it; the others keep their fan. Each keeps its place and its number of
-  /// triangles. Corners of crossing outlines are used, too, each once.
+  /// Cuts each polygon whose fan leaves it along diagonals inside of it; the others keep their fan. Each keeps its place and its
+  /// number of triangles. Corners of crossing outlines are used, too, each once.
   /// @param beside  other numbers of the corners in the same order, such as those of their normals; may be empty
   /// @throw InputError  concave polygons so large that the cut would take minutes
   void cut(const std::vector<Eigen::Vector3d>& vertices, std::vector<Eigen::Vector3i>& beside, const std::string& file) const;
@@ -59,7 +59,7 @@ class Fan {
   int first_ = 0, last_ = 0;
 };
 
-/// Coordinates that cannot be used, with their places: a fault only where a triangle uses them. Programs write NaN for what a sensor did not see.
+/// Unusable coordinates with their places: a fault only if a triangle uses them. Programs write NaN for what a sensor missed.
 class BadVertices {
  public:
   void note(std::size_t vertex, std::size_t place) { found_.push_back({vertex, place}); }
@@ -76,8 +76,8 @@ class BadVertices {
   std::vector<Bad> found_;  ///< by rising vertex
 };
 
-/// Refuses a mesh without triangles, and brings normals to length 1. One that cannot be is zero; where no vertex of a triangle has one, there
-/// are none.
+/// Refuses a mesh without triangles, and brings normals to length 1. A normal that has no direction becomes zero. If no vertex of
+/// a triangle has a normal, the mesh gets no normals.
 MeshContent finished(MeshContent mesh, const std::string& file);
 
 /// Refuses a cloud without points, brings normals to length 1, and drops them when a point has none.

@@ -10,8 +10,8 @@ namespace glint {
 /// Invariant: vertices are finite, there is at least one triangle, and its corners are indices of vertices.
 struct MeshContent {
   std::vector<Eigen::Vector3d> vertices;
-  std::vector<Eigen::Vector3d>
-      normals;  ///< one per vertex, unit, or zero where the file has none; empty where no triangle has one
+  /// One per vertex, unit, or zero where the file has none; empty if no triangle has one.
+  std::vector<Eigen::Vector3d> normals;
   std::vector<Eigen::Vector3i> triangles;
 };
 

@@ -136,8 +136,8 @@ class ObjReader {
                      std::to_string(r->count));
   }
 
-  /// One normal per vertex. A vertex that meets a second, different normal (a crease) is doubled. A corner without a normal has that of its
-  /// vertex elsewhere, or none.
+  /// One normal per vertex. A vertex that meets a second, different normal (a crease) is doubled. A corner without a normal has
+  /// that of its vertex elsewhere, or none.
   void takeNormals() {
     if (normals_.largest == 0) return;
     mesh_.normals.assign(mesh_.vertices.size(), Vector3d::Zero());

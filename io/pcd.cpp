@@ -246,8 +246,8 @@ CloudContent pcdBinary(std::string_view bytes, const PcdHeader& header, const st
   return points.finished();
 }
 
-/// LibLZF's format: a byte below 32 is followed by that many literal bytes and one; else its upper three bits (7: and the next byte)
-/// are a length less 2, the lower five and the next byte a distance back less 1. Nothing when the result is not of this size.
+/// LibLZF's format: after a byte below 32, that many literal bytes and one; else its upper three bits (7: and the next byte)
+/// are a length less 2, the lower five and the next byte a distance back less 1. Nothing if the result is not of this size.
 std::optional<std::string> lzfExpanded(std::string_view in, std::size_t size) {
   std::string out;
   out.reserve(size);

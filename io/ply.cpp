@@ -437,7 +437,7 @@ class PlyBody {
   std::uint64_t vertexCount_ = 0;
 };
 
-/// @param without  takes the number of vertices that no face uses and that are none, such as NaN
+/// @param without  takes the number of vertices that no face uses and that have no place, such as NaN
 MeshContent readPly(std::string_view bytes, const std::string& file, Wanted wanted, std::size_t& without) {
   const Header header = readHeader(bytes, file, wanted);
   const auto read = [&](auto values) {

@@ -84,7 +84,7 @@ class Outline {
   double area_ = 0;
 };
 
-/// Of a polygon as a fan of triangles: its corners, as places in `triangles`.
+/// The corners of a polygon that is a fan of triangles, as places in `triangles`.
 std::vector<int> cornersOfFan(const std::vector<Vector3i>& triangles, std::size_t first, std::size_t count) {
   std::vector<int> corners{triangles[first].x(), triangles[first].y()};
   for (std::size_t i = 0; i < count; ++i) corners.push_back(triangles[first + i].z());

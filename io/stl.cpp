@@ -23,7 +23,7 @@ class Welder {
  public:
   explicit Welder(std::vector<Vector3d>& vertices) : vertices_(vertices), slots_(1024, kEmpty) {}
 
-  /// -1 when there are more vertices than an int counts.
+  /// -1 if there are more vertices than an int counts.
   int numberOf(Vector3d v) {
     v += Vector3d::Zero();  // -0 becomes 0, which it equals
     if (2 * (vertices_.size() + 1) > slots_.size()) grow();

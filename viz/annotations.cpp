@@ -181,7 +181,7 @@ struct Annotations::Impl {
     }
     actor->SetInput(shorter(fits).c_str());
   }
-  /// Entries that may be left out share rows where one for each would take too much of the picture, and are left out in a low one.
+  /// Optional entries share rows if one for each would take too much of the picture. A low picture leaves them out.
   enum class LegendRows { Own, Shared, Fewer };
   LegendRows legendRows(double rowHeight, int height) const {
     const auto rows = [&](double each) {
@@ -199,7 +199,7 @@ struct Annotations::Impl {
     const double row = 1.5 * font, left = 0.9 * font;
     const LegendRows rows = legendRows(row, height);
     const bool room = width > kLeastLegend * font;              // one that is a row of "…" says nothing
-    double y = height - 0.4 * font - (titleVisible ? 0 : row);  // the view's name stands beside where the title would
+    double y = height - 0.4 * font - (titleVisible ? 0 : row);  // the view's name is beside the title's place
     double next = width;                                        // where the next entry begins if it shares the row
     const std::size_t before = taken.size();
     for (std::size_t i = 0; i < legend.size(); ++i) {
@@ -341,7 +341,7 @@ struct Annotations::Impl {
   bool colourBarShown() const {
     return scale.has_value() && (legendVisible || borderKind == Border::None);  // views with the same legend have one bar
   }
-  /// Above the scale bar.
+  /// Draws the text above the scale bar.
   void placeColourBar(int width, int points, double font) {
     const bool shown = colourBarShown() && width > kLeastLegend * font;
     for (auto& text : scaleTexts) text->SetVisibility(shown);
@@ -389,7 +389,7 @@ struct Annotations::Impl {
     }
     taken.push_back({left, y - 2 * font, width - left, 4.2 * font});
   }
-  /// Height at which a text of the upper right corner stands free, below what stands there already.
+  /// Height at which a text of the upper right corner is free, below what is there already.
   double below(double x, double y, const Eigen::Vector2d& size) const {
     for (const Rectangle& t : taken) {
       if (x < t.x + t.width && y < t.y + t.height && t.y < y + size.y()) y = t.y - size.y() - 3;
@@ -432,7 +432,7 @@ struct Annotations::Impl {
     setColour(badge, {1, 1, 1});
     text->SetBackgroundColor(0.75 * kActiveView[0], 0.75 * kActiveView[1], 0.75 * kActiveView[2]);
     text->SetBackgroundOpacity(0.9);
-    // In the upper right corner, below whatever stands there.
+    // In the upper right corner, below whatever is there.
     const Eigen::Vector2d size = sizeOf(badge);
     const double x = width - 0.9 * font - size.x();
     const double y = below(x, height - 2.1 * font, size);

@@ -18,7 +18,7 @@ namespace glint::viz {
 struct LegendEntry {
   Colour colour;
   std::string text;
-  bool always = false;  ///< in a row of its own, also in a low picture, which would be covered by the whole legend
+  bool always = false;  ///< in a row of its own even in a low picture, which the whole legend would cover
 };
 
 /// A scale with its ticks, 0..1 from left to right.
@@ -41,7 +41,7 @@ class Annotations {
   void setLegend(const std::vector<LegendEntry>& entries, const std::vector<std::string>& notes,
                  const std::vector<std::string>& remarks, const std::string& title);
   void setLabels(const std::vector<DrawnLabel>& labels);
-  /// Corners of what is drawn that a label would be hard to read on: labels keep off it where there is room.
+  /// Corners of drawn things that would make a label hard to read: labels avoid them if there is room.
   void setGlyphs(std::vector<Points> corners);
   void setColourBar(const std::optional<ColourBar>& bar);
   /// A line at the top that cannot be overlooked ("through camera 0007"); "" = none.
@@ -50,14 +50,14 @@ class Annotations {
   void setBorder(Border border, const std::string& name);
   /// @param title  also the legend's title, which views side by side have in common.
   void setLegendVisible(bool visible, bool title = true);
-  /// Width and height of the legend from the upper left corner, window px; 0 where there is none.
+  /// Width and height of the legend from the upper left corner, window px; 0 without one.
   Eigen::Vector2d legendSize();
-  /// Height of what stands with the colour bar at the lower right, window px; 0 where there is none.
+  /// Height of the texts with the colour bar at the lower right, window px; 0 without any.
   double colourBarHeight();
-  /// The legend lies over a photograph: it stands on a panel, which keeps it readable.
+  /// The legend lies over a photograph: its panel keeps it readable.
   void setOnPicture(bool on);
   void setDark(bool dark);
-  /// All texts are so many times as large as usual.
+  /// Scales all texts by this factor.
   void setTextScale(double scale);
   /// @param reference  world point at whose depth the scale bar is measured.
   void place(const Eigen::Vector3d& reference);

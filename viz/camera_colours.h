@@ -29,7 +29,7 @@ struct CameraColour {
   std::string meaning;
 };
 /// Role: training, held-out. Model: the one that predicted this frame best, of those that missed no highlight of it. Error: of
-/// `in.colours.model`, or where that is empty the richest one that is shown; grey where there is none, a colour of its own where
+/// `in.colours.model`, or where that is empty the richest one that is shown; grey without one, a colour of its own where
 /// a highlight was missed. Influence: `in.colours.influence`; grey where the frame was not left out. Excluded frames look
 /// excluded in all of them.
 CameraColour cameraColour(const LayerInput& in, int frame);

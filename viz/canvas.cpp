@@ -102,7 +102,7 @@ Glyphs rendered(const std::string& text, double sizePx, bool bold) {
   return glyphs;
 }
 
-/// Rows of a rendered line below its baseline: those under the ink of a letter that stands on it.
+/// Rows of a rendered line below its baseline: those under the ink of a letter on it.
 int descentOf(double sizePx) {
   const Glyphs e = rendered("E", sizePx, false);
   for (int y = 0; y < e.height; ++y) {

@@ -36,7 +36,7 @@ class Canvas : public Painter {
   std::unique_ptr<Impl> impl_;
 };
 
-/// PNG with 8 bits a channel; parent folders must exist. InputError when it cannot be written; nothing half written stays.
+/// PNG with 8 bits a channel; parent folders must exist. InputError if it cannot be written; nothing half written stays.
 void writePng(const Image& image, const std::string& file);
 
 }  // namespace glint::viz

@@ -11,7 +11,7 @@ namespace glint::viz {
 Outcome<std::unique_ptr<DisplayConnection>> DisplayConnection::open() {
   const char* name = std::getenv("DISPLAY");
   if (!name || !*name) return Failure{Reason::NotSupported, "DISPLAY is not set"};
-  // XCB, not Xlib: it says nothing on standard error itself. It returns a connection also where it failed.
+  // XCB, not Xlib: it says nothing on standard error itself. It returns a connection even if it failed.
   std::unique_ptr<DisplayConnection> display(new DisplayConnection(xcb_connect(nullptr, nullptr)));
   if (xcb_connection_has_error(display->server_) != 0)
     return Failure{Reason::NotSupported, "the display '" + std::string(name) + "' cannot be opened"};

@@ -10,8 +10,8 @@ struct xcb_connection_t;
 
 namespace glint::viz {
 
-/// A connection to the X display that DISPLAY names, to see that there is one before VTK or Qt look for it: where they find none, they end
-/// the program. Keep it until they have their own, because a server starts anew when its last client leaves, and drops who comes meanwhile.
+/// A connection to the X display that DISPLAY names, to check that it exists before VTK or Qt look for it: without a display they
+/// end the program. Keep it until they have theirs: when its last client leaves, a server restarts and drops new clients.
 class DisplayConnection {
  public:
   /// NotSupported: DISPLAY is not set, or nothing answers there.

@@ -17,7 +17,7 @@ constexpr double kConeShown = 3.2;    // longest semi-axes, from where a cone to
 constexpr double kPlaneShown = 1.25;  // longest semi-axes, half the side of the lit plane
 constexpr double kTubeShown = 1.5;    // of its wider semi-axis, to either side
 constexpr double kRoom = 0.42;        // of the shorter side of a pane, for what it must show
-constexpr double kMostWide = 1.7;     // of that: dual points beyond are said to lie outside
+constexpr double kMostWide = 1.7;     // of that: dual points beyond are listed as outside
 
 struct Pane {
   Box box;
@@ -208,7 +208,7 @@ DualityPicture dualityPicture(const Duality& duality, const DualityLook& look) {
   const double w = beside ? look.width / 2 : look.width, h = beside ? look.height : look.height / 2;
   const double room = kRoom * std::min(w, h);
   const Eigen::Matrix3d turned = lookOf(duality, look);
-  // The cones come from the left: the ellipsoid stands right of the middle.
+  // The cones come from the left: the ellipsoid is right of the middle.
   Pane primal{{0, 0, w, h}, duality.ellipsoid.centre(), 0.75 * room / duality.ellipsoid.semiAxes()(0), turned};
   const double square = duality.chart.radius * duality.chart.radius;
   const double widest = duality.dual ? duality.dual->semiAxes()(0) : kTubeShown * square / duality.ellipsoid.semiAxes()(1);

@@ -36,15 +36,15 @@ struct DualityPicture {
   int outside = 0;                    ///< dual points that are beyond their pane's edge, which cannot be drawn in their place
 };
 
-/// Left (or above, where the picture is higher than wide) the ellipsoid, its cones and their tangent planes; right their dual points on
-/// the dual quadric.
+/// Left (or above, where the picture is higher than wide) the ellipsoid, its cones and their tangent planes; right their dual
+/// points on the dual quadric.
 DualityPicture dualityPicture(const Duality& duality, const DualityLook& look);
 
 /// The plane under the pointer: the nearest plane or point within `reach` px.
 std::optional<DualityPlane> planeAt(const DualityPicture& picture, const Eigen::Vector2d& at, double reach = 14);
 
-/// The plane of a frame's cones that touches its cone nearest to a place, as seen from the cone's apex. Nothing where no cone is of that
-/// frame, or where the place is the apex.
+/// The plane of a frame's cones that touches its cone nearest to a place, as seen from the cone's apex. Nothing if no cone is
+/// of that frame, or where the place is the apex.
 /// @param place  world, m
 std::optional<DualityPlane> planeNearest(const Duality& duality, int frame, const Eigen::Vector3d& place);
 

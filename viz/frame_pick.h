@@ -9,8 +9,8 @@
 namespace glint::viz {
 
 /// What a click into a frame's picture selects. Near a drawn contour: its highlight, its light, the direction of the clicked
-/// point and, on a prediction, its model; the selected model stays where a contour of it is near, too. Inside an observed contour, away from the lines: that highlight as a whole. Elsewhere:
-/// no highlight.
+/// point and, on a prediction, its model; the selected model stays where a contour of it is near, too. Inside an observed
+/// contour, away from the lines: that highlight as a whole. Elsewhere: no highlight.
 ///
 /// @param now      what is selected; its frame is the clicked one.
 /// @param shown    the overlay on screen.
@@ -23,10 +23,10 @@ struct Grip {
   int highlight = -1;  ///< index into FrameEvidence::highlights
   bool peak = false;
 };
-/// Nothing where neither is near, nor where what is shown is truth instead of that evidence.
+/// Nothing if neither is near, nor where what is shown is truth instead of that evidence.
 std::optional<Grip> gripAt(const Inspection& inspection, int frame, const Pixel& at, double nearPx);
 
-/// Label of the line or mark under a photograph pixel; "" when there is none.
+/// Label of the line or mark under a photograph pixel; "" without any.
 std::string labelAt(const FrameOverlay& shown, const Pixel& at, double nearPx);
 
 }  // namespace glint::viz

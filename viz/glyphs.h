@@ -34,7 +34,7 @@ vtkSmartPointer<vtkActor> ellipsoidActor(const Eigen::Affine3d& worldFromUnitSph
 Points circle(const Eigen::Vector3d& centre, const Eigen::Vector3d& axisU, const Eigen::Vector3d& axisV, int n = 96);
 /// Dashes of about `dash` with gaps of the same length, at most 200.
 std::vector<Segment> dashed(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double dash);
-/// Where a ray meets a plane in front of its origin; nothing when it is parallel or behind.
+/// Where a ray meets a plane in front of its origin; nothing if it is parallel or behind.
 std::optional<Eigen::Vector3d> intersection(const Ray& ray, const Plane& plane);
 
 }  // namespace glint::viz

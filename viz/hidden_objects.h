@@ -14,8 +14,8 @@ struct HiddenObjects {
   std::set<int> frames;  ///< indices: the camera, its photograph and virtual cameras, all that is observed and predicted in it
   std::set<std::string> surfaces;  ///< keys of SurfaceCache::keyOf(); kDepthMaps stands for the depth maps of all frames
   std::set<std::string> lights;    ///< ids: estimate and truth
-  std::set<std::pair<std::string, std::string>>
-      ellipsoids;  ///< model and light: Q*, its cones, the light and the contours that the model predicts
+  /// Model and light: Q*, its cones, the light and the contours that the model predicts.
+  std::set<std::pair<std::string, std::string>> ellipsoids;
 
   static constexpr const char* kDepthMaps = "depth:";
   bool hidesSurface(const std::string& key) const {

@@ -51,7 +51,7 @@ class LayerCache {
  public:
   struct Photograph {
     vtkSmartPointer<vtkImageData> texture;  ///< null: see `arriving`
-    bool arriving = false;                  ///< asked for, not there yet; else it cannot be read
+    bool arriving = false;                  ///< requested, but not loaded yet; else unreadable
   };
   /// Gives photographs that are read elsewhere, so that drawing does not wait for files. @param frame  index.
   using PhotographSource = std::function<Photograph(int frame, int maxWidth)>;
@@ -89,9 +89,9 @@ struct LayerInput {
   std::vector<std::string> models;         ///< shown, from simple to rich
   SceneScale scale;
   double glyphScale = 1;
-  std::shared_ptr<const Surface> surface;  ///< of the selected frame; null when it has none
+  std::shared_ptr<const Surface> surface;  ///< of the selected frame; null if it has none
   std::string surfaceKey;
-  std::string surfaceProblem;  ///< why there is none
+  std::string surfaceProblem;  ///< why the surface is missing
   std::vector<int> frames;     ///< frames whose cameras are drawn: one per pose, those on this surface first
   bool dark = true;
   bool solo = false;  ///< only what belongs to the selected frame
@@ -113,7 +113,7 @@ struct LayerInput {
   /// Usable training views on the shown surface, of frames that are shown.
   std::vector<const TrainingView*> views() const;
   /// Where the selected frame does not train: brightest point, tangent plane and virtual camera of each highlight observed in it.
-  /// Without canonical contours. Empty where it trains, has no surface or is hidden.
+  /// Without canonical contours. Empty if it trains, has no surface or is hidden.
   std::vector<TrainingView> ownViews() const;
   /// The same with the canonical contours of what was observed, by the light that the training frames gave; only those that have
   /// one. Walks for some milliseconds.
@@ -131,7 +131,7 @@ struct LayerInput {
     std::string light;
   };
   std::vector<Mirror> mirrors(int frame) const;
-  /// Index of a training view's highlight in its frame's evidence; -1 when it is not there.
+  /// Index of a training view's highlight in its frame's evidence; -1 if it is missing.
   int highlightOf(const TrainingView& view) const;
   /// Ink that reads on the background.
   Colour ink() const { return dark ? kTextOnDark : kTextOnLight; }
@@ -154,11 +154,11 @@ struct DrawnLabel {
   Eigen::Vector3d anchor;
   std::string text;
   Colour colour;
-  std::optional<Eigen::Vector3d> tail{};  ///< of the arrow whose tip the anchor is: the text stands in front of it
-  double clear = 0;                       ///< m: radius about the anchor, of what the text stands beside
+  std::optional<Eigen::Vector3d> tail{};  ///< of the arrow whose tip the anchor is: the text is in front of it
+  double clear = 0;                       ///< m: radius about the anchor, of the thing beside the text
 };
 
-constexpr std::size_t kMostGlyphs = 64;  ///< of more cameras there is nowhere a picture that is free of them
+constexpr std::size_t kMostGlyphs = 64;  ///< more cameras leave no place free of them
 
 /// What one layer puts into the picture.
 struct LayerContent {
@@ -181,9 +181,9 @@ struct LayerContent {
   void addOnSurface(vtkSmartPointer<vtkProp3D> prop, const Picked& info, double lineWidthPx, double nearerPx) {
     drawn.push_back({std::move(prop), info, lineWidthPx, true, {}, nearerPx});
   }
-  /// For the camera of the picture that is drawn next.
+  /// Prepares the camera of the picture that is drawn next.
   void bringNearer(vtkCamera* camera, int heightPx) const;
-  /// To the end of what VTK draws in order: of two things at one depth, the one that is drawn last shows.
+  /// Moves them to the end of VTK's drawing order: at equal depth, the last thing drawn shows.
   void drawLast(vtkRenderer& renderer) const;
 };
 
@@ -250,7 +250,7 @@ SceneScale sceneScale(const Inspection& inspection, const Surface* surface, cons
 std::vector<int> framesToDraw(const Inspection& inspection, const std::string& surfaceKey, int selected,
                               const std::set<int>& hidden = {});
 
-/// Pixel of a frame carried onto the surface, lifted towards the camera by `lift`; nothing where the ray misses.
+/// Pixel of a frame carried onto the surface, lifted towards the camera by `lift`; nothing if the ray misses.
 std::optional<Eigen::Vector3d> castPixel(const Camera& camera, const Surface& surface, const Pixel& pixel, double lift);
 /// A contour on the surface: broken where it leaves the surface or jumps to another part of it.
 std::vector<Points> castContour(const Camera& camera, const Surface& surface, const Polyline& contour, const SceneScale& scale,
@@ -258,7 +258,7 @@ std::vector<Points> castContour(const Camera& camera, const Surface& surface, co
 /// An image ellipse carried back to a plane, lifted towards the camera.
 std::vector<Points> ellipseOnPlane(const Camera& camera, const Plane& plane, const Ellipse& ellipse, double lift);
 /// Radius of a disc on a tangent plane, so many times as wide as a contour there.
-/// @param times  3: the highlight stands in the middle of a plane that is seen as one.
+/// @param times  3: the highlight is in the middle of a plane that is seen as one.
 double planeRadius(const Camera& camera, const Plane& plane, const Eigen::Vector3d& at, const std::vector<Pixel>& contour,
                    const SceneScale& scale, double times = 3);
 /// Direction of an ideal pixel from an observed contour, as Selection::direction has it. @param ideal  finite.

@@ -31,7 +31,7 @@ class LegendPanel {
     actor_->PickableOff();
     actor_->VisibilityOff();
   }
-  /// Add it before what stands on it.
+  /// Add it before its texts.
   vtkActor2D* actor() const { return actor_; }
   void hide() { actor_->VisibilityOff(); }
   void show(double x0, double y0, double x1, double y1, const draw::Colour& colour) {

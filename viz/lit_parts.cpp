@@ -65,7 +65,7 @@ void nameLayer(vtkProp* thing, const std::string& layer) {
 LitParts::LitParts(vtkRenderer* renderer) : renderer_(renderer) {
   onFrame_->SetClientData(this);
   onFrame_->SetCallback([](vtkObject*, unsigned long, void* self, void*) { static_cast<LitParts*>(self)->apply(); });
-  renderer_->AddObserver(vtkCommand::StartEvent, onFrame_, -1);  // after whoever builds anew what is stale
+  renderer_->AddObserver(vtkCommand::StartEvent, onFrame_, -1);  // after what rebuilds stale parts
 }
 
 LitParts::~LitParts() {

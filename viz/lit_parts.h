@@ -25,7 +25,7 @@ vtkSmartPointer<vtkActor> named(vtkSmartPointer<vtkActor> thing, const std::stri
 void nameLayer(vtkProp* thing, const std::string& layer);
 
 /// Lights up what is drawn in a renderer, by the names that nameLayer() left: in another colour, with thick lines, until told
-/// otherwise, also what is built anew meanwhile. Knows neither scene nor layers.
+/// otherwise, including what is rebuilt meanwhile. Knows neither scene nor layers.
 class LitParts {
  public:
   explicit LitParts(vtkRenderer* renderer);
@@ -34,8 +34,8 @@ class LitParts {
   LitParts& operator=(const LitParts&) = delete;
   /// Names are "layer" (all of it) or "layer/part"; none = nothing is lit.
   void light(const std::set<std::string>& names, const Colour& colour);
-  /// A plane that touches something, seen from `apex`: a strip from there over the place of touch, and the line between. The normal is
-  /// of unit length; `halfWidth` (m) is that of the strip at the place of touch.
+  /// A plane that touches something, seen from `apex`: a strip from there over the place of touch, and the line between. The
+  /// normal is of unit length; `halfWidth` (m) is that of the strip at the place of touch.
   void lightPlane(const Eigen::Vector3d& apex, const Eigen::Vector3d& touch, const Eigen::Vector3d& normal, double halfWidth,
                   const Colour& colour);
   void clearPlane();
@@ -54,7 +54,7 @@ class LitParts {
   void putBack();
   bool wanted(const std::string& name) const;
 
-  vtkSmartPointer<vtkRenderer> renderer_;  ///< kept: who owns the view may go first
+  vtkSmartPointer<vtkRenderer> renderer_;  ///< kept: the owner of the view may go first
   vtkNew<vtkCallbackCommand> onFrame_;
   std::set<std::string> names_;
   Colour colour_{};

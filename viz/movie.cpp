@@ -82,7 +82,7 @@ auto quietly(const Call& call) {
   return call();
 }
 
-/// A writer that ends in silence too, also when a picture could not be drawn.
+/// A writer that ends in silence too, even when a picture could not be drawn.
 struct Writer {
   const std::unique_ptr<VideoEncoder> video = newVideoEncoder();
   ~Writer() {

@@ -19,7 +19,7 @@ struct MovieFormat {
 
 /// Writes a movie as its file's ending says: .mp4 (H.264, else MPEG-4), .webm (VP8), .avi (Motion JPEG), .mkv (FFV1, lossless),
 /// or .png for a numbered series ("turn.png" -> turn_0000.png, turn_0001.png, ...). Whole or not at all: what was written is read
-/// back and counted, and goes away when it is stopped or fails.
+/// back and counted, and removed if it stops or fails.
 /// @param picture  gives each frame in turn: 3 channels 0..1, of the format's size.
 /// @throw InputError for an unknown ending, an odd size of a video, a file that cannot be written or encoded; Stopped.
 ///        std::invalid_argument for a format out of range or a picture of another size.

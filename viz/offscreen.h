@@ -16,7 +16,7 @@ class SceneView;
 /// DISPLAY points to it meanwhile. One at a time; start and end it in the same thread, which must outlive it.
 class VirtualDisplay {
  public:
-  /// NotSupported when Xvfb is not installed or does not answer within 20 s; the detail says what to install.
+  /// NotSupported if Xvfb is not installed or does not answer within 20 s; the detail says what to install.
   static Outcome<std::unique_ptr<VirtualDisplay>> start(int width, int height);
   ~VirtualDisplay();
   VirtualDisplay(const VirtualDisplay&) = delete;
@@ -38,7 +38,7 @@ class Offscreen {
   /// NotSupported as VirtualDisplay, or where the display cannot draw in 3D; std::invalid_argument unless 16 <= width, height <=
   /// 16384.
   static Outcome<std::unique_ptr<Offscreen>> create(int width, int height);
-  /// The same on the display of this program. NotSupported where it has none that X programs can use. Interface thread only.
+  /// The same on the display of this program. NotSupported if it has none that X programs can use. Interface thread only.
   static Outcome<std::unique_ptr<Offscreen>> onOwnDisplay(int width, int height);
   ~Offscreen();
   /// 3 channels, sRGB 0..1; with a transparent background 4, the last one opacity.

@@ -13,8 +13,8 @@ class vtkRenderer;
 
 namespace glint::viz {
 
-/// The picture that a renderer draws while it looks through a camera, and where the camera's photograph lies in it: enlarged and moved by
-/// the user, over the 3D picture. Display coordinates are window px, y up.
+/// The picture that a renderer draws while it looks through a camera, and where the camera's photograph lies in it: enlarged and
+/// moved by the user, over the 3D picture. Display coordinates are window px, y up.
 class PhotographStand {
  public:
   explicit PhotographStand(vtkRenderer* renderer) : renderer_(renderer), overlay_(renderer) {}
@@ -39,7 +39,7 @@ class PhotographStand {
   /// Where an ideal pixel of the camera is drawn, display coordinates.
   Eigen::Vector2d displayOf(const Camera& camera, const Pixel& ideal) const { return placement(camera).at(ideal) + origin(); }
 
-  /// Shows the photograph where it belongs to the frame.
+  /// Shows the photograph if it belongs to the frame.
   void show(int frame, const Camera& camera);
   void hide() { overlay_.hide(); }
 

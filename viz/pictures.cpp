@@ -116,7 +116,7 @@ std::optional<Crop> highlightCrop(const Inspection& inspection, int frame, const
     }
   }
   if (all.isEmpty()) return {};
-  if (!observed.isEmpty()) {  // a model that went astray must not shrink the others to dots
+  if (!observed.isEmpty()) {  // a very wrong model must not shrink the others to dots
     const Eigen::Vector2d room = observed.sizes().cwiseMax(8.0);
     all = all.intersection(Eigen::AlignedBox2d(observed.min() - room, observed.max() + room));
   }
@@ -245,7 +245,7 @@ Image ladderPicture(const Inspection& inspection, int frame, const Outcome<Image
     canvas.text({0.8 * font, 4 * font}, "no models computed", font, theme.problem);
     return canvas.image();
   }
-  // What stands below a tile: the numbers in one line, or the whole reason why there are none.
+  // The text below a tile: the numbers in one line, or the whole reason why they are missing.
   struct Below {
     std::string numbers, reason;
   };

@@ -9,7 +9,7 @@
 
 namespace glint::viz {
 
-/// What stands under an exported plot, inside its size.
+/// The text under an exported plot, inside its size.
 struct PlotCaption {
   std::string text;    ///< "" = none
   double sizePx = 12;  ///< of its letters, device px
@@ -20,11 +20,11 @@ struct PlotCaption {
 Image plotImage(const PlotData& plot, const PlotStyle& style, const Selection& selection, int width, int height,
                 const PlotCaption& caption = {});
 
-/// The same as SVG, as SvgPainter writes it, the caption as text and as description. Written as a whole or not at all. InputError when it cannot be written.
+/// The same as SVG by SvgPainter, the caption as text and description; all or nothing. InputError if it cannot be written.
 void writePlotSvg(const PlotData& plot, const PlotStyle& style, const Selection& selection, int width, int height,
                   const std::string& file, const PlotCaption& caption = {});
 
-/// InputError when it cannot be written.
+/// InputError if it cannot be written.
 void writePlotCsv(const PlotData& plot, const std::string& file);
 
 }  // namespace glint::viz

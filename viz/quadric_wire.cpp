@@ -155,7 +155,7 @@ QuadricWire wireOf(const DualQuadric& quadric, const Eigen::AlignedBox3d& region
   } else {
     paraboloid(cutter, q);
   }
-  // The label stands where the wire comes nearest to the region's centre.
+  // The label is where the wire comes nearest to the region's centre.
   double nearest = std::numeric_limits<double>::infinity();
   for (const Points& curve : wire.curves) {
     for (const Eigen::Vector3d& p : curve) {

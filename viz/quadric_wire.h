@@ -15,7 +15,7 @@ struct QuadricWire {
   std::string kind;                 ///< as describe() of the core: "hyperboloid of two sheets"
   std::vector<Points> curves;       ///< on the surface, cut at the region's circumscribed sphere; world units
   std::vector<Segment> axes;        ///< of an imaginary quadric or a point, which has no surface: its centre and axes
-  Eigen::Vector3d anchor{0, 0, 0};  ///< where its label stands: on the curves, else at the centre, else the region's centre
+  Eigen::Vector3d anchor{0, 0, 0};  ///< place of its label: on the curves, else at the centre, else the region's centre
 };
 
 /// Hyperboloids, paraboloids, flat conics and segments are real and drawn as curves; imaginary quadrics and points as the cross

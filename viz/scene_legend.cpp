@@ -97,7 +97,7 @@ SceneLegend legendOf(const LayerInput& in, const std::vector<ShownLayer>& layers
                                                                       : "";
       legend.entries.push_back(
           {poor ? draw::pale(modelColour(model)) : modelColour(model), model + error + (poor ? ", poor" : ""), true});
-      // What is wrong with the frame itself is said once, not for every model; a fit that is no ellipsoid by its layer.
+      // A fault of the frame itself is listed once, not for every model; a fit that is no ellipsoid by its layer.
       if (!score.errorPct && !score.reason.empty() && score.reason != noEvidence &&
           !(shown("ellipsoids") && isItsQuadric(in, model, score.reason)))
         legend.notes.push_back(model + ": " + score.reason);

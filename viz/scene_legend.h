@@ -11,7 +11,7 @@
 
 namespace glint::viz {
 
-/// What stands in the corner of the 3D picture.
+/// The legend in the corner of the 3D picture.
 struct SceneLegend {
   std::string title;
   std::vector<LegendEntry> entries;

@@ -101,7 +101,7 @@ void addVirtualCameras(const LayerInput& in, std::vector<Eigen::Vector3d>& point
 
 constexpr double kLeansUp = 0.5;                       // cosine: a normal that leans less upwards is of a side
 constexpr double kAlongUp = 0.9;                       // cosine: a view that is closer to upwards cannot have it up
-constexpr double kDot = 0.125;                         // of the picture: a smaller ellipsoid is no shape any more
+constexpr double kDot = 0.125;                         // of the picture: a smaller ellipsoid has no visible shape
 constexpr double kEllipsoidShare = 1.6;                // of its diagonal: then it fills about a quarter of the picture
 constexpr double kWalkDisc = 1.15, kWalkArrow = 0.85;  // of the walk's reach, see walkLayer()
 }  // namespace
@@ -202,7 +202,7 @@ std::optional<Framing> highlightFraming(const LayerInput& in, int highlight, Hig
     if (across.dot(toCamera) < 0) across = -across;
     place.back = (0.42 * p.normal + 0.75 * across + 0.5 * side).normalized();
   }
-  // A vase stands: where the highlight is on its side, upwards is the world's. All cameras together tell it, also where one alone is shown.
+  // A vase stands: with the highlight on its side, up is the world's up. All cameras together tell it, even if only one is shown.
   std::vector<int> cameras(in.inspection->scene->frames.size());
   std::iota(cameras.begin(), cameras.end(), 0);
   if (look != HighlightLook::Camera)
@@ -379,7 +379,7 @@ Picked surfaceInfo(const LayerInput& in, const SurfacePoint& hit) {
 }
 
 namespace {
-/// From the eye through a window pixel; not finite where the view has no depth.
+/// The ray from the eye through a window pixel; not finite if the view has no depth.
 Ray rayThrough(vtkRenderer* renderer, int xDisplay, int yDisplay) {
   const auto worldAt = [&](double depth) {
     renderer->SetDisplayPoint(xDisplay, yDisplay, depth);

@@ -15,20 +15,20 @@ void addFrustum(const LayerInput& in, std::vector<Eigen::Vector3d>& points, int 
 /// The selected highlight on the surface, else the selected model's ellipsoids, else the selected camera with its highlights;
 /// never empty.
 std::vector<Eigen::Vector3d> selectedExtent(const LayerInput& in);
-/// What a view is to hold, and from where.
+/// What a view must hold, and from where.
 struct Framing {
   std::vector<Eigen::Vector3d> points;
   Eigen::Vector3d back{0, 0, 1}, up{0, 1, 0};  ///< unit, square to each other; back: towards the eye
   Eigen::Vector3d reference{0, 0, 0};          ///< the focal point's depth
   double leastDepth = 0;
 };
-/// What else is drawn, and is to be held.
+/// Other drawn parts that the view must hold.
 struct DrawnParts {
   bool normal = false, ellipsoids = false, virtualCameras = false, tangentPlanes = false, walk = false;
 };
 DrawnParts drawnParts(const SceneView& view);
 /// A highlight of the selected frame.
-/// @param highlight  index in the frame's evidence; out of range = the first. Nothing where it is not on the surface.
+/// @param highlight  index in the frame's evidence; out of range = the first. Nothing if it is not on the surface.
 std::optional<Framing> highlightFraming(const LayerInput& in, int highlight, HighlightLook look, const DrawnParts& drawn);
 /// What the cones of a model hold: the brightest points of the views that it was made from and the ellipsoids, across their
 /// longest extent, as far as an ellipsoid that is small among them can be seen along with them.
@@ -36,7 +36,7 @@ std::optional<Framing> highlightFraming(const LayerInput& in, int highlight, Hig
 std::optional<Framing> ellipsoidFraming(const LayerInput& in, const std::vector<int>& frames, const std::string& model);
 /// The world's upward direction as the cameras have it; a signed axis where it is near one. @param frames  not empty.
 Eigen::Vector3d upwards(const LayerInput& in, const std::vector<int>& frames);
-/// From the scene towards an eye that sees the highlights with neither the surface nor the frustums before them; unit.
+/// Unit direction from the scene towards an eye that sees the highlights before the surface and the frustums.
 Eigen::Vector3d overviewDirection(const LayerInput& in, const std::vector<int>& frames, const Eigen::Vector3d& up);
 
 /// Numbers of a surface point, for the selected frame's camera.
@@ -44,7 +44,7 @@ Picked surfaceInfo(const LayerInput& in, const SurfacePoint& hit);
 /// A picked point of a contour is a direction from the observed one: fills Picked::direction.
 void addDirection(const LayerInput& in, Picked& picked);
 
-/// Of a drawn camera: which frame, and its numbers.
+/// What a drawn camera tells: its frame, and its numbers.
 Picked cameraPicked(const Inspection& inspection, const std::vector<std::string>& models, int frame);
 /// The nearest drawn camera whose frustum, taken as solid, lies under a window pixel (y up).
 std::optional<Picked> cameraUnder(vtkRenderer* renderer, const LayerInput& in, int xDisplay, int yDisplay);

@@ -145,7 +145,7 @@ class SceneView {
 
   /// The renderer's viewport shows its part of the picture of the whole window (the wipe) instead of a picture of its own.
   void setPartOfWindow(bool part);
-  /// Draws a border, in the accent colour where the view is the active one. @param name  stands in the upper right corner, may be
+  /// Draws a border, in the accent colour where the view is the active one. @param name  shown in the upper right corner, may be
   /// "".
   void setFrame(bool border, bool active, const std::string& name);
   /// Legend, notes and title (`title`: also that); labels, axes and scale stay.
@@ -165,10 +165,10 @@ class SceneView {
   /// How often a layer was built since construction; for tests of "rebuilt only where its input changed".
   int buildCount(const std::string& layer) const;
   std::optional<Picked> pick(int xDisplay, int yDisplay) const;
-  /// The true light that is drawn there, also behind an ellipsoid, rays or whatever else shines through; nothing where the surface hides
-  /// it.
+  /// The true light that is drawn there, also behind an ellipsoid, rays or whatever else shines through; nothing if the
+  /// surface hides it.
   std::optional<Picked> pickLamp(int xDisplay, int yDisplay) const;
-  /// The nearest camera that is drawn there, also between its lines; nothing where none is or cameras are hidden.
+  /// The nearest camera that is drawn there, also between its lines; nothing if none is or cameras are hidden.
   std::optional<Picked> pickCamera(int xDisplay, int yDisplay) const;
 
  private:

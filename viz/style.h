@@ -13,7 +13,7 @@ namespace glint::viz {
 using namespace draw;
 using draw::Selection;  // not the automatic choice of a model, which has the same name
 
-/// DejaVu Sans, which has the Greek letters that VTK's built-in font lacks; "" when the font is not installed.
+/// DejaVu Sans, which has the Greek letters that VTK's built-in font lacks; "" if the font is not installed.
 std::string fontFile();
 
 }  // namespace glint::viz

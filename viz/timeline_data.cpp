@@ -14,11 +14,11 @@
 namespace glint::viz {
 
 namespace {
-constexpr double kWorstShownPct = 1000;  // ten times the highlight's size: a model that went astray must not flatten the others
+constexpr double kWorstShownPct = 1000;  // ten times the highlight's size: a very wrong model must not flatten the others
 }
 
 namespace {
-/// The evidence of a frame with all its lights; null where there is none yet.
+/// The evidence of a frame with all its lights; null before it exists.
 const FrameEvidence* asFound(const Inspection* inspection, std::size_t frame) {
   if (!inspection || frame >= inspection->evidence.size()) return nullptr;
   const auto before = inspection->evidenceBefore.find(static_cast<int>(frame));

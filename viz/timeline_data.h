@@ -16,7 +16,7 @@ struct LightRow {
   std::string light;
   std::vector<LightState> captured;  ///< one per frame: off, on, or the frame does not say and no highlight of it was found
 };
-/// With what the user switched; what was captured dark stays off as long as no contours are synthesised.
+/// The state with the user's switches; what was captured dark stays off unless contours are synthesised.
 LightState lightState(const LightRow& row, const Scene& scene, const WhatIf& whatIf, int frame);
 bool isLit(LightState state);
 
@@ -24,7 +24,7 @@ bool isLit(LightState state);
 struct TimelineData {
   struct Series {
     std::string model;
-    std::vector<std::optional<double>> errorPct;  ///< one per frame; none where a highlight was missed
+    std::vector<std::optional<double>> errorPct;  ///< one per frame; none if a highlight was missed
     std::vector<char> missed;                     ///< one per frame: a highlight was missed there
     std::vector<char> spurious;                   ///< one per frame: one was predicted that is not seen there
     std::vector<std::string> spuriousWords;       ///< one per frame

@@ -16,7 +16,7 @@
 namespace glint::viz {
 namespace {
 
-/// Of the camera's own clip coordinates. VTK applies it after its projection.
+/// A transform of the camera's clip coordinates. VTK applies it after its projection.
 void setUserTransform(vtkCamera* vtk, const Eigen::Matrix4d& clip) {
   vtkNew<vtkMatrixToHomogeneousTransform> transform;
   transform->SetInput(toVtk(clip));

@@ -52,7 +52,7 @@ ViewPoint viewPointOf(vtkCamera* vtk);
 /// about it the short way, upwards kept upwards. @param t  0 = from, 1 = to (exactly).
 ViewPoint between(const ViewPoint& from, const ViewPoint& to, double t);
 
-/// What moves points towards the eye along their rays of sight, by as much as `px` pixels measure where they are: in the picture
+/// Moves points towards the eye along their rays of sight, by as much as `px` pixels measure where they are: in the picture
 /// they stay where they were, nearer than what they lie on. @param heightPx  of the picture, > 0.
 Eigen::Affine3d nearer(vtkCamera* vtk, double px, int heightPx);
 
@@ -63,7 +63,7 @@ Eigen::Vector3d worldAt(vtkRenderer* renderer, double xDisplay, double yDisplay,
 struct Margins {
   double left = 0.92, right = 0.92, top = 0.92, bottom = 0.92;
 };
-/// What keeps off a legend in the upper left corner (beside it or below it, whichever leaves more) and a bar at the bottom.
+/// Margins that avoid a legend in the upper left corner (beside it or below it, whichever leaves more) and a bar at the bottom.
 /// @param legendPx  width and height. @param barPx  height, 0 = none.
 Margins marginsBeside(const Eigen::Vector2d& legendPx, double barPx, const PictureArea& whole);
 /// The closest view along -`back` that holds all points (at least one) between the margins.

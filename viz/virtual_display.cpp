@@ -26,7 +26,7 @@ using Clock = std::chrono::steady_clock;
 constexpr std::chrono::seconds kStartLimit{20};
 constexpr std::chrono::seconds kStopLimit{5};
 
-/// Full path of a program in PATH; "" when there is none.
+/// Full path of a program in PATH; "" if it is not installed.
 std::string findProgram(const char* name) {
   const char* path = std::getenv("PATH");
   std::istringstream folders(path ? path : "/usr/bin:/bin");
@@ -51,7 +51,7 @@ void endProcess(int pid) {
   }
 }
 
-/// What the server writes to -displayfd: its display number and a newline. "" when it ended or took too long.
+/// What the server writes to -displayfd: its display number and a newline. "" if it ended or took too long.
 std::string readNumber(int fd) {
   std::string text;
   const Clock::time_point limit = Clock::now() + kStartLimit;

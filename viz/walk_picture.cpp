@@ -14,7 +14,7 @@ constexpr double kDrawnLimit = 0.44;  // rad: the limit angle in the sections, 2
 constexpr double kMostStretch = 20;
 constexpr double kGlyphWidth = 0.6;  // of a letter, in heights of the text, on average
 
-/// From the section (distance along the direction, height along N; m) to px.
+/// Maps the section (distance along the direction, height along N; m) to px.
 struct Section {
   Box box;
   double pxPerMetre = 1, stretch = 1, ground = 0;  ///< ground: y of T, px
@@ -69,7 +69,7 @@ struct Painter {
     out.dots.push_back({at, own, current ? 4.5 : 3.0});
   }
 
-  /// Whether the angle has room beside the title; in a narrow half it stands below it.
+  /// Whether the angle has room beside the title; in a narrow half it is below it.
   bool beside(const Box& box, const char* title) const {
     return kGlyphWidth * textPx * static_cast<double>(std::string(title).size() + std::string("α 88.88°").size() + 2) < box.width;
   }

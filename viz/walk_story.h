@@ -15,20 +15,20 @@
 namespace glint::viz {
 
 /// The limit-angle walk of one direction, step by step: forwards (an observed contour: on S, then on T) or inverse (a prediction:
-/// on T, then on S). Everything that draws it draws this.
+/// on T, then on S). All pictures of the walk draw this.
 struct WalkStory {
   int frame = -1;
   std::string light, model;  ///< model: of the inverse walk, else ""
   bool inverse = false;
   Camera camera;
-  std::optional<double> direction;  ///< Selection::direction of its end on S; nothing where no highlight was observed
+  std::optional<double> direction;  ///< Selection::direction of its end on S; nothing if no highlight was observed
   Light lamp;
   Eigen::Vector3d along{1, 0, 0};   ///< unit, on T
   Eigen::Vector3d normal{0, 0, 1};  ///< of T, unit, towards the camera
   WalkTrace trace;
 
   int steps() const { return static_cast<int>(trace.onSurface.size() + trace.onPlane.size()); }
-  /// Where the walk stands at a step; a step beyond the ends is the nearest end.
+  /// The walk's place at a step; a step beyond the ends is the nearest end.
   struct Moment {
     bool onSurface = true;
     int place = 0;                                 ///< index into the trace's places on S or on T

@@ -58,8 +58,8 @@ template <class Condition>
 bool waitFor(Condition done, int ms = kGiveUpMs) {
   QElapsedTimer clock;
   clock.start();
-  QTimer
-      tick;  // Qt's processEvents with a time limit does not wait, and whoever turns round and round takes time from the program
+  // Qt's processEvents with a time limit does not wait, and a loop that spins takes time from the program.
+  QTimer tick;
   tick.setTimerType(Qt::PreciseTimer);
   tick.start(kTickMs);
   while (!done() && clock.elapsed() < ms) QCoreApplication::processEvents(QEventLoop::WaitForMoreEvents);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How long the table of errors and the scatter plot take with many rows: filling, searching, sorting, drawing. Without a display of its own:
-//   QT_QPA_PLATFORM=offscreen build/release/bin/bench_table
+// How long the table of errors and the scatter plot take with many rows: filling, searching, sorting, drawing. Without a display
+//   of its own: QT_QPA_PLATFORM=offscreen build/release/bin/bench_table
 #include <benchmark/benchmark.h>
 
 #include <QApplication>

@@ -49,7 +49,7 @@ void checkTarget(const fs::path& file) {
   if (!fs::is_directory(folder, error))
     throw InputError(file.string(), "", "cannot be written: the folder " + folder.string() + " does not exist");
   if (fs::is_directory(file, error)) throw InputError(file.string(), "", "cannot be written: it is a folder");
-  // A rename would replace it all the same; who made it read-only wants it kept.
+  // A rename would replace it all the same; a read-only file is meant to stay.
   if (::access(file.c_str(), F_OK) == 0 && ::access(file.c_str(), W_OK) != 0) throw systemError(file, "cannot be written", errno);
 }
 

@@ -14,19 +14,19 @@ namespace glint {
 /// Writes a whole file or nothing: a temporary file beside it, flushed to the disk (fsync), then renamed over it.
 /// A reader sees the old content or the new one, never a part; a failed write leaves no temporary file.
 /// A device or pipe (/dev/null, /dev/full) cannot be renamed over and is written directly.
-/// @throw InputError (file = the target) when the folder is missing or not writable or the disk is full.
+/// @throw InputError (file = the target) if the folder is missing or not writable or the disk is full.
 void atomicWrite(const std::filesystem::path& file, std::string_view content);
 
 /// The same for writers that need a path (image and video encoders): `write` gets a temporary path in the same folder
 /// with the same extension and may throw; what it left is flushed and renamed, or removed when it threw.
-/// @throw InputError when the temporary file is missing or empty afterwards or cannot be renamed; whatever `write` throws.
+/// @throw InputError if the temporary file is missing or empty afterwards or cannot be renamed; whatever `write` throws.
 void atomicWrite(const std::filesystem::path& file, const std::function<void(const std::filesystem::path& temporary)>& write);
 
 /// Removes the temporary files of writes that are under way, for a program that ends at once (after Ctrl-C).
 void removeUnfinishedWrites();
 
-/// A file's bytes. InputError when it is missing, no regular file (a folder, a device), beyond the limit (in megabytes), or cannot be
-/// read.
+/// A file's bytes. InputError if it is missing, no regular file (a folder, a device), beyond the limit (in megabytes), or
+/// cannot be read.
 std::string readFile(const std::filesystem::path& file, std::optional<Limit> limit = std::nullopt);
 
 }  // namespace glint

@@ -56,7 +56,7 @@ struct Parents {
 
  private:
   void remove() const {
-    for (const fs::path& p : made) ::rmdir(p.c_str());  // refused where something else lies in it by now
+    for (const fs::path& p : made) ::rmdir(p.c_str());  // refused if something else lies in it by now
   }
 };
 
@@ -68,7 +68,7 @@ void fill(const fs::path& temporary, const fs::path& given, const Write& write) 
     const std::string inside = temporary.string() + "/";
     if (e.file().compare(0, inside.size(), inside) != 0) throw;
     const std::string file = (given / e.file().substr(inside.size())).string();
-    // The reason is what stands behind file and place.
+    // The reason is the text behind file and place.
     const std::string start = InputError(e.file(), e.place(), "").what(), whole = e.what();
     throw InputError(file, e.place(), whole.compare(0, start.size(), start) == 0 ? whole.substr(start.size()) : whole);
   }
@@ -97,7 +97,7 @@ void writeBeside(const fs::path& folder, const fs::path& given, const Write& wri
   parents.keep();
 }
 
-/// Moves one file, or a folder that is not there yet.
+/// Moves one file, or a folder that does not exist yet.
 void moveOne(const OpenFolder& from, const OpenFolder& to, const fs::path& name, const fs::path& given) {
   requireAsExpected(given / name, to);
   if (::renameat(from.descriptor(), from.at(name).c_str(), to.descriptor(), to.at(name).c_str()) != 0)
@@ -105,7 +105,7 @@ void moveOne(const OpenFolder& from, const OpenFolder& to, const fs::path& name,
   forgetExpected(given / name);
 }
 
-/// The folder of this name, to move files into it. Nothing where there is none. A link that somebody put there would lead them out.
+/// The folder of this name, to move files into it. Nothing if it is missing, or a link, which would lead them out.
 std::optional<OpenFolder> folderIn(const OpenFolder& folder, const fs::path& name, const fs::path& given) {
   std::error_code ignored;  // what cannot be asked about fails later
   std::optional<OpenFolder> found = folder.below(name);
@@ -114,7 +114,7 @@ std::optional<OpenFolder> folderIn(const OpenFolder& folder, const fs::path& nam
   return found;
 }
 
-/// Moves what `from` holds into `to`: a folder as a whole where there is none yet, else file by file.
+/// Moves what `from` holds into `to`: a folder as a whole where `to` lacks it, else file by file.
 void moveInto(const OpenFolder& from, const OpenFolder& to, const fs::path& given, const std::string& last) {
   std::vector<fs::path> names;
   for (const fs::directory_entry& entry : fs::directory_iterator(from.path())) names.push_back(entry.path().filename());
@@ -129,7 +129,7 @@ void moveInto(const OpenFolder& from, const OpenFolder& to, const fs::path& give
   }
 }
 
-/// Moves the file by which the answer is found, where there is none yet: it comes first.
+/// Moves the file by which the answer is found first, where it does not exist yet.
 void moveNewMain(const OpenFolder& from, const OpenFolder& to, const fs::path& main, const fs::path& given) {
   std::error_code error;  // what cannot be asked about fails later
   const fs::path above = main.parent_path();

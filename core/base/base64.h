@@ -11,7 +11,7 @@ namespace glint {
 /// RFC 4648, with padding, in one line.
 std::string base64(const std::vector<unsigned char>& bytes);
 
-/// The bytes of such a text, with its padding or without; nothing when it is none.
+/// The bytes that such a text encodes, with its padding or without; nothing if the text is not base64.
 std::optional<std::string> fromBase64(std::string_view text);
 
 }  // namespace glint

@@ -9,8 +9,8 @@
 
 namespace glint {
 
-// Numbers of a scene within what its geometry can be computed for. Beyond, products of a few of them overflow, and the answer would be a
-// failure of some later step instead of a line with the place. InputError (file, place).
+// Numbers of a scene within what its geometry can be computed for. Beyond, products of a few of them overflow, and the answer
+// would be a failure of some later step instead of a line with the place. InputError (file, place).
 
 inline constexpr double kFarthest = 1e15;       ///< metres, of any length or coordinate: a tenth of a light-year
 inline constexpr double kFarthestPx = 1e9;      ///< pixels, of any coordinate or focal length

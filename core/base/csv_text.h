@@ -10,8 +10,8 @@
 
 namespace glint {
 
-/// Text of a cell that no spreadsheet takes for a formula: one that begins like a formula gets an apostrophe before it. Names come from
-/// files of others, and a formula in a table can read other cells and start programs. Numbers stay as they are.
+/// Text of a cell that no spreadsheet takes for a formula: one that begins like a formula gets an apostrophe before it. Names
+/// come from files of others, and a formula in a table can read other cells and start programs. Numbers stay as they are.
 inline std::string withoutFormula(const std::string& text) {
   // The last four are = + - @ in full width, which spreadsheets take as well.
   constexpr std::array<std::string_view, 10> kBeginnings{
@@ -23,7 +23,7 @@ inline std::string withoutFormula(const std::string& text) {
 
 enum class CsvQuotes { WhereNeeded, Always };
 
-/// A field of a CSV table, for all that Glint writes: quoted where it holds a separator, a quote or the end of a line; no formula.
+/// A field of any CSV table of Glint: quoted if it holds a separator, a quote or the end of a line; never a formula.
 inline std::string csvText(const std::string& text, CsvQuotes quotes = CsvQuotes::WhereNeeded) {
   const std::string cell = withoutFormula(text);
   if (quotes == CsvQuotes::WhereNeeded && cell.find_first_of(",\"\r\n") == std::string::npos) return cell;

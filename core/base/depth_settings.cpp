@@ -84,7 +84,8 @@ std::vector<ParamSpec> depthParams() {
        100.0,
        0.5,
        {},
-       "Adds noise to depth maps, to see what a depth camera would cost. 1: as of a first Kinect, error ~ z², rounded, with "
+       "Adds noise to depth maps, to see what a depth camera would cost. 1: the noise of a first Kinect, error ~ z², rounded, "
+       "with "
        "holes at edges. 0: none. "
        "z' = a / ⌊a/z + ε + 1/2⌋, a = 351.3 m / η, σ_ε = 1/6.",
        "surface"},

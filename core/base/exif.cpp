@@ -9,8 +9,8 @@
 namespace glint {
 namespace {
 
-/// The value of an entry of one number in a directory of a TIFF structure, whose offsets count from its start; nothing where there is no such
-/// tag of this type.
+/// The value of an entry of one number in a directory of a TIFF structure, whose offsets count from its start; nothing where
+/// there is no such tag of this type.
 std::optional<std::uint64_t> valueOf(const NumbersInBytes& in, std::uint64_t directory, std::uint64_t tag, std::uint64_t type) {
   constexpr unsigned kEntry = 12;  // bytes: tag, type, count, value
   constexpr std::uint64_t kShort = 3;
@@ -25,7 +25,7 @@ std::optional<std::uint64_t> valueOf(const NumbersInBytes& in, std::uint64_t dir
   return std::nullopt;
 }
 
-/// The TIFF structure that EXIF data are, or nothing where they begin as none.
+/// The TIFF structure that EXIF data are, or nothing if they begin as none.
 struct Tiff {
   NumbersInBytes in;
   std::uint64_t first;  ///< byte of the first directory
@@ -58,8 +58,8 @@ std::string_view exifOfJpeg(std::string_view file) {
   }
 }
 
-/// The content of the first chunk of a name. PNG writes length, name, content and a checksum; RIFF writes name and length, and fills up to
-/// an even length.
+/// The content of the first chunk of a name. PNG writes length, name, content and a checksum; RIFF writes name and length, and
+/// fills up to an even length.
 std::string_view chunkOf(std::string_view file, std::string_view name, bool png) {
   const NumbersInBytes in(file, png);
   constexpr std::uint64_t kHead = 8;

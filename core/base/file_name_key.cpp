@@ -9,8 +9,8 @@ namespace {
 struct Letter {
   char16_t whole, base, mark;
 };
-/// Letters that Unicode also writes as a base and a mark (canonical decompositions of UnicodeData.txt 14.0 in the basic plane), without
-/// Hangul, which has a rule, and without compatibility ideographs, which no keyboard writes.
+/// Letters that Unicode also writes as a base and a mark (canonical decompositions of UnicodeData.txt 14.0 in the basic plane),
+/// without Hangul, which has a rule, and without compatibility ideographs, which no keyboard writes.
 constexpr Letter kLetters[] = {
     {0x00C0, 0x0041, 0x0300}, {0x00C1, 0x0041, 0x0301}, {0x00C2, 0x0041, 0x0302}, {0x00C3, 0x0041, 0x0303},
     {0x00C4, 0x0041, 0x0308}, {0x00C5, 0x0041, 0x030A}, {0x00C7, 0x0043, 0x0327}, {0x00C8, 0x0045, 0x0300},

@@ -12,7 +12,7 @@ namespace glint {
 namespace fs = std::filesystem;
 namespace {
 
-/// In the order in which a name without ending takes them: that of nerfstudio and of the original NeRF data.
+/// A name without ending takes them in this order, which is that of nerfstudio and of the original NeRF data.
 constexpr std::array<const char*, 10> kImageEndings{".png", ".jpg", ".jpeg", ".tif", ".tiff",
                                                     ".exr", ".bmp", ".webp", ".hdr", ".ppm"};
 
@@ -24,7 +24,7 @@ std::size_t endingNumber(const fs::path& name) {
 bool isImageName(const fs::path& name) { return endingNumber(name) < kImageEndings.size(); }
 
 bool isFile(const fs::path& path) {
-  std::error_code ignored;  // what cannot be asked about is not there
+  std::error_code ignored;  // unreadable counts as missing
   return fs::is_regular_file(path, ignored);
 }
 
@@ -62,7 +62,7 @@ std::string FileFinder::imageLike(const Folder& folder, const std::string& name)
 fs::path FileFinder::similar(const fs::path& folder, const std::string& name, Ending ending) {
   const fs::path parts = fs::path(name).relative_path().lexically_normal();
   fs::path place = folder;
-  std::error_code ignored;  // what cannot be asked about is not there
+  std::error_code ignored;  // unreadable counts as missing
   for (auto part = parts.begin(); part != parts.end(); ++part) {
     const bool last = std::next(part) == parts.end();
     const std::string text = part->string();

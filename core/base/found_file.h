@@ -9,8 +9,8 @@
 namespace glint {
 
 /// Finds files by names that another system wrote: exactly so; else the only file whose name differs in case, in its Unicode form
-/// (fileNameKey) or by backslashes between folders. Lists each folder once, and only where a name is not there exactly. Rights are
-/// the caller's matter.
+/// (fileNameKey) or by backslashes between folders. Lists each folder once, and only if no name matches exactly. Rights
+/// are the caller's matter.
 class FileFinder {
  public:
   enum class Ending {
@@ -20,17 +20,17 @@ class FileFinder {
 
   /// FOLDER/NAME; empty = none, or several that differ from the name in such a way.
   std::filesystem::path at(const std::filesystem::path& folder, const std::string& name, Ending ending = Ending::AsNamed);
-  /// The file under `folder` that shares the longest end of its path with `file` ("a/b/c.ply": FOLDER/a/b/c.ply, then FOLDER/b/c.ply,
-  /// then FOLDER/c.ply), exactly; else as `at`. Empty = none.
+  /// The file under `folder` that shares the longest end of its path with `file` ("a/b/c.ply": FOLDER/a/b/c.ply, then
+  /// FOLDER/b/c.ply, then FOLDER/c.ply), exactly; else as `at`. Empty = none.
   std::filesystem::path under(const std::filesystem::path& folder, const std::string& file, Ending ending = Ending::AsNamed);
 
-  /// "8 files have other names ..., the first: 'a.png' is 'a.PNG'": those that were found in spite of case, form or ending. "" = none.
+  /// "8 files have other names ..., the first: 'a.png' is 'a.PNG'": the files found in spite of case, form or ending. "" = none.
   std::string differences() const;
 
  private:
   struct Folder {
-    std::map<std::u32string, std::vector<std::string>> entries,
-        images;  ///< by the key of the name, of an image's name without ending
+    /// Names by their key; images by the key of their name without ending.
+    std::map<std::u32string, std::vector<std::string>> entries, images;
   };
   const Folder& listed(const std::filesystem::path& folder);
   std::filesystem::path similar(const std::filesystem::path& folder, const std::string& name, Ending ending);

@@ -59,7 +59,7 @@ ImageHeader jpegFrame(std::string_view bytes, ImageHeader h) {
     const std::optional<std::uint64_t> marker = in.number(at, 1);
     const std::optional<std::uint64_t> code = in.number(at + 1, 1);
     if (!marker || !code) return truncated(h);
-    // NumbersInBytes between segments, and any number of FF before a marker, are passed over as by every decoder.
+    // Every decoder skips bytes between segments, and any number of FF before a marker.
     if (*marker != 0xff || *code == 0xff || *code == 0) {
       ++at;
       continue;
@@ -130,8 +130,8 @@ std::optional<ExrFacts> exrFacts(std::string_view bytes) {
   return facts;
 }
 
-/// Whether every block that the offset table names lies inside the file. Only single-part scan-line files are checked (what cameras and
-/// renderers write for one image); the decoder judges the others.
+/// Whether every block that the offset table names lies inside the file. Only single-part scan-line files are checked (what
+/// cameras and renderers write for one image); the decoder judges the others.
 /// @see OpenEXR File Layout: offsets, blocks (y, size, data).
 bool exrBlocksLieInside(std::string_view bytes, std::uint64_t table) {
   const NumbersInBytes in(bytes, false);
@@ -179,8 +179,8 @@ struct TiffKind {
 
 /// The tags that matter here; the first of each counts, as for the decoder.
 struct TiffTags {
-  std::optional<std::uint64_t> width, height, channels, tileWidth,
-      tileHeight;  // of strips nothing is asked: "all rows" is often 2^32 - 1
+  // Not checked for strips: "all rows" is often 2^32 - 1.
+  std::optional<std::uint64_t> width, height, channels, tileWidth, tileHeight;
   std::optional<std::uint64_t> colours, reduced, make, parts, dng;
   std::optional<std::uint64_t>* at(std::uint64_t tag) {
     switch (tag) {
@@ -198,8 +198,8 @@ struct TiffTags {
     }
   }
   static bool isSize(std::uint64_t tag) { return tag == 256 || tag == 257 || tag == 277 || tag == 322 || tag == 323; }
-  /// Raw files of cameras are TIFF as well: samples behind a mosaic of colours (or linear, of DNG), DNG's own tag, or a camera's small preview
-  /// before the pixels.
+  /// Raw files of cameras are TIFF as well: samples behind a mosaic of colours (or linear, of DNG), DNG's own tag, or a camera's
+  /// small preview before the pixels.
   bool isRaw() const {
     constexpr std::uint64_t kMosaic = 32803, kLinearRaw = 34892;
     return dng || colours == kMosaic || colours == kLinearRaw || (make && parts && reduced.value_or(0) % 2 == 1);
@@ -208,7 +208,7 @@ struct TiffTags {
 
 constexpr const char* kRaw = "the file is a raw file of a camera: develop it to TIFF or PNG first";
 
-/// @see TIFF 6.0, 2: a directory of entries (tag, type, count, value). @see AWare Systems, The BigTIFF File Format Proposal, 2008.
+/// @see TIFF 6.0, 2: entries (tag, type, count, value). @see AWare Systems, The BigTIFF File Format Proposal, 2008.
 ImageHeader tiffHeader(std::string_view bytes, ImageHeader h) {
   const NumbersInBytes in(bytes, startsWith(bytes, "MM"));
   constexpr std::uint64_t kBigTiff = 43;
@@ -225,7 +225,7 @@ ImageHeader tiffHeader(std::string_view bytes, ImageHeader h) {
     if (!found || *found) continue;
     constexpr std::uint64_t kShort = 3, kLong = 4, kLong8 = 16;
     const bool whole = *type == kShort || *type == kLong || (*type == kLong8 && kind.value == 8);
-    // The decoder takes other types too, of which some stand elsewhere in the file; nobody writes a size so.
+    // The decoder takes other types too, some of them elsewhere in the file; no program writes a size so.
     if (!whole && TiffTags::isSize(*tag)) return damaged(h, "a size is not a 16- or 32-bit whole number");
     *found = in.number(valueAt, *type == kShort ? 2 : *type == kLong8 ? kind.value : 4);
   }

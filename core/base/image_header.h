@@ -25,12 +25,12 @@ struct ImageHeader {
   std::string problem;                  ///< "" = whole, as far as the container tells without decoding
 };
 
-/// Recognises the format by its first bytes, never by a name. Truncated files, chunks and tables that lie outside of the file, and blocks
-/// larger than the image are problems; so is what no decoder here is made for.
+/// Recognises the format by its first bytes, never by a name. Truncated files, chunks and tables that lie outside of the file,
+/// and blocks larger than the image are problems; so is what no decoder here is made for.
 ImageHeader readImageHeader(std::string_view bytes);
 
-/// Width and height of a JPEG, px, by its first bytes alone, which may end anywhere; nothing where it is none or they do not hold its frame
-/// header. Whether the rest of the file is there is not asked.
+/// Width and height of a JPEG, px, from its first bytes alone, which may end anywhere. Nothing if this is not a JPEG, or if they
+/// do not reach its frame header. Does not check whether the rest of the file is there.
 std::optional<std::array<int, 2>> jpegSizeAtStart(std::string_view start);
 
 }  // namespace glint

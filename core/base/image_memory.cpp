@@ -9,8 +9,8 @@
 namespace glint {
 namespace {
 
-/// Of a pixel while its frame is worked on: the file's own values, three channels of float, and copies of a detection. Measured at 16 (8-bit
-/// grey) to 23 (16-bit colour).
+/// Memory of a pixel in a frame at work: the file's own values, three channels of float, and copies of a detection. Measured
+/// at 16 (8-bit grey) to 23 (16-bit colour).
 constexpr double kBytesPerPixel = 24;
 
 std::atomic<double> largest{0};  // million pixels

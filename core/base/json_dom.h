@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Internal to core: the JSON library's document, in time proportional to the text. Its own parser looks through all keys of an object
-// for every new one, so that an object of 100,000 keys takes many seconds.
+// Internal to core: the JSON library's document, in time proportional to the text. Its own parser looks through all keys of an
+// object for every new one, so that an object of 100,000 keys takes many seconds.
 
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -23,11 +23,11 @@ inline void append(Json& object, const std::string& key, Json value) {
 }
 
 /// The text of a document that names files. @param file  that it will be
-/// @throw InputError where a path or name is not UTF-8: JSON could hold another one only, and nothing would be found there.
+/// @throw InputError if a path or name is not UTF-8: JSON could hold another one only, and nothing would be found there.
 std::string textWithPaths(const Json& document, const std::string& file);
 
 /// `file` names the text in messages.
-/// @throw InputError (file; line and column, or the place of the value) for wrong syntax, a key that stands twice in one object,
+/// @throw InputError (file; line and column, or the place of the value) for wrong syntax, a repeated key in an object,
 ///        nesting deeper than 100, and beyond the limits json.megabytes and json.values.
 Json parse(const std::string& text, const std::string& file);
 

@@ -15,7 +15,7 @@ namespace glint {
 /// as long as one of its places. Keeps the JSON library out of headers.
 class JsonNode {
  public:
-  /// Syntax errors name line and column; a key that stands twice in one object and nesting deeper than 100 are refused.
+  /// Syntax errors name line and column; a repeated key in an object and nesting deeper than 100 are refused.
   /// NaN and Infinity, which some programs write although JSON has none, read as null, so that the error names their place.
   static JsonNode parse(const std::string& text, const std::string& file);
 
@@ -29,7 +29,7 @@ class JsonNode {
   /// Members and elements. `at` throws when it is missing; both throw when this is not an object (an array).
   bool has(const std::string& key) const;
   JsonNode at(const std::string& key) const;
-  std::optional<JsonNode> find(const std::string& key) const;  ///< nothing when the key is missing
+  std::optional<JsonNode> find(const std::string& key) const;  ///< nothing if the key is missing
   std::vector<std::string> keys() const;                       ///< in the order of the file
   std::size_t size() const;                                    ///< elements of an array
   JsonNode at(std::size_t index) const;
@@ -62,7 +62,7 @@ class JsonNode {
 };
 
 /// JSON text laid out for people: two blanks a level, arrays of numbers (and of short arrays of numbers) on one line.
-/// The values are not touched. std::invalid_argument when the text is not JSON.
+/// The values are not touched. std::invalid_argument if the text is not JSON.
 std::string prettyJson(const std::string& json);
 
 }  // namespace glint

@@ -18,7 +18,7 @@ inline bool saysLight(const std::string& id) {
   return id.size() == kWord.size() || std::isalpha(static_cast<unsigned char>(id[kWord.size()])) == 0;
 }
 
-/// A light within a sentence: "light 3"; the id alone where that says it, as nobody wants to read "light light".
+/// A light within a sentence: "light 3"; the id alone where that says it, to avoid "light light".
 inline std::string lightName(const std::string& id) { return saysLight(id) ? id : "light " + id; }
 
 }  // namespace glint

@@ -28,15 +28,15 @@ struct LimitInfo {
 };
 const std::vector<LimitInfo>& limitInfos();
 
-/// The limit in its own unit; that of images' memory is half of this machine's memory where that is less and nobody set it. Safe from
-/// every thread.
+/// The limit in its own unit; that of images' memory is half of this machine's memory where that is less and nobody set it. Safe
+/// from every thread.
 double limitOf(Limit limit);
 
-/// Sets one from "NAME=VALUE", for the whole process. InputError (place `--limit ...`) for an unknown name, or a value that is not a
-/// number above 0.
+/// Sets one from "NAME=VALUE", for the whole process. InputError (place `--limit ...`) for an unknown name, or a value that is
+/// not a number above 0.
 void setLimit(const std::string& nameAndValue);
 
-/// InputError (file, place) when `amount` is above the limit; the line names the option that raises it.
+/// InputError (file, place) if `amount` is above the limit; the line names the option that raises it.
 void requireWithin(Limit limit, double amount, const std::string& file, const std::string& place = "");
 
 }  // namespace glint

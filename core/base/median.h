@@ -15,8 +15,8 @@ T& ranked(std::vector<T>& values, std::size_t place) {
   return *nth;
 }
 
-/// The middle one of values, of which there is at least one; of an even number the upper one of the middle two. (Boost's median takes
-/// their mean: results that sessions store would change.)
+/// The middle one of values, of which there is at least one; of an even number the upper one of the middle two. (Boost's median
+/// takes their mean: results that sessions store would change.)
 template <class T>
 T upperMedian(std::vector<T> values) {
   return ranked(values, values.size() / 2);

@@ -11,7 +11,7 @@ namespace glint {
 class NumbersInBytes {
  public:
   NumbersInBytes(std::string_view bytes, bool bigEndian) : bytes_(bytes), big_(bigEndian) {}
-  /// Of `size` bytes, 1 to 8, from byte `at` on; nothing where the file ends before.
+  /// The number in `size` bytes, 1 to 8, from byte `at` on; nothing if the file ends before.
   std::optional<std::uint64_t> number(std::uint64_t at, unsigned size) const {
     if (at > bytes_.size() || bytes_.size() - at < size) return std::nullopt;
     std::uint64_t v = 0;

@@ -43,7 +43,7 @@ enum class Reason {
 
 /// Stable, lower-case text of a reason ("too few views").
 const char* nameOf(Reason reason);
-/// The reason of that name; nothing where there is none.
+/// The reason of that name; nothing for an unknown name.
 std::optional<Reason> reasonNamed(std::string_view name);
 
 struct Failure {
@@ -53,7 +53,7 @@ struct Failure {
   std::string message() const;
 };
 
-/// A value, or the named reason why there is none. An unset Outcome cannot exist.
+/// A value, or the named reason why it is missing. An unset Outcome cannot exist.
 template <class T>
 class [[nodiscard]] Outcome {
  public:

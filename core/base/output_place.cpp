@@ -22,7 +22,7 @@ constexpr int kOpen = O_PATH | O_DIRECTORY | O_CLOEXEC;  // also a folder that m
 constexpr int kOpen = O_RDONLY | O_DIRECTORY | O_CLOEXEC;
 #endif
 
-/// Which folder it is just now, whatever its path; {0, 0} = there is none. Not kept: some file systems number a folder anew when a file
+/// Which folder it is just now, whatever its path; {0, 0} = no folder. Not kept: some file systems renumber a folder when a file
 /// is first written into it.
 using Identity = std::pair<dev_t, ino_t>;
 Identity identityOf(const OpenFolder& folder) {

@@ -8,13 +8,13 @@
 
 namespace glint {
 
-/// A folder that is opened once. What is made, looked up and moved in it by name happens in this folder, whatever somebody puts in the
-/// place of its path meanwhile.
+/// A folder that is opened once. What is made, looked up and moved in it by name happens in this folder, whatever somebody puts
+/// in the place of its path meanwhile.
 class OpenFolder {
  public:
   /// Follows links. Where the system does not open it, names are looked up by its path.
   explicit OpenFolder(const std::filesystem::path& folder);
-  /// The folder of this name in it. Nothing, with errno: there is none, or it is a link.
+  /// The folder of this name in it. Nothing, with errno, if it is missing or a link.
   std::optional<OpenFolder> below(const std::filesystem::path& name) const;
 
   const std::filesystem::path& path() const { return path_; }
@@ -27,14 +27,14 @@ class OpenFolder {
   std::shared_ptr<const int> descriptor_;
 };
 
-/// A program writes long after it has checked where: in a folder of several users somebody may put a link or a file there meanwhile.
-/// Says that the check passed for this file or folder; the next `requireAsExpected` of this path in this process holds it against what
-/// is there then. A later call for the same path takes the place of an earlier one.
+/// A program writes long after it has checked where: in a folder of several users somebody may put a link or a file there
+/// meanwhile. Says that the check passed for this file or folder; the next `requireAsExpected` of this path in this process
+/// compares it with what is there then. A later call for the same path takes the place of an earlier one.
 /// @param stillAllowed  the check once more, false = what is there now must not be replaced
 void expectOutput(const std::filesystem::path& path, std::function<bool()> stillAllowed);
 
-/// Called with the folder that is written into, after it was opened. Does nothing for a path that nobody expected.
-/// @throw InputError (file) when a link on the way to the path appeared or changed since `expectOutput`, or what is there is not allowed
+/// Called with the folder that is written into, after it was opened. Does nothing for an unexpected path.
+/// @throw InputError (file) if a link on the way to the path appeared or changed since `expectOutput`, or its target is forbidden
 void requireAsExpected(const std::filesystem::path& path, const OpenFolder& folder);
 
 /// The write is done: the next one of this path is another one.

@@ -29,8 +29,8 @@ int threadCount() {
 }
 
 /// This thread works for a loop of several threads.
-// Aligned for mold 1.10, which starts the read-only part at the thread-local data: with a single byte at the very end of a page, the part
-// begins in a page that is not mapped, and the program does not start ("cannot apply additional memory protection").
+// Aligned for mold 1.10, which starts the read-only part at the thread-local data: with a single byte at the very end of a page,
+// the part begins in a page that is not mapped, and the program does not start ("cannot apply additional memory protection").
 alignas(64) thread_local bool inLoop = false;
 struct InLoop {
   explicit InLoop(bool now) : before(inLoop) { inLoop = before || now; }

@@ -3,8 +3,8 @@
 
 namespace glint {
 
-/// While one lives, what libraries write to standard error goes nowhere: encoders of videos print there and cannot be asked not to. Keep
-/// it around calls of such a library only. Several threads may have one at once. The program's own lines go to `ownErrors` meanwhile.
+/// While one lives, what libraries write to standard error goes nowhere: video encoders print there and have no switch. Keep
+/// it around such calls only. Several threads may have one each. The program's own lines go to `ownErrors` meanwhile.
 class QuietLibraries {
  public:
   QuietLibraries();

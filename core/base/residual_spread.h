@@ -29,9 +29,9 @@ double correlationInflation(const std::vector<double>& values, const std::vector
 ResidualSpread residualSpread(const std::vector<double>& residuals, const std::vector<int>& views, int parameters,
                               double robustScale, Neighbours neighbours = Neighbours::Closed);
 
-/// Root of the mean square of one view's residuals without their tail: what is larger than twice the size below which two thirds of them
-/// stay counts as just that. A few points whose residual has no bound then say nothing of the others; where more than a third are
-/// large, they are what is measured. Equal to the RMS where nothing sticks out (a sine), 5 % less for normal noise.
+/// Root of the mean square of one view's residuals without their tail: what is larger than twice the size below which two thirds
+/// of them stay counts as just that. A few points with unbounded residuals then do not affect the others; if more than a
+/// third are large, they are what is measured. Equal to the RMS where nothing sticks out (a sine), 5 % less for normal noise.
 /// 0 of none; NaN where one is not finite.
 double rmsWithoutTail(const std::vector<double>& residuals);
 

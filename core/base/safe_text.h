@@ -7,8 +7,8 @@
 
 namespace glint {
 
-/// Text from a file or a name, fit for a terminal: control characters (terminal escapes among them), marks that turn the direction
-/// of writing, and bytes that are not UTF-8 become xNN or uNNNN behind a backslash. Line ends and tabs stay.
+/// Text from a file or a name, fit for a terminal: control characters (terminal escapes among them), marks that turn the
+/// direction of writing, and bytes that are not UTF-8 become xNN or uNNNN behind a backslash. Line ends and tabs stay.
 std::string withoutControls(std::string_view text);
 
 /// The longest message that a person is shown, in bytes: with "glint: warning: " before it, a line stays below 400.

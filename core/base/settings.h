@@ -49,7 +49,7 @@ class Settings {
   std::map<std::string, SettingValue> values_;
 };
 
-/// The description of one key; InputError when there is none.
+/// The description of one key; InputError if it is unknown.
 const ParamSpec& paramSpec(const std::string& key);
 
 }  // namespace glint

@@ -24,7 +24,7 @@ class Sha256 {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Of a file, read in blocks. InputError when it cannot be read.
+/// The sum of a file, read in blocks. InputError if it cannot be read.
 std::string sha256OfFile(const std::filesystem::path& file);
 
 }  // namespace glint

@@ -12,19 +12,19 @@ namespace glint {
 struct SolverRun {
   std::string what;  ///< what was sought: "light with one limit angle", "ellipsoid"
   std::string unit;  ///< of the costs: "px^2", "squares of relative radiance"
-  /// Sums of squares after the loss: of the start, then after each step that was taken. A new round begins where the weights were renewed;
-  /// the costs of different rounds weigh the points differently and must not be compared.
+  /// Sums of squares after the loss: of the start, then after each step that was taken. A new round begins where the weights were
+  /// renewed; the costs of different rounds weigh the points differently and must not be compared.
   std::vector<std::vector<double>> rounds;
   bool converged = false;
   std::string ending;   ///< in words: "converged", "out of iterations", "the light lies behind the surface"
   bool answer = false;  ///< the fit's answer came from this run
-  /// The light or the centre of the ellipsoid before and after, homogeneous, world, |.| = 1; none where it is not finite.
+  /// The light or the centre of the ellipsoid before and after, homogeneous, world, |.| = 1; none if it is not finite.
   std::optional<Eigen::Vector4d> start, end;
   /// Steps that were taken, over all rounds.
   int steps() const;
 };
 
-/// Records what the solvers do on this thread while it lives, for whoever asks why a fit fails; of several the newest records.
+/// Records what the solvers do on this thread while it lives, to explain why a fit fails; if several live, the newest records.
 /// Solvers that run on other threads meanwhile are not seen.
 class SolverTrace {
  public:
@@ -44,7 +44,7 @@ class SolverTrace {
   SolverTrace* outer_;
 };
 
-/// Stands around one run of a solver. Does nothing where nobody records.
+/// Lives around one run of a solver. Does nothing if nothing records.
 class TracedRun {
  public:
   /// @param start  homogeneous, world, any scale
@@ -53,14 +53,14 @@ class TracedRun {
   TracedRun(const TracedRun&) = delete;
   TracedRun& operator=(const TracedRun&) = delete;
   void end(bool converged, const std::string& ending, const std::optional<Eigen::Vector4d>& end = {});
-  /// For traceAnswer(); -1 where nobody records.
+  /// For traceAnswer(); -1 if nothing records.
   int index() const { return index_; }
 
  private:
   int index_ = -1;
 };
 
-/// A round of the innermost run. Nothing where there is none.
+/// A round of the innermost run. Does nothing outside of a run.
 void traceRound(const std::vector<double>& costs);
 /// The answer came from this run, not from earlier ones of what was sought. Nothing for -1.
 void traceAnswer(int run);

@@ -15,9 +15,9 @@ class StageTimes {
  public:
   using Clock = std::function<double()>;  ///< seconds since any moment
   explicit StageTimes(Clock clock = {});  ///< empty = the steady clock
-  /// A stage lasts from its first report to the first one of another stage. A stage that comes again is counted once, with the sum.
+  /// A stage lasts from its first report to the first one of another stage. A stage that recurs counts once, with the sum.
   void note(const StageEvent& event);
-  /// "detect 24 in 0.31 s, surface 6 in 0.02 s; 0.84 s in all", in the order of the stages; those under a millisecond without their time.
+  /// "detect 24 in 0.31 s, surface 6 in 0.02 s; 0.84 s in all", in the order of the stages; no time below a millisecond.
   std::string text() const;
   std::string stage() const;  ///< the one of the last report, "" before the first
 

@@ -29,7 +29,7 @@ namespace {
 
 constexpr std::string_view kMark = ".glint-", kEnd = ".tmp";
 
-/// Of all threads: what is under way, where this process has cleaned up, whether it ends.
+/// State of all threads: what is under way, where this process has cleaned up, whether it ends.
 struct Registry {
   std::timed_mutex mutex;
   std::set<fs::path> unfinished, cleaned;
@@ -88,7 +88,7 @@ void cleanOnce(const fs::path& folder) {
   removeAbandonedTemporaries(folder);
 }
 
-/// Removes a file or folder that threads may still write to; false when it has more files than `most`, which `files` counts.
+/// Removes a file or folder that threads may still write to; false if it has more files than `most`, which `files` counts.
 bool removeAside(const fs::path& path, int most, int& files) {
   std::error_code ignored;
   fs::path at = path;
@@ -150,8 +150,8 @@ TemporaryPath::TemporaryPath(OpenFolder folder, const fs::path& target, Kind kin
       if (kind == Kind::Folder) ::rmdir(path_.c_str());
       throw InputError(target.string(), "", std::string("cannot be written: ") + std::strerror(error));
     }
-    // Between its making and its lock another program may have taken it for one that was left. A file system without locks refuses them
-    // to others too.
+    // Between its making and its lock another program may have taken it for one that was left. A file system without locks
+    // refuses them to others too.
     struct stat now {};
     const bool taken = ::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
     if (taken || ::fstat(descriptor_, &now) != 0 || now.st_nlink == 0) {

@@ -7,9 +7,9 @@
 
 namespace glint {
 
-/// A hidden file or folder for a write that is under way: ".NAME.glint-PROCESS-NUMBER.tmp.EXTENSION". It is locked (flock) while its
-/// writer lives, so that others can tell it from one that a killed program left. The destructor removes it unless it was moved into
-/// place.
+/// A hidden file or folder for a write that is under way: ".NAME.glint-PROCESS-NUMBER.tmp.EXTENSION". It is locked (flock) while
+/// its writer lives, so that others can tell it from one that a killed program left. The destructor removes it unless it was
+/// moved into place.
 class TemporaryPath {
  public:
   enum class Kind { File, Folder };
@@ -38,8 +38,8 @@ class TemporaryPath {
   bool moved_ = false;
 };
 
-/// Removes the files and folders in `folder` that a TemporaryPath of a program made that runs no more. What is locked, belongs to another
-/// user or has another name stays. Never fails.
+/// Removes the files and folders in `folder` that a TemporaryPath of a program made that runs no more. What is locked, belongs to
+/// another user or has another name stays. Never fails.
 void removeAbandonedTemporaries(const std::filesystem::path& folder);
 
 }  // namespace glint

@@ -27,9 +27,9 @@ struct ParameterBlock {
   }
 };
 
-/// Of a vector brought to length 1 and of further parameters, from that of the vector y as it was: d(y / |y|) = (I - u u^T) dy / |y|, u = y / |y|.
+/// The uncertainty of u = y / |y| and further parameters, from that of y: d(y / |y|) = (I - u u^T) dy / |y|.
 /// @param y  not zero. @param dy  4 x k and @param others  rows x k: columns of the root as in ParameterUncertainty.
-/// @return root of 4 + rows parameters; nothing where it is not finite.
+/// @return root of 4 + rows parameters; nothing if it is not finite.
 std::optional<ParameterUncertainty> uncertaintyOfUnit(const Eigen::Vector4d& y, const Eigen::MatrixXd& dy,
                                                       const Eigen::MatrixXd& others, double noisePx, double degreesOfFreedom);
 

@@ -71,7 +71,7 @@ std::map<int, JsonNode> bopImages(const JsonNode& root) {
     const JsonNode node = root.at(key);
     const std::optional<int> id = bopId(key);
     if (!id) node.fail("is not the number of an image");
-    if (!images.emplace(*id, node).second) node.fail("image " + std::to_string(*id) + " stands twice in the file");
+    if (!images.emplace(*id, node).second) node.fail("image " + std::to_string(*id) + " is in the file twice");
   }
   return images;
 }
@@ -110,7 +110,7 @@ Camera bopCamera(const JsonNode& node, const std::array<int, 2>& size) {
   return camera;
 }
 
-/// How far an object moves in the world, against where it is in the first image that says where its camera stands.
+/// How far an object moves in the world, against where it is in the first image that says where its camera is.
 class BopMotion {
  public:
   void add(const Eigen::Isometry3d& worldFromModel, const std::string& image) {
@@ -258,7 +258,7 @@ class BopReading {
 
   /// The file of this name without ending, with the first ending that exists; "" = none.
   fs::path existing(const std::string& name, const std::vector<std::string>& endings, const std::string& place) {
-    std::error_code ignored;  // what cannot be asked about is not there
+    std::error_code ignored;  // unreadable counts as missing
     for (const std::string& ending : endings) {
       const fs::path file = names_.other(capture_.folder, name + ending, capture_.file.string(), place);
       if (fs::is_regular_file(file, ignored)) return file;
@@ -270,7 +270,7 @@ class BopReading {
   fs::path photograph(const std::string& number, const std::string& place) {
     static const std::vector<std::string> kNames{"rgb/#.png",  "rgb/#.jpg",  "rgb/#.jpeg", "rgb/#.tif",  "rgb/#.tiff",
                                                  "gray/#.png", "gray/#.jpg", "gray/#.tif", "gray/#.tiff"};
-    std::error_code ignored;  // what cannot be asked about is not there
+    std::error_code ignored;  // unreadable counts as missing
     const auto at = [&](const std::string& pattern) {
       std::string name = pattern;
       return names_.image(name.replace(name.find('#'), 1, number), {capture_.folder}, capture_.file.string(), place);
@@ -307,12 +307,12 @@ class BopReading {
     capture_.views.push_back(std::move(view));
   }
 
-  /// Of the folders `models*` beside the split the one called `models`, else the first in order of name.
+  /// Looks in the folder `models` beside the split, else in the first `models*` by name.
   void findMesh() {
     const std::string name = "obj_" + bopNumber(std::size_t(object_)) + ".ply";
     const std::vector<fs::path> folders = capture::modelFoldersOfBop(capture_.file);
     std::vector<fs::path> found;
-    std::error_code ignored;  // what cannot be asked about is not there
+    std::error_code ignored;  // unreadable counts as missing
     for (const fs::path& folder : folders)
       if (const fs::path file = resolveInside(folder, name, options_.rights, capture_.file.string(), folder.filename().string());
           fs::is_regular_file(file, ignored))
@@ -372,7 +372,7 @@ class BopReading {
 
 /// Whether a file begins with an image's camera: cheap, and enough to tell it from other JSON.
 bool looksLikeBopCameras(const fs::path& file) {
-  std::error_code ignored;  // what cannot be asked about is not there
+  std::error_code ignored;  // unreadable counts as missing
   if (!fs::is_regular_file(file, ignored)) return false;
   constexpr std::size_t kStart = 4096;  // bytes: the first image has 300
   std::string start(kStart, '\0');
@@ -390,7 +390,7 @@ class BopReader : public CaptureReader {
 
   fs::path recognise(const fs::path& input) const override {
     try {
-      std::error_code ignored;  // what cannot be asked about is not there
+      std::error_code ignored;  // unreadable counts as missing
       const fs::path folder = fs::is_directory(input, ignored) ? input : input.parent_path();
       if (folder != input && input.filename() != kBopCameras && input.filename() != kBopPoses) return {};
       if (!looksLikeBopCameras(folder / kBopCameras) || !fs::is_regular_file(folder / kBopPoses, ignored)) return {};

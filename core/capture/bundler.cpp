@@ -49,8 +49,8 @@ struct BundlerImage {
 constexpr std::size_t kWord = 2;                                     // bytes, with what separates it
 constexpr std::size_t kCameraLines = 5, kInLine = 3, kEachView = 4;  // lines, and numbers in each; numbers of a measurement
 
-/// The words of the file. Programs break its lines differently; where the cameras stand in lines as Bundler writes them, a bad line does not
-/// touch what follows it.
+/// The words of the file. Programs break its lines differently; if cameras have the lines that Bundler writes, a bad
+/// line does not touch what follows it.
 class BundlerWords {
  public:
   BundlerWords(std::string_view text, const std::string& file) : rows_(text, file), text_(text), file_(file) {}
@@ -121,7 +121,7 @@ void requireWords(const Row& row, std::size_t words, const std::string& file) {
                      "needs " + std::to_string(words) + " entries, has " + std::to_string(row.words.size()) + " (a cut line?)");
 }
 
-/// Our pose of Bundler's, whose camera has y up and looks along -z. As typedPose: a rotation of few digits is replaced by the nearest one.
+/// Our pose of Bundler's, whose camera has y up and looks along -z. typedPose repairs a rotation of few digits.
 Eigen::Isometry3d bundlerPose(const Eigen::Matrix3d& r, const Eigen::Vector3d& t, const std::string& file,
                               const std::string& place, std::vector<std::string>& repaired) {
   const TypedPose typed = typedPose(r, t);
@@ -186,7 +186,7 @@ BundlerPoint bundlerPoint(BundlerWords& words, const std::string& what, std::siz
   return point;
 }
 
-/// Reads the points, which follow the cameras. A bad point ends the reading where the lines do not tell where the next one begins.
+/// Reads the points, which follow the cameras. A bad point ends the reading if the lines do not tell where the next one begins.
 void readBundlerPoints(BundlerWords& words, std::uint64_t points, const std::string& file, BundlerModel& model) {
   capture::BadLines bad;
   for (std::uint64_t i = 0; i < points; ++i) {
@@ -237,7 +237,7 @@ BundlerModel readBundler(const fs::path& path) {
 }
 
 /// The list of images of a file: named after it ("model.out.list.txt" of "model.out"), or alike ("list.txt" of "bundle.out",
-/// "scene.list.txt" of COLMAP's "scene.bundle.out"), else "list.txt" beside it, else in the folder around `bundle/`, where Bundler was started. Empty = none.
+/// "scene.list.txt" of COLMAP's "scene.bundle.out"), else "list.txt" beside it or in the folder around `bundle/`. Empty = none.
 fs::path bundlerListOf(const fs::path& file) {
   const fs::path folder = file.parent_path();
   std::vector<fs::path> places{folder / "list.txt"};
@@ -246,7 +246,7 @@ fs::path bundlerListOf(const fs::path& file) {
     places.insert(places.begin(), folder / (name.replace(at, std::string("bundle").size(), "list") + ".txt"));
   places.insert(places.begin(), {fs::path(file.string() + ".list.txt"), folder / (file.stem().string() + ".list.txt")});
   if (folder.filename() == "bundle") places.push_back(folder.parent_path() / "list.txt");
-  std::error_code ignored;  // what cannot be asked about is not there
+  std::error_code ignored;  // unreadable counts as missing
   for (const fs::path& p : places)
     if (fs::is_regular_file(p, ignored)) return p;
   return {};
@@ -254,7 +254,7 @@ fs::path bundlerListOf(const fs::path& file) {
 
 bool isBundlerFile(const fs::path& file) { return capture::firstLineOf(file).rfind(kBundlerMagic, 0) == 0; }
 
-/// bundle.out, also where Bundler put it, else the first other file *.out.
+/// bundle.out, even in Bundler's own subfolder, else the first other file *.out.
 std::vector<fs::path> bundlerFilesIn(const fs::path& folder) {
   std::vector<fs::path> files{folder / "bundle.out", folder / "bundle" / "bundle.out"}, others;
   std::error_code error;  // what cannot be listed holds none
@@ -320,7 +320,7 @@ class BundlerReader : public CaptureReader {
   std::string describe() const override { return "Bundler (bundle.out and list.txt)"; }
 
   fs::path recognise(const fs::path& input) const override {
-    std::error_code ignored;  // what cannot be asked about is not there
+    std::error_code ignored;  // unreadable counts as missing
     if (!fs::is_directory(input, ignored)) return isBundlerFile(input) ? input : fs::path();
     for (const fs::path& p : bundlerFilesIn(input))
       if (!bundlerListOf(fs::absolute(p, ignored).lexically_normal()).empty()) return p;

@@ -73,7 +73,7 @@ struct CaptureTrack {
     Pixel measured;
   };
   Eigen::Vector3d point;          ///< in the world of the views, in the unit of the capture
-  std::vector<Observation> seen;  ///< empty where the program does not say who saw it (nerfstudio)
+  std::vector<Observation> seen;  ///< empty if the program does not say which cameras saw it (nerfstudio)
 };
 
 /// What the files of other programs do not say, from the command line or a session.
@@ -96,12 +96,12 @@ class CaptureReader {
   /// The file to read when this reader understands `input` (a file, or a folder in which it looks), by content; an empty path
   /// otherwise. Never throws for an unreadable input.
   virtual std::filesystem::path recognise(const std::filesystem::path& input) const = 0;
-  /// What `recognise` would return for a folder if a file that it needs were there, so that `read` can say which; "" = nothing. Asked
-  /// where no reader recognises the folder.
+  /// What `recognise` would return for a folder if a file that it needs were there, so that `read` can say which; "" = nothing.
+  /// Asked where no reader recognises the folder.
   virtual std::filesystem::path incomplete(const std::filesystem::path& folder) const;
-  /// Reads what `recognise` returned. InputError with file, place ("line 12", "frames[3].transform_matrix", "byte 120") and reason.
+  /// Reads what `recognise` found. InputError (file, place: "line 12", "frames[3].transform_matrix" or "byte 120", reason).
   virtual Capture read(const std::filesystem::path& file, const CaptureOptions& options) const = 0;
-  /// The sparse points of what `read` returned; empty where the program has none. InputError as `read`.
+  /// The sparse points of what `read` returned; empty if the program has none. InputError as `read`.
   virtual std::vector<CaptureTrack> tracks(const Capture& capture, const CaptureOptions& options) const;
 };
 
@@ -110,7 +110,7 @@ const std::vector<std::unique_ptr<const CaptureReader>>& captureReaders();
 /// Folders besides its own in which a capture may name files, by the path of the file that is recognised: the project's root of a
 /// COLMAP model in `sparse/0`, that of `bundle/bundle.out`, the folders of models of a BOP data set (no link that leaves it).
 std::vector<std::filesystem::path> foldersOfCapture(const std::filesystem::path& file);
-/// Null where there is none of this name.
+/// Null for an unknown name.
 const CaptureReader* captureReaderNamed(const std::string& name);
 
 std::unique_ptr<const CaptureReader> makeColmapReader();
@@ -120,8 +120,8 @@ std::unique_ptr<const CaptureReader> makeTumReader();
 std::unique_ptr<const CaptureReader> makeBundlerReader();
 std::unique_ptr<const CaptureReader> makeBopReader();
 
-/// A folder of images, and a video, whose poses CaptureOptions names (its `poses`). Not among captureReaders(): nothing in such a folder
-/// says that it is a capture, so only who names the poses asks them.
+/// A folder of images, and a video, whose poses CaptureOptions names (its `poses`). Not among captureReaders(): nothing in such a
+/// folder says that it is a capture, so they are asked only if the user names the poses.
 std::unique_ptr<const CaptureReader> makeImagesReader();
 std::unique_ptr<const CaptureReader> makeVideoReader();
 

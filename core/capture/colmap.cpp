@@ -21,7 +21,7 @@ namespace {
 /// The first bytes of a regular file.
 std::string headOfModelFile(const fs::path& file) {
   constexpr std::size_t kHead = 65536;  // bytes; comments before the first camera are far shorter
-  std::error_code ignored;              // what cannot be asked about is not there
+  std::error_code ignored;              // unreadable counts as missing
   if (!fs::is_regular_file(file, ignored)) return "";
   std::string head(kHead, '\0');
   std::ifstream in(file, std::ios::binary);
@@ -85,7 +85,7 @@ bool isNumberName(const fs::path& name) {
   return !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
 }
 
-/// `sparse` and `sparse/0` stand in the folder that holds `images`, too. A folder `dense` is a project of its own: its images are
+/// `sparse` and `sparse/0` are in the folder that holds `images`, too. A folder `dense` is a project of its own: its images are
 /// undistorted, so those of the folder above do not belong to its cameras.
 fs::path projectRoot(const fs::path& model) {
   if (model.filename() == "sparse") return model.parent_path();
@@ -156,7 +156,7 @@ void addViews(const std::vector<ModelImage>& images, const std::vector<ModelCame
   names.tell(capture.warnings);
 }
 
-/// How many points there are, and what their tracks name that is not there. That happens where a person or a program took images
+/// How many points there are, and what their tracks name that is missing. That happens where a person or a program took images
 /// out of the model; `tracks` leaves such entries out.
 std::size_t countPoints(const Files& files, const std::vector<ModelImage>& images, Capture& capture) {
   if (!files.has("points3D")) {
@@ -197,7 +197,7 @@ std::string camerasText(const std::vector<ModelCamera>& cameras) {
 }
 
 void addPhotographs(Capture& capture) {
-  std::error_code ignored;  // what cannot be asked about is not there
+  std::error_code ignored;  // unreadable counts as missing
   std::size_t missing = 0;
   const CaptureView* first = nullptr;
   for (const CaptureView& view : capture.views) {

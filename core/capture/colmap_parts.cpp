@@ -42,7 +42,7 @@ constexpr std::array<CameraModel, 18> kColmapModels{{
 }  // namespace
 
 bool Files::has(const char* stem) const {
-  std::error_code ignored;  // what cannot be asked about is not there
+  std::error_code ignored;  // unreadable counts as missing
   return fs::is_regular_file((*this)(stem), ignored);
 }
 

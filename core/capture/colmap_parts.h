@@ -35,7 +35,7 @@ struct Files {
   bool has(const char* stem) const;
 };
 
-/// As they stand in the file, in our conventions. Identifiers are any numbers.
+/// The file's data in our conventions. Identifiers are any numbers.
 struct ModelCamera {
   std::uint32_t id = 0;
   std::string model;  ///< COLMAP's name
@@ -55,13 +55,13 @@ struct TrackEntry {
 };
 using EachPoint = std::function<void(const Eigen::Vector3d& point, const std::vector<TrackEntry>& track)>;
 
-// Of both kinds, by Files::binary. `bytes` is the content of the file.
+// Readers of both kinds, by Files::binary. `bytes` is the content of the file.
 
-// In a text, a line that cannot be read is a warning; its camera, image or point is not there. InputError where nothing is left.
+// In a text, a line that cannot be read is a warning; its camera, image or point is missing. InputError if nothing is left.
 
 std::vector<ModelCamera> readCameras(const Files& files, std::vector<std::string>& warnings);
-/// Poses and names; the 2D points are skipped. An image that is there twice, word for word, counts once. `warnings`: one line for each
-/// quaternion that was not of length 1.
+/// Poses and names; the 2D points are skipped. An image that is there twice, word for word, counts once. `warnings`: one line for
+/// each quaternion that was not of length 1.
 std::vector<ModelImage> readImages(const Files& files, std::string_view bytes, std::vector<std::string>& warnings);
 /// The 2D points of one image, in our pixels.
 std::vector<Pixel> pixelsOf(const Files& files, std::string_view bytes, const ModelImage& image);
@@ -91,7 +91,7 @@ struct CameraModel {
   int lensParameters;             ///< at the end
   int parameters() const { return focalLengths + 2 + lensParameters; }
 };
-/// InputError where there is none of this number or name, or it is not supported.
+/// InputError if the number or name is unknown, or not supported.
 const CameraModel& cameraModelOf(std::int64_t number, const std::string& file, const std::string& place);
 const CameraModel& cameraModelOf(std::string_view name, const std::string& file, const std::string& place);
 /// @param parameters  as many as the model has, in COLMAP's order
@@ -121,7 +121,7 @@ template <class Place>
 Pixel pixelAt(double x, double y, const std::string& file, const Place& place) {
   return {boundedAt(x, kFarthestPx, file, place) + kFromCorner, boundedAt(y, kFarthestPx, file, place) + kFromCorner};
 }
-/// A word as an identifier or an index, a whole number of 32 bits without a sign; nothing where it is none.
+/// A word as an identifier or an index, a whole number of 32 bits without a sign; nothing for any other word.
 std::optional<std::uint32_t> number32(std::string_view word);
 std::string byteNo(std::size_t byte);
 std::string lineNo(std::size_t line);
@@ -131,7 +131,7 @@ std::string counted(std::size_t number, const std::string& noun, const std::stri
 /// At most 8 of `lines`, and how many more there are.
 void addWarnings(const std::vector<std::string>& lines, std::vector<std::string>& warnings);
 
-/// Index of each element by its identifier. InputError where two have the same.
+/// Index of each element by its identifier. InputError if two have the same.
 template <class Element>
 std::unordered_map<std::uint32_t, std::size_t> indexById(const std::vector<Element>& elements, const char* noun,
                                                          const std::string& file) {
@@ -164,7 +164,7 @@ class Bytes {
     for (double& v : values) v = take<double>();
     return values;
   }
-  /// A count of elements that take at least `least` bytes each; refused where the rest of the file cannot hold them.
+  /// A count of elements that take at least `least` bytes each; refused if the rest of the file cannot hold them.
   template <class Number>
   std::size_t takeCount(std::size_t least, const char* noun) {
     const Number count = take<Number>();

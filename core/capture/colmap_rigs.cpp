@@ -7,7 +7,7 @@
 #include "io/text_scan.h"
 
 // rigs and frames, which COLMAP writes from version 3.12 on: several sensors that are moved as one. The pose of an image is that
-// of its sensor in the rig after that of the rig in the world, and stands in the file of images as well.
+// of its sensor in the rig after that of the rig in the world, and the file of images has it as well.
 
 namespace glint::capture::colmap {
 namespace fs = std::filesystem;
@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::int32_t kCameraSensor = 0;  // number of the type CAMERA
 
-/// Poses of its cameras in the rig; nothing where the file has none.
+/// Poses of its cameras in the rig; nothing if the file has none.
 using Rig = std::map<std::uint32_t, std::optional<Isometry3d>>;
 struct RigFrame {
   std::uint32_t rig = 0;
@@ -220,7 +220,7 @@ void checkRigs(const Files& files, const std::vector<ModelImage>& images, Captur
   if (!files.has("rigs") || !files.has("frames")) {
     for (const char* stem : {"rigs", "frames"})
       if (files.has(stem))
-        capture.warnings.push_back(files(stem).filename().string() + " stands alone: it was not compared with the images");
+        capture.warnings.push_back(files(stem).filename().string() + " has no counterpart: it was not compared with the images");
     return;
   }
   const std::string rigsName = files("rigs").filename().string(), framesName = files("frames").filename().string();

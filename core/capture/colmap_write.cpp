@@ -15,7 +15,7 @@ namespace {
 
 using capture::kFromCorner;
 
-/// What a camera is in COLMAP: the name of a model, and what stands behind the principal point.
+/// What a camera is in COLMAP: the name of a model, and the parameters behind the principal point.
 struct ColmapLens {
   std::string model;
   bool oneFocalLength = false;
@@ -77,7 +77,7 @@ std::string colmapPoseText(const Eigen::Isometry3d& pose) {
 
 /// Files that would be read instead of the text, or with it.
 void refuseOtherModel(const fs::path& folder) {
-  std::error_code ignored;  // what cannot be asked about is not there
+  std::error_code ignored;  // unreadable counts as missing
   for (const char* file : {"cameras.bin", "images.bin", "points3D.bin", "rigs.bin", "frames.bin", "rigs.txt", "frames.txt"})
     if (fs::exists(folder / file, ignored))
       throw InputError(

@@ -20,7 +20,7 @@ fs::path FileNames::image(const std::string& name, const std::vector<fs::path>& 
     if (!found.empty()) return found;
   }
   const fs::path own = in(folders, name, FileFinder::Ending::AnyImage, file, place);
-  std::error_code ignored;  // what cannot be asked about is not there
+  std::error_code ignored;  // unreadable counts as missing
   const fs::path copy = fs::is_regular_file(own, ignored) ? fs::path() : smallerCopy(own, file, place);
   return copy.empty() ? own : copy;
 }
@@ -37,7 +37,7 @@ fs::path FileNames::smallerCopy(const fs::path& missing, const std::string& file
     const fs::path found =
         finder_.at(gone.parent_path() / smaller, missing.lexically_relative(gone).string(), FileFinder::Ending::AnyImage);
     if (found.empty()) continue;
-    smaller_ = "the photographs are those of the folder " + smaller + ": there are none in " + gone.filename().string();
+    smaller_ = "the photographs are those of the folder " + smaller + ": " + gone.filename().string() + " has no such files";
     return resolveInside(gone.parent_path(), found.lexically_relative(gone.parent_path()).string(), rights_, file, place);
   }
   return {};
@@ -50,7 +50,7 @@ fs::path FileNames::other(const fs::path& folder, const std::string& name, const
 fs::path FileNames::in(const std::vector<fs::path>& folders, const std::string& name, FileFinder::Ending ending,
                        const std::string& file, const std::string& place) {
   require(!folders.empty(), "FileNames: no folder");
-  std::error_code ignored;  // what cannot be asked about is not there
+  std::error_code ignored;  // unreadable counts as missing
   const auto isFile = [&](const fs::path& p) { return fs::is_regular_file(p, ignored); };
   const fs::path first = resolveInside(folders.front(), name, rights_, file, place);
   if (isFile(first)) return first;

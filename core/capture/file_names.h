@@ -10,8 +10,8 @@
 
 namespace glint::capture {
 
-/// Where the files are that a capture or a scene names: the one place for slashes, case, Unicode form and ending (FileFinder), for
-/// `--photographs`, and for what a file from others may name. One for each reading: it knows the folders that it has listed.
+/// Where the files are that a capture or a scene names: the one place for slashes, case, Unicode form and ending (FileFinder),
+/// for `--photographs`, and for what a file from others may name. One for each reading: it knows the folders that it has listed.
 class FileNames {
  public:
   /// @param photographs  folders in which images are looked for first
@@ -19,8 +19,8 @@ class FileNames {
       : rights_(std::move(rights)), photographs_(std::move(photographs)) {}
 
   /// Where the image of this name is: in the first of `photographs` that holds it (by the longest end of its path), else in the
-  /// first of `folders` that does, else a smaller copy as other programs keep them (images_2, images_4, images_8 beside a folder images
-  /// that is missing or empty), else in the first of `folders`, where it is missing. OutsidePath where the name leaves that folder.
+  /// first of `folders` that does, else a smaller copy of other programs (images_2, images_4, images_8 beside a folder images
+  /// that is missing or empty), else in the first of `folders`, where it is missing. OutsidePath if the name leaves that folder.
   std::filesystem::path image(const std::string& name, const std::vector<std::filesystem::path>& folders, const std::string& file,
                               const std::string& place);
   /// Another file (depth, mask, mesh), whose ending says what it is. It may be missing. OutsidePath as above.

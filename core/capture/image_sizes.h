@@ -15,8 +15,8 @@
 namespace glint::capture {
 
 /// As sizeOfImage, for one image after the other. A PNG says its size in its first bytes, and those of a capture mostly say the
-/// same; a JPEG says it behind what its camera noted. Such images are not read whole, which for 2000 photographs would be a gigabyte
-/// from the disk. What is damaged further on, its decoder tells.
+/// same; a JPEG says it behind what its camera noted. Such images are not read whole, which for 2000 photographs would be a
+/// gigabyte from the disk. What is damaged further on, its decoder tells.
 class ImageSizes {
  public:
   std::array<int, 2> of(const std::filesystem::path& image, const std::string& file, const std::string& place) {
@@ -30,9 +30,9 @@ class ImageSizes {
   }
 
  private:
-  /// Its first bytes; "" where there are none.
+  /// Its first bytes; "" if it cannot be read.
   static std::string startOf(const std::filesystem::path& image) {
-    std::error_code ignored;  // what cannot be asked about is not there; a pipe would make the program wait
+    std::error_code ignored;  // unreadable counts as missing; a pipe would make the program wait
     if (!std::filesystem::is_regular_file(image, ignored)) return "";
     constexpr std::size_t kSize = 3 << 15;  // bytes: a JPEG's notes with a thumbnail are a segment of at most two thirds of it
     std::string start(kSize, '\0');
@@ -41,7 +41,7 @@ class ImageSizes {
     start.resize(static_cast<std::size_t>(in.gcount()));
     return start;
   }
-  /// Of a PNG, up to the end of its size; "" for everything else.
+  /// The start of a PNG, up to the end of its size; "" for everything else.
   static std::string pngStart(const std::string& start) {
     constexpr std::size_t kSize = 24;  // bytes: signature 8, length 4, "IHDR" 4, width 4, height 4
     const bool isPng = start.size() >= kSize && start.starts_with("\x89PNG\r\n\x1a\n") && start.compare(12, 4, "IHDR") == 0;

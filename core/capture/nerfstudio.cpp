@@ -35,7 +35,7 @@ std::set<std::string> nerfWords(const char* text) {
   return {std::istream_iterator<std::string>(in), {}};
 }
 
-/// Of the camera; they stand at the top of the file or in a frame.
+/// Keys of the camera, at the top of the file or in a frame.
 const std::set<std::string> kNerfCameraKeys =
     nerfWords("camera_model is_fisheye w h fl_x fl_y cx cy camera_angle_x camera_angle_y x_fov y_fov k1 k2 k3 k4 p1 p2");
 /// The rest that is read, or that says nothing about the cameras as they are stored: the split of the frames, and how a program
@@ -220,7 +220,7 @@ Lens nerfLens(const NerfKeys& keys, const NerfModel& model) {
   return lens;
 }
 
-/// Of w and h; where one is missing, of the image.
+/// The size by w and h, or by the image if one is missing.
 std::array<int, 2> nerfSize(const NerfKeys& keys, const fs::path& image, capture::ImageSizes& sizes, NerfTally& tally) {
   const std::optional<JsonNode> w = keys.find("w"), h = keys.find("h");
   if (w && h) return {w->integer(), h->integer()};
@@ -234,7 +234,7 @@ std::array<int, 2> nerfSize(const NerfKeys& keys, const fs::path& image, capture
   return size;
 }
 
-/// Focal length along x or y from the angle that the whole image spans: size / 2 = f tan(angle / 2). Nothing where there is none.
+/// Focal length along x or y from the angle across the image: size / 2 = f tan(angle / 2). Nothing without such an angle.
 std::optional<double> nerfFocalOfAngle(const NerfKeys& keys, char axis, int sizePx) {
   std::optional<JsonNode> node = keys.find(std::string("camera_angle_") + axis);
   double unit = 1;
@@ -248,7 +248,7 @@ std::optional<double> nerfFocalOfAngle(const NerfKeys& keys, char axis, int size
   return 0.5 * sizePx / std::tan(0.5 * angle);
 }
 
-/// fl_x (fl_y), else from the angle; nothing where there is neither.
+/// fl_x (fl_y), else from the angle; nothing if there is neither.
 std::optional<double> nerfFocal(const NerfKeys& keys, char axis, int sizePx, const NerfModel& model, NerfTally& tally) {
   constexpr double kOther = 0.01;  // relative: more than rounding; the images were resized or cropped since
   const std::optional<double> ofAngle = nerfFocalOfAngle(keys, axis, sizePx);
@@ -316,7 +316,7 @@ Eigen::Isometry3d nerfPose(const JsonNode& node, NerfContext& context) {
   return worldFromCam.inverse();
 }
 
-/// A path without "./", with slashes also where Windows wrote it.
+/// A path without "./", with slashes even if Windows wrote it.
 std::string nerfPath(const JsonNode& node) {
   if (node.text().empty()) node.fail("the path is empty");
   return fs::path(slashed(node.text())).lexically_normal().generic_string();
@@ -389,7 +389,7 @@ CaptureView readNerfFrame(const JsonNode& frame, NerfContext& context) {
 
 struct NerfPoints {
   std::string named;
-  fs::path file;  ///< empty where it is not there: programs read the cameras without it
+  fs::path file;  ///< empty if it is missing: programs read the cameras without it
 };
 
 /// What ply_file_path names.
@@ -397,7 +397,7 @@ std::optional<NerfPoints> nerfPointsOf(const JsonNode& root, const fs::path& fol
   const std::optional<JsonNode> node = givenNerfPath(root, "ply_file_path");
   if (!node) return std::nullopt;
   NerfPoints points{node->text(), names.other(folder, node->text(), node->file(), node->place())};
-  std::error_code ignored;  // what cannot be asked about is not there
+  std::error_code ignored;  // unreadable counts as missing
   if (!fs::is_regular_file(points.file, ignored)) points.file.clear();
   return points;
 }
@@ -484,7 +484,7 @@ bool nerfTextHasKey(const std::string& text, const std::string& key) {
 /// A file of the format; never throws.
 bool isNerfFile(const fs::path& file) {
   try {
-    std::error_code ignored;  // what cannot be asked about is not there
+    std::error_code ignored;  // unreadable counts as missing
     if (!fs::is_regular_file(file, ignored)) return false;
     char first = ' ';
     std::ifstream in(file, std::ios::binary);
@@ -496,8 +496,8 @@ bool isNerfFile(const fs::path& file) {
   }
 }
 
-/// The files transforms*.json of a folder, the one to read first: transforms.json, else transforms_train.json, else by name. Those of the
-/// original NeRF data are parts of one capture.
+/// The files transforms*.json of a folder, the one to read first: transforms.json, else transforms_train.json, else by name.
+/// Those of the original NeRF data are parts of one capture.
 std::vector<fs::path> nerfFilesIn(const fs::path& folder) {
   std::vector<fs::path> files;
   std::error_code error;  // what cannot be listed holds none
@@ -526,7 +526,7 @@ class NerfstudioReader final : public CaptureReader {
   std::string describe() const override { return "transforms.json of nerfstudio, instant-ngp or the original NeRF data"; }
 
   fs::path recognise(const fs::path& input) const override {
-    std::error_code ignored;  // what cannot be asked about is not there
+    std::error_code ignored;  // unreadable counts as missing
     if (!fs::is_directory(input, ignored)) return isNerfFile(input) ? input : fs::path();
     if (const fs::path file = input / "transforms.json"; isNerfFile(file)) return file;
     const std::vector<fs::path> files = nerfFilesIn(input);
@@ -569,7 +569,7 @@ class NerfstudioReader final : public CaptureReader {
     return capture;
   }
 
-  /// Of ply_file_path, without observations.
+  /// Points of ply_file_path, without observations.
   std::vector<CaptureTrack> tracks(const Capture& capture, const CaptureOptions& options) const override {
     const JsonNode root = JsonNode::parse(readFile(capture.file, Limit::JsonMegabytes), capture.file.string());
     capture::FileNames names(options.rights);

@@ -59,7 +59,7 @@ NvmFixed nvmFixed(const Row& row, std::size_t word, const std::string& file) {
   return fixed;
 }
 
-/// The name of a camera's row, whose last `numbers` words are none of it. VisualSFM writes a quotation mark for each blank, other
+/// The name of a camera's row, without the row's last `numbers` words. VisualSFM writes a quotation mark for each blank, other
 /// programs write the blank itself; on Windows folders end with a backslash.
 std::string nvmName(const Row& row, std::size_t numbers) {
   const std::string_view first = row.words.front(), last = row.words[row.words.size() - numbers - 1];
@@ -123,7 +123,7 @@ std::optional<std::int64_t> nvmCountOf(const Row& row) {
   return row.words.size() == 1 ? io::integerOf(row.words.front()) : std::nullopt;
 }
 
-/// What stands behind the first model: others, then VisualSFM's list of the images without a pose (a model without points), then
+/// What follows the first model: others, then VisualSFM's list of the images without a pose (a model without points), then
 /// a 0 and the numbers of meshes. None of it is read, so a damaged end is no error.
 void skipOtherNvmModels(RowReader& rows, NvmModel& model) {
   std::size_t models = 0, cameras = 0, unposed = 0;
@@ -286,7 +286,7 @@ class NvmReader : public CaptureReader {
   std::string describe() const override { return "NVM of VisualSFM"; }
 
   fs::path recognise(const fs::path& input) const override {
-    std::error_code ignored;  // what cannot be asked about is not there
+    std::error_code ignored;  // unreadable counts as missing
     if (fs::is_directory(input, ignored)) {
       const std::vector<fs::path> files = nvmFilesIn(input);
       return files.empty() ? fs::path() : files.front();

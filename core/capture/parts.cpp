@@ -54,7 +54,7 @@ Camera cameraOf(int width, int height, double fx, double fy, double cx, double c
 }
 
 std::array<int, 2> sizeOfImage(const fs::path& image, const std::string& file, const std::string& place) {
-  std::error_code ignored;  // what cannot be asked about is not there
+  std::error_code ignored;  // unreadable counts as missing
   if (!fs::is_regular_file(image, ignored))
     throw InputError(file, place,
                      "does not say the size of its image, and there is no '" + image.string() +

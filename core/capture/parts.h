@@ -14,11 +14,11 @@
 
 namespace glint::capture {
 
-/// Added to a coordinate whose origin is the corner of the first pixel (COLMAP, nerfstudio) gives ours, whose origin is its centre.
+/// Turns coordinates from the corner of the first pixel (COLMAP, nerfstudio) into ours, from its centre, when added.
 inline constexpr double kFromCorner = -0.5;
 
-/// Rotation of a quaternion of any length but 0. A length that is off by more than 1e-3 was hardly meant as one: `warnings` says so.
-/// InputError where it is 0 or not finite.
+/// Rotation of a quaternion of any length but 0. A length that is off by more than 1e-3 was hardly meant as one: `warnings` says
+/// so. InputError if it is 0 or not finite.
 Eigen::Quaterniond unitQuaternion(double w, double x, double y, double z, const std::string& file, const std::string& place,
                                   std::vector<std::string>& warnings);
 
@@ -30,8 +30,8 @@ double bounded(double value, double most, const std::string& file, const std::st
 Camera cameraOf(int width, int height, double fx, double fy, double cx, double cy, const Lens& lens, const std::string& file,
                 const std::string& place);
 
-/// Width and height of an image file, without decoding it. InputError where it is missing or no image: programs whose files do not
-/// say the size need it ("the file does not say the size of its images; name their folder by --photographs").
+/// Width and height of an image file, without decoding it. InputError if it is missing or no image: programs whose files do
+/// not say the size need it ("the file does not say the size of its images; name their folder by --photographs").
 std::array<int, 2> sizeOfImage(const std::filesystem::path& image, const std::string& file, const std::string& place);
 
 /// The folders `models*` of the data set whose scene_camera.json this is, in the order of their names. They may be links.
@@ -41,7 +41,7 @@ std::vector<std::filesystem::path> modelFoldersOfBop(const std::filesystem::path
 /// one name that differ.
 void orderByName(Capture& capture);
 
-/// Lines or frames of one kind that are passed over: a file may have thousands of them.
+/// Skipped lines or frames of one kind: a file may have thousands of them.
 class PassedOver {
  public:
   void add(const std::string& place) {
@@ -85,13 +85,13 @@ class BadLines {
   std::optional<InputError> first_;
 };
 
-/// Why a frame or a line is passed over, for PassedOver::tell().
+/// Why a frame or a line is skipped, for PassedOver::tell().
 inline constexpr const char* kNoFinitePose = "no finite pose (tracking was lost)";
 inline constexpr const char* kCutPose = "has fewer numbers than a pose (a cut line?)";
 inline constexpr const char* kSaidBefore = "says the same as a line before";
 
-/// Whether a pose, or a part of it, is null, NaN or infinite (JsonNode reads all of them as null): programs write it where they have lost
-/// the camera.
+/// Whether a pose, or a part of it, is null, NaN or infinite (JsonNode reads all of them as null): programs write it where they
+/// have lost the camera.
 bool isLostPose(const JsonNode& pose);
 /// Whether a matrix has fewer than three rows, or one of them fewer than four numbers.
 bool isCutPose(const JsonNode& pose);
@@ -102,7 +102,7 @@ struct Row {
   std::vector<std::string_view> words;
   std::string place() const { return "line " + std::to_string(number); }
 };
-/// The word as a number. InputError where it is missing or not a finite number ("needs 8 numbers, has 7").
+/// The word as a number. InputError if it is missing or not a finite number ("needs 8 numbers, has 7").
 double numberAt(const Row& row, std::size_t word, const std::string& file);
 long long integerAt(const Row& row, std::size_t word, const std::string& file);
 /// Whether one of the words from this one on, at most `words` of them, is NaN or infinite.

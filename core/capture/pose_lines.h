@@ -15,12 +15,12 @@
 
 namespace glint {
 
-/// A camera of a sequence: of a live stream, a video, a folder of photographs. Two kinds of lines, told apart by their first sign:
+/// A camera of a live stream, a video or a folder of photographs. The first sign of a line tells its kind:
 ///   {"id": "0007", "time": 1.23, "camera_from_world": [4x4], "camera": {optional}}      JSON, keys as in scene files
 ///   1305031102.1758 tx ty tz qx qy qz qw                                                TUM: camera to world, quaternion w last
 /// Times in seconds (others: capture::secondsOf); lengths in the unit of the scene.
 struct PoseLine {
-  std::string id;              ///< as the line writes it; where it names none (TUM), the time as it stands there. Never empty
+  std::string id;              ///< as the line writes it; if it has none (TUM), the time as written. Never empty
   std::optional<double> time;  ///< s
   Eigen::Isometry3d cameraFromWorld = Eigen::Isometry3d::Identity();
   std::optional<Camera> camera;  ///< where the line has one; its pose is `cameraFromWorld`
@@ -41,8 +41,8 @@ class CutPose : public InputError {
 /// The longest line in bytes: one with a camera has 600.
 inline constexpr std::size_t kLongestPoseLine = 65536;
 
-/// Reads poses one at a time, as soon as their line has ended: lines come from others, and may come live. Blank lines and comments
-/// (#) are passed over. Memory is bounded, whatever comes.
+/// Reads poses one at a time, as soon as their line has ended: lines come from others, and may come live. Blank lines and
+/// comments (#) are skipped. Memory is bounded, whatever the input.
 class PoseLineReader {
  public:
   /// @param in    outlives the reader
@@ -52,7 +52,7 @@ class PoseLineReader {
   /// The next pose; nothing at the end. After a throw about a line, the next call reads the line behind it.
   /// @throw LostPose    for a line that says that there is no pose
   /// @throw CutPose     for a line with fewer numbers than a pose, or of JSON that the end of the file cuts
-  /// @throw InputError  (name, "line 7" or "line 7: camera_from_world[0]") for a line that is none, is longer than kLongestPoseLine,
+  /// @throw InputError  (name, "line 7" or "line 7: camera_from_world[0]") for a line without pose, longer than kLongestPoseLine,
   ///                    or whose pose is not rigid (core/geometry/pose_json.h); with the name alone where the file cannot be read
   std::optional<PoseLine> next();
 
@@ -80,8 +80,8 @@ class PoseLineReader {
   bool ended_ = false;
 };
 
-/// All poses of a file, in its order. Lines without a whole pose (LostPose, CutPose) and lines that say the same again are passed over, with a line in
-/// `warnings` for each kind.
+/// All poses of a file, in its order. Lines without a whole pose (LostPose, CutPose) and lines that say the same again are passed
+/// over, with a line in `warnings` for each kind.
 /// @throw InputError for the first line that is wrong, for two poses of one id, and where there is no pose at all
 std::vector<PoseLine> readPoseLines(const std::filesystem::path& file, std::vector<std::string>& warnings);
 

@@ -42,7 +42,7 @@ bool looksLikeImageName(const fs::path& file) {
   return std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end();
 }
 
-/// Directly in the folder, by name. Hidden files are none: systems leave previews there ("._0001.jpg").
+/// Directly in the folder, by name. Hidden files do not count: systems leave previews there ("._0001.jpg").
 std::vector<fs::path> filesIn(const fs::path& folder, bool (*isOne)(const fs::path&)) {
   std::vector<fs::path> files;
   std::error_code error;  // what cannot be listed holds none
@@ -92,7 +92,7 @@ class PosedPictures {
     return isVideo_ ? capture::counted(n, "picture", "pictures") : capture::counted(n, "image", "images");
   }
 
-  /// A line without a pose is passed over; by order the images behind it would take poses of others.
+  /// A line without a pose is skipped; by order the images behind it would take poses of others.
   void requireNoneLost() const {
     std::ifstream in(options_.poses, std::ios::binary);
     PoseLineReader reader(in, poseFile());
@@ -246,7 +246,7 @@ class PosedPictures {
       return formatted(" (EXIF: %g mm on 35 mm film, about --camera %.0f,%.0f,%g,%g without distortion)", *mm, k(0, 0), k(1, 1),
                        k(0, 2), k(1, 2));
     } catch (const InputError&) {
-      return "";  // it is said where the picture is read
+      return "";  // reading the picture reports it
     }
   }
 
@@ -265,7 +265,7 @@ class PosedPictures {
                              : ownCameras_ == n ? "intrinsics are those of the poses' lines"
                                                 : "intrinsics are those of " + std::to_string(ownCameras_) +
                                                       " of the poses' lines, else those of --camera");
-    // Of a video a few pictures are meant mostly; of a folder all.
+    // People usually mean a few pictures of a video, but all of a folder.
     if (const std::size_t out = pictures_.size() - n; out > 0)
       (isVideo_ ? capture_.facts : capture_.warnings)
           .push_back(what(out) + " of " + std::to_string(pictures_.size()) + (out == 1 ? " has" : " have") + " no pose and " +
@@ -303,7 +303,7 @@ class ImagesReader : public CaptureReader {
   std::string name() const override { return "images"; }
   std::string describe() const override { return "folder of images with --poses"; }
   fs::path recognise(const fs::path& input) const override {
-    std::error_code ignored;  // what cannot be asked about is not there
+    std::error_code ignored;  // unreadable counts as missing
     if (!fs::is_directory(input, ignored))
       return looksLikeImageName(input) && fs::is_regular_file(input, ignored) ? input : fs::path();
     const std::vector<fs::path> images = filesIn(input, looksLikeImageName);
@@ -328,7 +328,7 @@ class VideoReader : public CaptureReader {
   std::string name() const override { return "video"; }
   std::string describe() const override { return "video with --poses"; }
   fs::path recognise(const fs::path& input) const override {
-    std::error_code ignored;  // what cannot be asked about is not there
+    std::error_code ignored;  // unreadable counts as missing
     if (!fs::is_directory(input, ignored)) return looksLikeVideo(input) ? input : fs::path();
     const std::vector<fs::path> videos = filesIn(input, looksLikeVideo);
     return videos.size() == 1 ? videos.front() : fs::path();

@@ -50,10 +50,10 @@ inline std::size_t possibleCount(long long count, std::size_t bytesEach, std::si
   return n;
 }
 
-/// The first line without its line break, as far as it matters for what the file is; "" where it cannot be read.
+/// The first line without its line break, as far as it matters for what the file is; "" if it cannot be read.
 inline std::string firstLineOf(const std::filesystem::path& file) {
   constexpr std::size_t kMost = 256;  // bytes; the headers that are looked for are shorter
-  std::error_code ignored;            // what cannot be asked about is not there
+  std::error_code ignored;            // unreadable counts as missing
   if (!std::filesystem::is_regular_file(file, ignored)) return {};
   std::ifstream in(file, std::ios::binary);
   std::string start(kMost, '\0');
@@ -84,7 +84,7 @@ inline std::string someOf(const std::vector<std::string>& names) {
   return names.size() > kMost ? text + ", ... (" + std::to_string(names.size()) + " in all)" : text;
 }
 
-/// Where the view of this name stands in Capture::views.
+/// Index of the view of this name in Capture::views.
 inline std::map<std::string, int> viewsByName(const Capture& capture) {
   std::map<std::string, int> indices;
   for (std::size_t i = 0; i < capture.views.size(); ++i) indices[capture.views[i].name] = static_cast<int>(i);

@@ -16,7 +16,7 @@
 #include "io/text_scan.h"
 
 // The RGB-D benchmark of TUM (Sturm et al., IROS 2012). Lists of images: `timestamp path`. Trajectory: `timestamp tx ty tz qx
-// qy qz qw`, where the colour camera's optical centre stands and how it is turned, in the world of the motion capture: camera
+// qy qz qw`, the place and rotation of the colour camera's optical centre, in the world of the motion capture: camera
 // to world, with the axes of OpenCV. Times are in seconds.
 
 namespace glint {
@@ -36,7 +36,7 @@ struct TumImage {
 struct TumPose {
   double time = 0;
   Eigen::Vector3d position;
-  Eigen::Vector4d xyzw;  ///< as it stands in the file
+  Eigen::Vector4d xyzw;  ///< as in the file
   std::string place;
 };
 
@@ -128,7 +128,7 @@ class TumReading {
     const fs::path poseFile = source(kTumPoses);
     capture::PassedOver lost, cut;
     poses_ = readTumPoses(poseFile, lost, cut);
-    std::error_code ignored;  // what cannot be asked about is not there
+    std::error_code ignored;  // unreadable counts as missing
     const bool hasDepth = fs::exists(capture_.folder / kTumDepth, ignored);
     if (hasDepth) depths_ = readTumImages(source(kTumDepth), capture_.warnings);
     addViews(poseFile.string());
@@ -191,7 +191,7 @@ class TumReading {
   /// One camera took all of them. Photographs that are missing are named by what needs them.
   void setCameras() {
     const std::string file = capture_.file.string();
-    std::error_code ignored;  // what cannot be asked about is not there
+    std::error_code ignored;  // unreadable counts as missing
     capture::ImageSizes sizes;
     const CaptureView* first = nullptr;
     std::array<int, 2> size{};
@@ -254,7 +254,7 @@ class TumReading {
 
 /// Whether the first line that is no comment is a time and a path: enough to tell it from other lists, and cheap.
 bool looksLikeTumList(const fs::path& file) {
-  std::error_code ignored;  // what cannot be asked about is not there
+  std::error_code ignored;  // unreadable counts as missing
   if (!fs::is_regular_file(file, ignored)) return false;
   constexpr std::size_t kStart = 4096;  // bytes: the comments of the benchmark's files have 100
   std::string start(kStart, '\0');
@@ -272,11 +272,11 @@ class TumReader : public CaptureReader {
 
   fs::path recognise(const fs::path& input) const override {
     try {
-      std::error_code ignored;  // what cannot be asked about is not there
+      std::error_code ignored;  // unreadable counts as missing
       const bool isFolder = fs::is_directory(input, ignored);
       const fs::path list = isFolder ? input / "rgb.txt" : input;
       if (list.filename() != "rgb.txt" || !looksLikeTumList(list)) return {};
-      // Who names the list itself is told that the poses are missing; in a folder it might be a list of another program.
+      // For the list itself, report that the poses are missing; a list in a folder might be another program's.
       if (isFolder && !fs::is_regular_file(input / kTumPoses, ignored)) return {};
       return list;
     } catch (const std::exception&) {  // no memory, a path that the system refuses: not recognised

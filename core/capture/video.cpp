@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr double kSameTime = 0.5e-3;  // s: half of the coarsest clock (Matroska counts milliseconds)
-constexpr int kMostSide = 65536;      // px, as of images
+constexpr int kMostSide = 65536;      // px, the limit of images
 constexpr double kMegaPixel = 1e6;
 constexpr int kSeekAhead = 64;   // pictures: a decoder is sooner there by going on than by a seek to the key frame before
 constexpr int kKeptBefore = 16;  // pictures before the one that is asked for that are kept, for threads that run ahead of others
@@ -179,7 +179,7 @@ void requireVideoSize(double width, double height, const std::string& file) {
 }  // namespace
 
 bool looksLikeVideo(const fs::path& file) {
-  std::error_code ignored;  // what cannot be asked about is none; a pipe would make the program wait
+  std::error_code ignored;  // no video if its kind is unknown; a pipe would make the program wait
   if (!fs::is_regular_file(file, ignored)) return false;
   constexpr std::size_t kStart = 12;  // bytes: RIFF, length, kind
   std::string start(kStart, '\0');

@@ -15,7 +15,7 @@ namespace glint {
 /// Which picture of a video is meant.
 struct VideoPicture {
   int index = 0;       ///< from 0, in the order in which a player shows them
-  double seconds = 0;  ///< on the video's own clock, which begins with 0; tells a seek that went astray
+  double seconds = 0;  ///< on the video's own clock, which begins with 0; detects a failed seek
   friend bool operator==(const VideoPicture&, const VideoPicture&) = default;
 };
 
@@ -27,11 +27,11 @@ struct VideoContent {
   int withoutTime = 0;          ///< pictures for which the video has no time: taken one period after the one before
 };
 
-/// Whether the first bytes are those of a container that is read here: MP4 and MOV, Matroska and WebM, AVI. Playlists, which name other
-/// files, are none. False where the file cannot be read.
+/// Whether the first bytes are those of a container that is read here: MP4 and MOV, Matroska and WebM, AVI. Playlists do not
+/// count, because they name other files. False if the file cannot be read.
 bool looksLikeVideo(const std::filesystem::path& file);
 
-/// Goes through all pictures, without converting them. InputError: no video (looksLikeVideo), nothing decodes, more than kMostPictures,
+/// Visits all pictures without converting them. InputError: no video (looksLikeVideo), nothing decodes, more than kMostPictures,
 /// a picture of more than the limit of pixels, pictures of several sizes, times that do not rise. CodecsMissing, as videoPicture.
 VideoContent readVideoContent(const std::filesystem::path& file);
 inline constexpr int kMostPictures = 200'000;  // two hours at 25 per second

@@ -17,12 +17,12 @@ struct PosedImage {
   std::string mask;   ///< transforms.json only; "" = none
 };
 
-/// nerfstudio's transforms.json, with 17 digits. InputError (file, place frames[i]) for a lens that nerfstudio does not have, or skew.
+/// nerfstudio's transforms.json, with 17 digits. InputError (file, place frames[i]) for skew or a lens that nerfstudio lacks.
 /// @param points  relative path of a point cloud; "" = none
 void writeTransforms(const std::vector<PosedImage>& images, const std::filesystem::path& file, const std::string& points = "");
 
 /// COLMAP's text model (cameras.txt, images.txt, points3D.txt without points) in a folder, with 17 digits, whole or not at all.
-/// Cameras that are equal become one. InputError (folder, name of the image) for skew or VISUALSFM's lens, which COLMAP does not have.
+/// Cameras that are equal become one. InputError (folder, name of the image) for skew or VISUALSFM's lens, which COLMAP lacks.
 void writeColmapText(const std::vector<PosedImage>& images, const std::filesystem::path& folder);
 
 }  // namespace glint

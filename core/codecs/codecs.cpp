@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The folder that a library was loaded from, also where its path was relative and the program has changed its folder since.
+/// The folder that a library was loaded from, even if its path was relative and the program has changed its folder since.
 fs::path folderOf(const link_map& library) {
   if (library.l_name[0] == '/') return fs::path(library.l_name).parent_path();
   void* const handle = ::dlopen(library.l_name, RTLD_LAZY | RTLD_NOLOAD);
@@ -27,8 +27,8 @@ fs::path folderOf(const link_map& library) {
   return known ? folder.data() : "";
 }
 
-/// Beside the library that this code is part of. A test program that holds the code itself has it in lib, beside its own folder. Nowhere
-/// else: a file of that name may be of another version.
+/// Beside the library that this code is part of. A test program that holds the code itself has it in lib, beside its own folder.
+/// Nowhere else: a file of that name may be of another version.
 fs::path codecLibrary() {
   Dl_info here{};
   link_map* library = nullptr;

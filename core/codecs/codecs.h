@@ -10,33 +10,33 @@ namespace cv {
 class Mat;
 }
 
-/// Images and videos through OpenCV's modules imgcodecs and videoio. These bring two hundred libraries (GDAL's, FFmpeg's), which took
-/// four fifths of the start of a program that may never need them. So they are linked by a library of their own, libglint-codecs, which the
-/// first call of a function below loads from the folder of libglint-core. Pixels of PNG and JPEG files are read without it
-/// (core/scene/image_decode.h). The functions may run on several threads at once; a decoder or an encoder belongs to one thread at a time.
-/// All functions throw CodecsMissing.
+/// Images and videos through OpenCV's modules imgcodecs and videoio. These bring two hundred libraries (GDAL's, FFmpeg's), which
+/// took four fifths of the start of a program that may never need them. So they are linked by a library of their own,
+/// libglint-codecs, which the first call of a function below loads from the folder of libglint-core. Pixels of PNG and JPEG files
+/// are read without it (core/scene/image_decode.h). The functions may run on several threads at once; a decoder or an encoder
+/// belongs to one thread at a time. All functions throw CodecsMissing.
 namespace glint {
 
-/// libglint-codecs is missing, cannot be loaded or is of another version. One line with its file. Not an InputError: whoever goes on
-/// without a file that cannot be read must not go on without all of them.
+/// libglint-codecs is missing, cannot be loaded or is of another version. One line with its file. Not an InputError: a program
+/// that goes on without one unreadable file must not go on without all of them.
 class CodecsMissing : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Loads what the functions below need, unless that was done. Call it where an exception of theirs would be taken for a damaged file.
+/// Loads what the functions below need, once. Call it where an exception of theirs would be taken for a damaged file.
 void loadCodecs();
 
-/// All channels in OpenCV's order (blue first), in the file's own depth, as cv::imdecode with IMREAD_UNCHANGED gives them. TIFF and EXR files that
-/// OpenCV cannot read are decoded by libtiff and OpenEXR themselves, without alpha and half floats as floats: of EXR files one layer
-/// (own_decoders.h).
-/// @param reason  takes why a whole file of a known format is refused
+/// All channels in OpenCV's order (blue first), in the file's own depth, as cv::imdecode with IMREAD_UNCHANGED gives them. TIFF
+/// and EXR files that OpenCV cannot read are decoded by libtiff and OpenEXR themselves, without alpha and half floats as floats:
+/// of EXR files one layer (own_decoders.h).
+/// @param reason  says why a whole file of a known format is refused
 /// @return empty: refused, or not an image
 /// @throws std::exception  damaged data
 cv::Mat decodeOtherFormat(const std::string& bytes, std::string& reason);
 
 /// The one channel of depth (Z or V) of an EXR file, whatever else it has: floats.
-/// @param reason  takes why there is no depth in it
+/// @param reason  says why there is no depth in it
 /// @return empty: refused, or not an EXR file
 /// @throws std::exception  damaged data
 cv::Mat decodeExrDepth(const std::string& bytes, std::string& reason);
@@ -61,7 +61,7 @@ class VideoDecoder {
   virtual void close() = 0;
   /// @param picture  from 0, counted by a constant rate. @return false: this video cannot
   virtual bool seek(int picture) = 0;
-  /// Goes on by one picture. @return false: there is none
+  /// Goes on by one picture. @return false: there are no more
   virtual bool grab() = 0;
   /// The pixels of the picture that was grabbed last, blue first.
   virtual bool retrieve(cv::Mat& picture) = 0;

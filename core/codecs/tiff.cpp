@@ -40,7 +40,7 @@ toff_t seekTiff(thandle_t handle, toff_t offset, int from) {
 
 int closeNothing(thandle_t) { return 0; }
 toff_t sizeOfTiff(thandle_t handle) { return tiffBytes(handle).bytes->size(); }
-int saidNothing(TIFF*, void*, const char*, const char*, va_list) { return 1; }  // 1: nobody else need say it
+int saidNothing(TIFF*, void*, const char*, const char*, va_list) { return 1; }  // 1: handled
 
 struct CloseTiff {
   void operator()(TIFF* t) const { TIFFClose(t); }

@@ -71,10 +71,10 @@ class Candidates {
     std::sort(worst.begin(), worst.end());
     for (std::size_t i = 0; i < worst.size() && i < kMostExcluded; ++i) {
       if (i > 0 && worst[i].first == 0) break;  // one is tried even where none stands out
-      exclude({worst[i].second}, worst[i].first == 0 ? "no frame stands out; the first one" : "it stands against the model most");
+      exclude({worst[i].second}, worst[i].first == 0 ? "no frame stands out; the first one" : "it contradicts the model most");
     }
     if (worst.size() > kFewestViews + 1 && worst[1].first < 0)
-      exclude({worst[0].second, worst[1].second}, "the two frames that stand against the model most");
+      exclude({worst[0].second, worst[1].second}, "the two frames that contradict the model most");
   }
   void exclude(std::vector<int> frames, const std::string& why) {
     frames.insert(frames.end(), r_.request.excluded.begin(), r_.request.excluded.end());  // the flag replaces those
@@ -121,7 +121,7 @@ class Candidates {
     for (const std::string& lobe : lobes) setOther("fit.lobe", lobe, "another lobe");
   }
 
-  /// Its fits have a lobe, or there is none to tell and it reconstructs no ellipsoid.
+  /// Its fits have a lobe; without fits, it reconstructs no ellipsoid.
   bool mayHaveLobe() const {
     const auto result = r_.models.find(model_.id());
     if (result != r_.models.end())

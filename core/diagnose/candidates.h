@@ -13,9 +13,9 @@ struct CandidateChange {
   std::string why;
 };
 
-/// Changes worth a trial for this model, quick and promising ones first: filters of its spurious predictions, solvers, the highlights that stand
-/// against it left out, readings of the surface, lobes, training frames. Other models are not among them; nor is what finds other highlights
-/// (detect.*), which would change what is measured; nor what only hides a failure (fit.most_residual).
+/// Changes worth a trial for this model, quick and promising ones first: filters of its spurious predictions, solvers, dropped
+/// highlights that contradict it, readings of the surface, lobes, training frames. Leaves out other models, settings that change
+/// what is measured by finding other highlights (detect.*), and what only hides a failure (fit.most_residual).
 /// @param inspection  complete, with this model
 std::vector<CandidateChange> candidateChanges(const Inspection& inspection, const std::string& model);
 

@@ -20,7 +20,7 @@ constexpr double kNotFar = 5;  // times the least error: a change may make a mod
 
 bool isAsItIs(const Change& change) { return !change.train && !change.set && !change.exclude; }
 
-/// Null where the model was not computed as it is.
+/// Null if the model was not computed as it is.
 const UnseenError* errorOf(const Diagnosis& d, const std::string& model) {
   const auto it = std::find_if(d.measured.begin(), d.measured.end(),
                                [&](const Measured& m) { return isAsItIs(m.change) && m.change.model == model; });
@@ -118,7 +118,7 @@ class Adviser {
     d_.measured.push_back({{.model = model}, modelByName(model).assumption(), std::move(error)});
   }
 
-  /// Runs the request with a change, for one model alone. Nothing where the program refuses that combination.
+  /// Runs the request with a change, for one model alone. Nothing if the program refuses that combination.
   /// @param previous  what has most in common with it: only the rest is computed
   Results measured(const Inspection& previous, const Change& change, const std::string& model, UnseenError& error) {
     const ProgressFn progress = step("try " + flagsOf(change));
@@ -147,7 +147,7 @@ class Adviser {
     }
   }
 
-  /// What may help the best model, and others that are not far from it: their first changes first. Where none answers, that of the present one.
+  /// What may help the best model and those close to it, their first changes first. If none answers, the present one.
   std::vector<CandidateChange> changesWorthATrial() {
     std::vector<std::pair<double, std::string>> bases;
     for (const auto& [model, of] : results_) {
@@ -176,8 +176,8 @@ class Adviser {
     if (d_.now.observed() == 0 || nothingIsLeft()) return;
     const std::vector<CandidateChange> all = changesWorthATrial();
     total_ = done_ + int(all.size() + r_.request.models.size()) + 1;
-    std::vector<std::pair<Change, Results>>
-        onFrames;  // by other training frames, whatever the model: their lobe costs most of a trial
+    // By other training frames, whatever the model: their lobe costs most of a trial.
+    std::vector<std::pair<Change, Results>> onFrames;
     for (const CandidateChange& c : all) {
       const Change frames{.train = c.change.train, .exclude = c.change.exclude};
       const auto known = std::find_if(onFrames.begin(), onFrames.end(), [&](const auto& entry) { return entry.first == frames; });
@@ -200,7 +200,7 @@ class Adviser {
     tell();
   }
 
-  /// It has seen the training frames alone, so that it may choose another model than held-out frames do. No question where one model answers.
+  /// It sees training frames only, so it may choose another model than held-out frames do. Not asked if one model answers.
   void askAuto() {
     const auto answers = std::count_if(results_.begin(), results_.end(),
                                        [&](const auto& entry) { return errorOf(d_, entry.first)->matched() > 0; });

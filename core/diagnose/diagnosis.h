@@ -25,7 +25,7 @@ struct Change {
 std::string flagsOf(const Change& change);
 /// "use limit-angle", "set light.solver = triangulated".
 std::string wordsOf(const Change& change);
-/// The request with the change. InputError where the scene does not know a frame.
+/// The request with the change. InputError if the scene does not know a frame.
 InspectionRequest with(InspectionRequest request, const Change& change, const Scene& scene);
 
 /// One state that was computed: a model as it is (the model alone is set), or with one change.
@@ -49,44 +49,44 @@ struct ModelDiagnosis {
   std::string model;
   std::string status;  ///< of its fits, as every table says it: "ok", "poor", "failed"
   UnseenError error;   ///< as it is now
-  std::vector<std::string>
-      causes;  ///< in words, weightiest first; none where it is ok, misses nothing and is off by at most kLargestExpectedPct
+  /// In words, weightiest first; none if it is ok, misses nothing and is off by at most kLargestExpectedPct.
+  std::vector<std::string> causes;
   std::vector<HighlightEvidence> evidence;
-  std::vector<FitTrace> fits;  ///< how they went; none where the status is ok
+  std::vector<FitTrace> fits;  ///< how they went; none if the status is ok
 };
 
-/// What to do about a sequence: one verdict, at most three remedies, and what both stand on.
+/// What to do about a sequence: one verdict, at most three remedies, and the evidence for both.
 struct Diagnosis {
   std::string present;                 ///< the model whose state is to be beaten
   UnseenError now;                     ///< of that state
   std::string best;                    ///< the model with the smallest error, settings as they are; "" = none answers
   std::string verdict;                 ///< one sentence
   std::vector<Remedy> remedies;        ///< best first, of different kinds
-  std::vector<std::string> notes;      ///< what the verdict stands on, one sentence each
+  std::vector<std::string> notes;      ///< reasons for the verdict, one sentence each
   std::vector<ModelDiagnosis> models;  ///< those of the request, in its order; filled last
   std::vector<Measured> measured;      ///< models as they are first
   bool complete = false;               ///< everything was tried that was to be
   int tried = 0, known = 0;            ///< changes that were run for this, and that could have been
 };
-/// Makes the advice for another present model from what was measured: at once. A remedy beats the present state, and with more than another model
-/// also every model as it is, beyond chance (isBetter).
+/// Makes the advice for another present model from what was measured: at once. A remedy beats the present state, and with more
+/// than another model also every model as it is, beyond chance (isBetter).
 /// @param present  "" or one that was not measured = as before, at first the best one
 void adviseFor(Diagnosis& diagnosis, const std::string& present);
 inline constexpr std::size_t kMostRemedies = 3;
 
 struct DiagnoseOptions {
   std::string present;  ///< the model on screen; "" or one that was not computed = the best of those that were
-  /// Settings, training frames and exclusions that are measured on the best model, and a third of that on each other one whose error is at most five
-  /// times as large: the bound of the work.
+  /// Settings, training frames and exclusions that are measured on the best model, and a third of that on each other one whose
+  /// error is at most five times as large: the bound of the work.
   int mostTried = 6;
   bool askAuto = true;  ///< whether the automatic choice is made, too, and compared: a note; takes longest
   /// Called with the diagnosis as far as it is: at once with what the computed models tell, then whenever something was measured.
   std::function<void(const Diagnosis&)> soFar;
 };
 
-/// Compares the computed models, then measures others and what helps the best of them, each by a run of its own with everything that the user
-/// would see (inspect()). A remedy that was chosen by what held-out frames show makes them less independent: `evaluate` on other frames judges it.
-/// Progress counts the trials. Stopped.
+/// Compares the computed models, then measures others and what helps the best of them, each by a run of its own with everything
+/// that the user would see (inspect()). A remedy that was chosen by what held-out frames show makes them less independent:
+/// `evaluate` on other frames judges it. Progress counts the trials. Stopped.
 /// @param inspection  complete
 Diagnosis diagnose(const Inspection& inspection, const DiagnoseOptions& options = {}, const ProgressFn& progress = {});
 

@@ -16,7 +16,7 @@
 namespace glint {
 namespace {
 
-// Of two limit angles of one light. Those of the shipped sessions differ by a factor of at most 1.02 (`glint diagnose --json`, limit_angle_deg).
+// Factor between two limit angles of one light; at most 1.02 in shipped sessions (`glint diagnose --json`, limit_angle_deg).
 constexpr double kConflict = 1.25;
 constexpr double kOutlier = 1.12;    // of a limit angle from the median of its light: half of that, as a ratio
 constexpr double kLargeShare = 0.1;  // of the radius that a residual leaves: the default of fit.most_residual
@@ -29,7 +29,7 @@ std::vector<TrainingView> viewsOf(const Inspection& inspection, const FitKey& ke
   return views;
 }
 
-/// The common light; where there is none, that of the peaks alone, so that a bundle that fails can be explained.
+/// The common light; if its bundle failed, the light of the peaks alone, so that the failure can be explained.
 Outcome<LightEstimate> lightAnyway(const Inspection& inspection, const FitKey& key) {
   const auto known = inspection.lights.find(key);
   if (known != inspection.lights.end() && known->second) return known->second;
@@ -102,7 +102,7 @@ double medianOf(const std::vector<HighlightEvidence>& all, const std::string& li
   return values.empty() ? std::nan("") : upperMedian(std::move(values));
 }
 
-/// Of the contour that the residual is measured on: the canonical one of a bent surface is several times as large as the highlight.
+/// Diameter of the residual's contour: on a bent surface the canonical one is several times as large as the highlight.
 double fittedRadiusPx(const TrainingView& view, const HighlightModel& model) {
   const std::optional<ConicView> outline = model.hasOutlines() ? model.outlineIn(view) : std::nullopt;
   return outline ? std::sqrt(outline->ellipse.semiAxes.prod()) : radiusPx(view.highlight.contour);

@@ -27,8 +27,8 @@ bool isOutside(const Camera& camera, const Polyline& contour) {
   return 2 * inside < static_cast<long>(contour.points.size());
 }
 
-/// What hides the lamp from the middle of the contour on the surface, or how flat it is seen; "" where neither does, or where that misses the
-/// surface. A brightest point would not do: `primal` predicts outlines that no point of the surface made.
+/// What hides the lamp from the middle of the contour on the surface, or how flat it is seen; "" if neither does, or where
+/// that misses the surface. A brightest point would not do: `primal` predicts outlines that no point of the surface made.
 std::string geometryAgainst(const Inspection& inspection, const FrameComparison& c, const PredictedHighlight& h) {
   const Camera& camera = inspection.scene->frames[std::size_t(c.frame)].camera;
   const Eigen::Vector3d eye = camera.centreInWorld();
@@ -46,7 +46,7 @@ std::string geometryAgainst(const Inspection& inspection, const FrameComparison&
   return "";
 }
 
-/// What detection said of a spot there; "" where it saw none.
+/// What detection said of a spot there; "" if it saw none.
 std::string detectionAgainst(const FrameEvidence& seen, const Camera& camera, const PredictedHighlight& h) {
   const double radius = kNear * std::max(2.0, radiusPx(h.contour));
   const Pixel middle = camera.distorted(centroid(h.contour));

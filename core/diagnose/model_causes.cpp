@@ -33,7 +33,7 @@ std::string goneAstray(const Inspection& r, const UnseenError& error) {
   return text + (astray.size() > kMostNamed ? formatted(" and %zu more", astray.size() - kMostNamed) : "");
 }
 
-/// "" where one limit angle fits all highlights of a light, or none is asked for.
+/// "" if one limit angle fits all highlights of a light, or none is asked for.
 std::string twoLimitAngles(const Inspection& r, const HighlightModel& model, const std::vector<HighlightEvidence>& evidence) {
   const LimitConflict c = limitConflict(evidence);
   const std::vector<ModelResult::Fit>& fits = r.models.at(model.id()).fits;

@@ -7,7 +7,7 @@
 
 namespace glint {
 
-/// Why a model is as it is: its fits, the highlights that stand against it, the views that it gets wrong.
+/// Why a model is ok, poor or failed: its fits, the highlights that contradict it, the views that it gets wrong.
 /// @param inspection  complete, with this model
 /// @param error       of it, in views that its fit did not see
 ModelDiagnosis diagnosisOf(const Inspection& inspection, const std::string& model, const UnseenError& error);

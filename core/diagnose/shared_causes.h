@@ -17,10 +17,10 @@ struct SharedCause {
   std::vector<RowKey> highlights{};  ///< the wrong ones that have it
 };
 
-/// Strong splits alone: at least three quarters of the wrong highlights (three or more), at most a tenth of the others, and a chance of at most
-/// 0.001. What is tried: incident angle, observed diameter, radiance and limit angle, and the frame's position, each above or below the value that
-/// splits best; the light, the surface, the image's border, a clipped core. It says what goes together, not what causes what. Wrong is what is not
-/// Ok; excluded frames and what was not compared do not count.
+/// Strong splits alone: at least three quarters of the wrong highlights (three or more), at most a tenth of the others, and a
+/// chance of at most 0.001. What is tried: incident angle, observed diameter, radiance and limit angle, and the frame's position,
+/// each above or below the value that splits best; the light, the surface, the image's border, a clipped core. It says what goes
+/// together, not what causes what. Wrong is what is not Ok; excluded frames and what was not compared do not count.
 /// @param rows  highlightRows() of the inspection
 /// @return best first, at most one for each thing that is tried
 std::vector<SharedCause> sharedCauses(const Inspection& inspection, const std::vector<HighlightRow>& rows,

@@ -104,7 +104,7 @@ bool isBetter(const UnseenError& after, const UnseenError& before) {
   const double n = double(gains.size()), mean = sum / n;
   if (n < 2) return true;
   for (const double g : gains) squares += (g - mean) * (g - mean);
-  // One view that went astray makes that error as large as the gain: then it counts that fewer go astray, and no other one.
+  // One wrong view makes that error as large as the gain: then it counts that fewer go astray, and no other one.
   return mean > std::sqrt(squares / (n - 1) / n) || (fewerAstray && !othersAstray);
 }
 

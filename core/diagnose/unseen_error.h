@@ -8,8 +8,8 @@
 
 namespace glint {
 
-/// What a model, with its settings and training frames, gets wrong in views that its fit did not see: the held-out frames, as every table of errors
-/// counts them; where none of them shows a highlight, the training views, each predicted by a fit without its place (core/selection).
+/// A model's error, with its settings and training frames, in views that its fit did not see: the held-out frames, as in every
+/// table of errors. If none shows a highlight: training views, each predicted by a fit without its place (core/selection).
 struct UnseenError {
   /// One light in one frame.
   struct View {
@@ -23,8 +23,8 @@ struct UnseenError {
   };
   std::vector<View> views;
   bool leftOut = false;  ///< of training views
-  /// One number that orders all states: wrongPct per observed highlight. 0 = perfect; the mean contour error where nothing is missed or spurious;
-  /// 100 where nothing is predicted. NaN where nothing was observed.
+  /// One number that orders all states: wrongPct per observed highlight. 0 = perfect; the mean contour error where nothing is
+  /// missed or spurious; 100 where nothing is predicted. NaN where nothing was observed.
   double pct() const;
   double contourPct() const;  ///< mean of the matched highlights; NaN where none was
   int matched() const { return sum(&View::matched); }
@@ -39,16 +39,16 @@ struct UnseenError {
 /// @param inspection  complete, with this model. Stopped.
 UnseenError unseenError(const Inspection& inspection, const std::string& model, const ProgressFn& progress);
 
-/// Whether the second is better than the first: with a tenth fewer spurious highlights where its contours are no worse and it misses no more; or
-/// beyond chance. That is, over the views of both: by more than kNegligiblePct, by a tenth, and by more than one
-/// standard error of the difference, or with fewer views astray and none that was not. They must be half of what is scored before, and over all of
-/// its views the second must not be worse: what the user then sees is no larger number.
+/// Whether the second is better than the first: with a tenth fewer spurious highlights where its contours are no worse and it
+/// misses no more; or beyond chance. That is, over the views of both: by more than kNegligiblePct, by a tenth, and by more than
+/// one standard error of the difference, or with fewer wrong views and no new one. They must be half of what is scored
+/// before, and over all of its views the second must not be worse: what the user then sees is no larger number.
 bool isBetter(const UnseenError& after, const UnseenError& before);
 
 /// An observed highlight is missed, or off by more than kLargestExpectedPct.
 bool isAstray(const UnseenError::View& view);
 
-/// Of the first, those views that the second has as well.
+/// The views of the first error that the second has as well.
 UnseenError commonViews(const UnseenError& of, const UnseenError& with);
 
 /// "0.74 %, 2 of 54 highlights missed, 24 spurious"; "no highlight predicted".

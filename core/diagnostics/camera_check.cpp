@@ -192,8 +192,8 @@ class Check {
     return sum;
   }
 
-  /// Views whose highlight is that of the lamp; every second one of them, from the first or second one on, is a half. A single frame may show
-  /// something else.
+  /// Views whose highlight is that of the lamp; every second one of them, from the first or second one on, is a half. A single
+  /// frame may show something else.
   static std::vector<int> agreeing(const SharedLamp& lamp, int first = 0, int step = 1) {
     constexpr double kOther = 3;  // times the miss of three quarters of the views
     std::vector<int> list, chosen;
@@ -310,7 +310,7 @@ class Check {
     return sum;
   }
 
-  /// The shift of the mesh after which mirrored rays pass one lamp best: steps along the axes and between them, halved where none helps.
+  /// The shift of the mesh after which mirrored rays pass one lamp best: steps along and between the axes, halved if none helps.
   Eigen::Vector3d shiftByRays(double size) const {
     constexpr double kLast = 0.002;  // of the size
     constexpr int kMostTries = 1500, kWays = 27;

@@ -7,14 +7,14 @@
 
 namespace glint {
 
-/// Holds up to eight frames with whole, unclipped highlights against the surface that the scene names: whether their mirrored rays share a lamp
-/// (sharedLamp), and whether a light explains the contours (`reflectance`). Where that is not so, likely mistakes are undone one by one; those after
-/// which mirrored rays meet are tried on the contours. A mistake is named where its undoing explains them several times better than the scene as
-/// given; that nothing does is a finding, too. A principal point or focal length is named where the two halves of the frames ask for the same
-/// change. What the highlights cannot tell (a shift that another place of the light explains as well) stays unsaid. Throws Stopped, and InputError where a surface cannot be read.
+/// Checks up to eight frames with whole, unclipped highlights against the surface: whether their mirrored rays share a lamp
+/// (sharedLamp), and whether a light explains the contours (`reflectance`). If not, undoes likely mistakes one by one, and tries
+/// those that make the rays meet on the contours. Names a mistake if undoing it explains the contours several times better; no
+/// such mistake is a finding, too. Names a principal point or focal length if both halves of the frames ask for the same change.
+/// Never names what highlights cannot tell (a shift that another light explains). Stopped; InputError (unreadable surface).
 CameraCheck checkCameras(const Scene& scene, const ProgressFn& progress = {});
 
-/// The convention report, with this check where most cameras see their surface or where it finds why they do not, and the place of a mesh that misses the sparse points.
+/// The convention report. Adds this check if most cameras see their surface or it finds why not, and a misplaced mesh's place.
 ConventionReport fullReport(const Scene& scene, const ProgressFn& progress = {});
 
 }  // namespace glint

@@ -68,7 +68,7 @@ std::vector<ConicView> outlinesOf(const HighlightModel& model, const std::vector
   return conics;
 }
 
-/// Where each view looks for the thing that is reconstructed: along its reflected ray, or straight on for a model that knows no mirror.
+/// Where each view looks for the reconstructed thing: along its reflected ray, or straight on for a model without a mirror.
 std::vector<Eigen::Vector3d> raysOf(const HighlightModel& model, const std::vector<TrainingView>& views) {
   std::vector<Eigen::Vector3d> rays;
   for (const TrainingView& v : views) {
@@ -212,10 +212,10 @@ class Findings {
     reason += model_.hasOutlines()
                   ? chosen(v, "three or more determine an ellipsoid with a free centre.",
                            "fewer than three, which an ellipsoid with a free centre needs.",
-                           "fewer than two: what the light's distance and an ellipsoid stand on is the contours' shape alone.")
+                           "fewer than two: only the contours' shape tells the light's distance and an ellipsoid.")
                   : chosen(v, "three or more determine the light and leave data to check it.",
                            "fewer than three: two determine the light, but no data is left to check it.",
-                           "fewer than two: what the light's distance stands on is the contours' shape alone.");
+                           "fewer than two: only the contours' shape tells the light's distance.");
     add("views", "effective views", effective, formatted("%.2g of %d", effective, int(rays_.size())), v, reason);
   }
 
@@ -287,7 +287,7 @@ class Findings {
     int n = 0;
     for (const double r : fit_.fit->residualPx) squares += r * r;
     if (!fit_.fit->residualPx.empty()) rms = std::sqrt(squares / double(fit_.fit->residualPx.size()));
-    // Of what was fitted: the canonical contour of a bent surface is several times as large as the highlight.
+    // Diameters of what was fitted: a bent surface's canonical contour is several times as large as the highlight.
     if (model_.hasOutlines())
       for (const ConicView& v : outlines_) diameters += 2 * std::sqrt(v.ellipse.semiAxes.prod()), ++n;
     else

@@ -30,20 +30,20 @@ struct Conditioning {
   std::string model, light;
   std::optional<std::string> surface;
   std::vector<double> singularValues;  ///< of the linear system for Q*, descending; empty for models without one
-  std::string
-      quadricKind;  ///< describe() of the linear solution's Q*: "ellipsoid", "hyperboloid of two sheets", ...; "" without one
+  /// describe() of the linear solution's Q*: "ellipsoid", "hyperboloid of two sheets", ...; "" without one.
+  std::string quadricKind;
   std::vector<Finding> findings;
   Verdict worst() const;  ///< of the findings; Unknown when none is known
 };
 
-/// One entry per fit of every model, in the models' order. A fit that failed has a red finding with its reason beside what can
-/// still be said. The linear system for Q* is solved again here, whatever solver the fit used: `refined` with a prior is an
+/// One entry per fit of every model, in the models' order. A failed fit has a red finding with its reason, and the findings that
+/// can still be made. The linear system for Q* is solved again here, whatever solver the fit used: `refined` with a prior is an
 /// ellipsoid always, and only the linear solution shows that the contours alone would have given a hyperboloid.
 /// Where a training peak lies outside its own contour (see outsideOfContour), a model that uses peaks has a red finding "peaks",
-/// and nothing that rests on its views is green: a wide angle between rays that were never seen is no good news.
+/// and nothing that rests on its views is green: a wide angle between rays that were never seen means nothing.
 std::vector<Conditioning> conditioningOf(const Inspection& inspection);
 
-/// Widest angle between two of the unit vectors, rad; 0 for fewer than two. Of more than 256 vectors, that many evenly spread are
+/// Widest angle between two of the unit vectors, rad; 0 for fewer than two. Above 256 vectors, that many evenly spread ones are
 /// compared.
 double widestAngle(const std::vector<Eigen::Vector3d>& directions);
 
@@ -53,14 +53,14 @@ double widestAngle(const std::vector<Eigen::Vector3d>& directions);
 /// @see Leinster and Cobbold, Measuring diversity: the importance of species similarity, Ecology 2012.
 double effectiveNumber(const std::vector<Eigen::Vector3d>& directions, double independent);
 
-/// What ModelFit::residualPx of a fit measures: "from the observed contour to the outline, one way, RMS". It is another number than the
-/// contour error of the same frame, which goes both ways: a contour may lie along an outline that runs far beyond it.
+/// What ModelFit::residualPx of a fit measures: "from the observed contour to the outline, one way, RMS". It is another number
+/// than the contour error of the same frame, which goes both ways: a contour may lie along an outline that runs far beyond it.
 std::string residualMeaning(const ModelFit& fit);
-/// Of LightEstimate::rmsPx.
+/// What LightEstimate::rmsPx means, in words.
 std::string residualMeaning(const LightEstimate& light);
 
 /// Standard deviations of the three semi-axes, m, to first order from the fit's uncertainty of the shape S: d a = v^T dS v / (2
-/// a) along the axis v. Empty when the fit has no ellipsoid or tells no uncertainty; infinite for an axis of length 0.
+/// a) along the axis v. Empty if the fit has no ellipsoid or tells no uncertainty; infinite for an axis of length 0.
 std::optional<Eigen::Vector3d> semiAxesSigma(const ModelFit& fit);
 
 /// Bounds of the verdicts, each with its reason.

@@ -44,9 +44,9 @@ constexpr std::array<RowColumn, kRowValues> kColumns{{
     {"radiance", "Radiance", "radiance at the observed peak",
      "Fitted radiance at the observed peak, background removed, in the units of the image. None where the peak is unknown", 4, 0},
     {"incident", "Incident \u00b0", "incident angle at the brightest point (\u00b0)",
-     "Angle between the normal and the view ray at the brightest point: of the prediction; where there is none, of the observed "
+     "Angle between the normal and the view ray at the brightest point of the prediction; without a prediction, at the observed "
      "peak of "
-     "a training frame. None of a model that does not look at the surface",
+     "a training frame. Models that do not look at the surface have no such angle",
      2, 0},
     {"limit", "Limit \u00b0", "limit angle of the prediction (\u00b0)",
      "Limit angle of the predicted contour: median over its directions, else that of the fit", 3, 0},
@@ -91,7 +91,7 @@ class Rows {
   void add(const FrameComparison& c, std::vector<HighlightRow>& rows) const;
 
  private:
-  /// By the view's place in Inspection::views: ModelFit says them in the order of the views it used.
+  /// Adds residuals by the view's place in Inspection::views: ModelFit lists them in the order of the views it used.
   void addResiduals(const ModelFit& fit, const FitKey& key) {
     std::size_t next = 0;
     for (std::size_t i = 0; i < in_.views.size() && next < fit.frames.size() && next < fit.residualPx.size(); ++i) {
@@ -101,7 +101,7 @@ class Rows {
       residuals_[static_cast<int>(i)] = fit.residualPx[next++];
     }
   }
-  /// The training view of an observed highlight, by its peak, which noise may have moved a little; -1 where it did not train.
+  /// The training view of an observed highlight, by its peak, which noise may have moved a little; -1 if it did not train.
   int viewOf(int frame, const Highlight& seen) const {
     const auto here = views_.find(frame);
     if (here == views_.end()) return -1;

@@ -69,24 +69,24 @@ inline const RowColumn& columnOf(RowValue value) { return highlightColumns()[std
 /// RowValue::Count when no column has this id.
 RowValue rowValueOf(const std::string& id);
 
-/// One row of an evaluation: a matched, missed or spurious highlight under one model, or a prediction that failed where nothing was observed.
+/// One row of an evaluation: a matched, missed or spurious highlight under one model, or a failed prediction of nothing observed.
 struct HighlightRow {
   int frame = -1, observed = -1, predicted = -1;  ///< as in FrameComparison::Row
   std::string model, light;                       ///< ids
   std::string place;                              ///< the light, and which of several: "lamp, highlight 2", "lamp, predicted 1"
   RowRole role = RowRole::HeldOut;
   RowStatus status = RowStatus::NotCompared;
-  std::string reason;                     ///< why there is no error; "" where there is one
-  std::array<double, kRowValues> values;  ///< finite, or NaN where there is none
+  std::string reason;                     ///< why there is no error; "" if there is one
+  std::array<double, kRowValues> values;  ///< finite, or NaN without a value
   double value(RowValue which) const { return values[std::size_t(which)]; }
 };
 
-/// Every row of every model, by frame, then by model from simple to rich. What the evaluation holds; nothing is asked of surfaces or images.
+/// Every row of every model, by frame, then by model from simple to rich. Reads the evaluation only, no surface or image.
 std::vector<HighlightRow> highlightRows(const Inspection& inspection);
 
 /// What names a row within an inspection, also after it was computed again.
 struct RowKey {
-  int frame = -1, observed = -1, predicted = -1;  ///< `predicted` is -1 where something was observed
+  int frame = -1, observed = -1, predicted = -1;  ///< `predicted` is -1 if something was observed
   std::string model, light;
   friend auto operator<=>(const RowKey&, const RowKey&) = default;
 };

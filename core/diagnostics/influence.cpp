@@ -13,7 +13,7 @@ namespace glint {
 namespace {
 
 /// Mean contour error of one comparison as influence counts it: over its observed highlights, those missed at kNoPredictionPct.
-/// Empty when the light shows none there.
+/// Empty if the light shows none there.
 std::optional<double> countedPct(const FrameComparison& c) {
   double sum = 0;
   int n = 0;

@@ -13,17 +13,17 @@ namespace glint {
 /// What one training frame does for one model: the model is fitted again without the frame.
 ///
 /// Every error in it is capped at kNoPredictionPct (100 %): from there on the prediction lies as far from the highlight as the
-/// highlight is large, which is no better than none, and none counts as just that. Without the cap one prediction that went astray
-/// (a near-degenerate fit predicts 10,000 %) would decide a mean over all probes, and a frame that turns such a failure into a
-/// missing prediction would seem to help by its removal. So a model whose errors are all beyond the cap (`primal` off the plane)
-/// shows no influence of any frame: its changes are 0.
+/// highlight is large, which is no better than a missing one, and a missing one counts as 100 %. Without the cap one prediction
+/// that went wrong (a near-degenerate fit predicts 10,000 %) would decide a mean over all probes, and a frame that turns such a
+/// failure into a missing prediction would seem to help by its removal. So a model whose errors are all beyond the cap (`primal`
+/// off the plane) shows no influence of any frame: its changes are 0.
 struct ModelInfluence {
   std::optional<double> leftOutPct;  ///< contour error on the frame itself, predicted from the others, mean over its highlights
-  std::optional<double>
-      heldOutPct;  ///< mean contour error on the probes without the frame; what is not predicted counts as kNoPredictionPct
+  /// Mean contour error on the probes without the frame; a missing prediction counts as kNoPredictionPct.
+  std::optional<double> heldOutPct;
   std::optional<double> changePct;  ///< of that mean against all training frames: positive = the frame helps, negative = it harms
-  std::optional<double>
-      lightShift;  ///< m, between the light (or the ellipsoid's centre) with and without the frame; none at infinity
+  /// m, between the light (or the ellipsoid's centre) with and without the frame; none at infinity.
+  std::optional<double> lightShift;
   std::optional<double> axesChange;  ///< largest relative change of a semi-axis
   std::optional<Failure> failure;    ///< why there is no fit without it
 };
@@ -41,7 +41,7 @@ struct Influence {
   int trainingFrames = 0;                     ///< of which frames.size() were left out
 };
 
-/// How much a frame matters to a model: changePct where there are held-out frames, else leftOutPct. None when the frame was not
+/// How much a frame matters to a model: changePct where there are held-out frames, else leftOutPct. None if the frame was not
 /// tried or nothing was predicted.
 std::optional<double> influenceOf(const Influence& influence, int frame, const std::string& model);
 

@@ -12,8 +12,8 @@
 
 namespace glint {
 
-/// A change of all cameras of a scene, as the highlights can be asked about it. The surface stays: a mesh that is turned or of another unit is
-/// the same as cameras that move about it.
+/// A change of all cameras of a scene, as the highlights can be asked about it. The surface stays: a mesh that is turned or of
+/// another unit is the same as cameras that move about it.
 struct CameraChange {
   double cx = 0, cy = 0, logFocal = 0;  ///< added to the principal point (px) and to the logarithm of the focal length
   bool swapXY = false;                  ///< of the pixels, before the flips
@@ -26,7 +26,7 @@ struct CameraChange {
   void move(Highlight& highlight, const Camera& camera) const;
 };
 
-/// What somebody may have done wrong, the change that undoes it, and how a person does that.
+/// A mistake that a user may have made, the change that undoes it, and how a person does that.
 struct LikelyMistake {
   std::string subject;  ///< "the images", "the mesh"
   bool many = false;    ///< of the subject
@@ -36,9 +36,9 @@ struct LikelyMistake {
   std::string remedy;  ///< for a person where there is no correction
 };
 
-/// Images that are mirrored or turned, meshes turned by quarters and halves about an axis, meshes of another unit or size, poses of another
-/// convention, images that were resized where the principal point is their middle. Those that people meet most come first: of equals the first
-/// one is named.
+/// Images that are mirrored or turned, meshes turned by quarters and halves about an axis, meshes of another unit or size, poses
+/// of another convention, images that were resized where the principal point is their middle. Those that people meet most come
+/// first: if several fit equally well, the first one is named.
 const std::vector<LikelyMistake>& likelyMistakes();
 
 }  // namespace glint

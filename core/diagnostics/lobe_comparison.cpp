@@ -16,7 +16,7 @@ constexpr int kLeastLobePixels = 24;                 // three numbers of each lo
 constexpr int kAlphaBins = 24;                       // of alpha: a curve that one can follow
 constexpr int kLeastInBin = 3;                       // fewer have no spread
 constexpr int kWidthSteps = 36;                      // of the search, equal in log m: a lobe's width changes by 18 % a step
-constexpr double kNarrowest = 0.003, kWidest = 1.3;  // of m: a mirror, and what is hardly a highlight any more
+constexpr double kNarrowest = 0.003, kWidest = 1.3;  // of m: a mirror, and what is hardly a highlight
 constexpr int kBits = 20;                            // of log m: a millionth
 constexpr double kToldApart = 9;                     // of chi squared: three standard deviations of one number
 
@@ -30,7 +30,7 @@ double logOfLobe(Lobe lobe, double m, const LobePixel& p) {
 struct Line {
   double height = 0, offset = 0, rms = std::numeric_limits<double>::infinity();
   double logMost = 0;          ///< logarithm of the greatest S, for which `height` is K S
-  std::vector<double> values;  ///< S of each pixel over its greatest; empty where the lobe is not defined at a pixel
+  std::vector<double> values;  ///< S of each pixel over its greatest; empty if the lobe is not defined at a pixel
 };
 
 Line lineFor(const std::vector<LobePixel>& pixels, Lobe lobe, double m) {
@@ -110,7 +110,7 @@ void addRuns(const Polyline& closed, const Keep& keep, std::vector<Polyline>& ru
   }
 }
 
-/// The bin of every pixel; -1 where its bin has too few.
+/// The bin of every pixel; -1 if its bin has too few.
 std::vector<int> binned(const std::vector<LobePixel>& pixels, double peak, std::vector<LobeComparison::Bin>& bins) {
   double widest = 0;
   for (const LobePixel& p : pixels) widest = std::max(widest, p.alpha);
@@ -191,7 +191,7 @@ std::vector<Polyline> lobeContours(const LobeGrid& grid, const LobeMatch& match,
     for (int x = 0; x < grid.width; ++x)
       if (const std::optional<LobePixel>& place = at(x, y))
         share.at(x, y) = float(std::exp(logOfLobe(match.lobe, match.m, *place) - match.logUnit) + match.offsetPct / 100);
-  // Beside a cell that is none, the contour is the border of what is known, not of the highlight.
+  // Beside an empty cell the contour is the border of what is known, not of the highlight.
   const auto known = [&](const Pixel& p) {
     for (int y = int(std::floor(p.y())); y <= int(std::ceil(p.y())); ++y)
       for (int x = int(std::floor(p.x())); x <= int(std::ceil(p.x())); ++x)

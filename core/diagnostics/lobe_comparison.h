@@ -10,8 +10,8 @@
 
 namespace glint {
 
-/// The pixels of one highlight under one lobe: I = height S(m) + offset, S the lobe's radiance from a point light at each pixel's own
-/// directions and distance. The offset is what the fit of the background took of the lobe's tail.
+/// The pixels of one highlight under one lobe: I = height S(m) + offset, S the lobe's radiance from a point light at each pixel's
+/// own directions and distance. The offset is what the fit of the background took of the lobe's tail.
 struct LobeMatch {
   Lobe lobe = Lobe::TorranceSparrow;
   double m = 0;                         ///< roughness
@@ -20,7 +20,7 @@ struct LobeMatch {
   double logUnit = 0;                   ///< the radiance S, whose logarithm this is, is the best lobe's peak
   bool asGood = false;                  ///< the pixels do not tell it from the best one, as far as their noise is independent
   std::vector<double> profile;          ///< at the bins of `measured`: means over the same pixels, share of the best lobe's peak
-  std::optional<Failure> failure = {};  ///< NotConverged where the pixels do not tell its width, or do not fall as it does
+  std::optional<Failure> failure = {};  ///< NotConverged if the pixels do not tell its width, or do not fall as it does
 };
 
 struct LobeComparison {
@@ -41,12 +41,12 @@ inline constexpr int kMostLobePixels =
     900;  ///< evenly thinned: a fit takes a hundred passes over them, and three numbers need no more
 
 /// Fits every lobe to the pixels around one highlight, all weighted equally.
-/// @return  TooFewPoints below 24 pixels; NotConverged where no lobe fits.
+/// @return  TooFewPoints below 24 pixels; NotConverged if no lobe fits.
 Outcome<LobeComparison> compareLobes(const LobeSamples& samples);
 
-/// Where the radiance of a match is a fraction `level` of the best lobe's peak: the curve of `profile` against the same level, in the
-/// photograph. In pieces, where the grid of the samples ends or the surface does.
-/// @return  stored px; empty where the match failed or does not reach the level.
+/// Where the radiance of a match is a fraction `level` of the best lobe's peak: the curve of `profile` against the same level, in
+/// the photograph. In pieces, where the grid of the samples ends or the surface does.
+/// @return  stored px; empty if the match failed or does not reach the level.
 std::vector<Polyline> lobeContours(const LobeGrid& grid, const LobeMatch& match, double level);
 
 }  // namespace glint

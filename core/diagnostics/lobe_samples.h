@@ -50,7 +50,7 @@ struct LobeSamples {
   std::vector<LobePixel> pixels;  ///< also what lies at or below the background
   std::vector<LobeSample> samples;
   std::optional<LobeFit> fit;
-  std::optional<Failure> fitFailure;  ///< TooFewPoints; NotConverged when the radiance does not fall with alpha
+  std::optional<Failure> fitFailure;  ///< TooFewPoints; NotConverged if the radiance does not fall with alpha
   LobeGrid grid;
   double background = 0;  ///< at the peak, what was taken off
   int clipped = 0;        ///< pixels left out because they are saturated
@@ -69,7 +69,7 @@ struct LobeOptions {
 /// @param linear   1 or 3 channels (averaged), linear radiance, distorted as the camera is.
 /// @param mask     optional, non-zero on the glossy object.
 /// @param highlight  ideal px, with its ellipse. NotAnEllipse without one.
-/// NoHighlight when nothing stands out of the background; TooFewPoints when no pixel is on the lit surface above the background.
+/// NoHighlight if nothing stands out of the background; TooFewPoints if no pixel is on the lit surface above the background.
 Outcome<LobeSamples> lobeSamples(const Image& linear, const Image* mask, const Highlight& highlight, const Camera& camera,
                                  const Surface& surface, const Light& light, const LobeOptions& options = {});
 

@@ -15,7 +15,7 @@ namespace glint {
 struct DirectionSample {
   double direction = 0;
   Pixel at{0, 0};               ///< the contour point there, ideal px
-  std::optional<double> value;  ///< none where the contour has no answer in this direction
+  std::optional<double> value;  ///< none if the contour has no answer in this direction
 };
 
 /// One matched highlight: predicted against observed, by direction.
@@ -30,14 +30,14 @@ struct PolarResidual {
 };
 
 /// Every matched highlight of one frame and model, at `directions` equal steps. Directions where the nearest part of the
-/// prediction only bridges failed directions, or where the image border cuts the observed contour, have no value. Empty when the
+/// prediction only bridges failed directions, or where the image border cuts the observed contour, have no value. Empty if the
 /// model or the frame has no match. std::invalid_argument unless directions >= 3.
 std::vector<PolarResidual> polarResiduals(const Inspection& inspection, int frame, const std::string& model, int directions = 72);
 
-/// The contour point furthest from `centre` in this direction; empty when the contour does not meet that ray.
+/// The contour point furthest from `centre` in this direction; empty if the contour does not meet that ray.
 std::optional<Pixel> contourPointAt(const Polyline& contour, const Pixel& centre, double direction);
 
-/// Distance from `point` to a closed contour, px: positive inside it, negative outside. Empty when the nearest part is one of the
+/// Distance from `point` to a closed contour, px: positive inside it, negative outside. Empty if the nearest part is one of the
 /// gaps (from vertex, to vertex), which are not part of the contour.
 std::optional<double> depthInside(const Polyline& contour, const std::vector<std::pair<int, int>>& gaps, const Pixel& point);
 
@@ -49,12 +49,12 @@ struct AngleByDirection {
   std::optional<double> limitAngle;       ///< of the model or of the light's estimate, rad
   bool extended = false;                  ///< that is of a point: the lamp's extent changes it with the direction
   std::vector<DirectionSample> measured;  ///< alpha on the observed contour, rad
-  std::vector<DirectionSample>
-      predicted;  ///< alpha on the predicted contour; empty when nothing was predicted for this highlight
+  /// Alpha on the predicted contour; empty if nothing was predicted for this highlight.
+  std::vector<DirectionSample> predicted;
 };
 
 /// The light that a model's fit of this light and frame predicts with: its own, the one estimated for all models, or its
-/// ellipsoid's centre. NoLight when there is none of them.
+/// ellipsoid's centre. NoLight without any of them.
 Outcome<Light> lightOfModel(const Inspection& inspection, int frame, const std::string& model, const std::string& light);
 
 /// The surface that a frame's computations used, a corrected depth map included. It may have to be read, which takes its time.

@@ -8,22 +8,22 @@
 
 namespace glint {
 
-/// The row of `before` that is about the same highlight under the same model as each row of `after`: its place, or -1. Observed highlights are the
-/// same where their peaks are, or where they are the only ones of their light left in their frame, or else by greatest overlap. What is spurious has
-/// no counterpart.
+/// The row of `before` that is about the same highlight under the same model as each row of `after`: its place, or -1. Observed
+/// highlights are the same where their peaks are, or where they are the only ones of their light left in their frame, or else by
+/// greatest overlap. What is spurious has no counterpart.
 /// @param before, after  highlightRows() of two evaluations of one scene; their evidence may differ
 std::vector<int> counterparts(const Inspection& before, const std::vector<HighlightRow>& rowsBefore, const Inspection& after,
                               const std::vector<HighlightRow>& rowsAfter);
 
-/// How one model's errors in held-out frames changed. Only highlights with an error in both, held out in both, are in the means; the rest is counted.
+/// How one model's errors in held-out frames changed. The means hold highlights with an error in both runs; the rest is counted.
 struct ErrorChange {
   std::string model;
   int highlights = 0, frames = 0;        ///< in the means
   double meanBefore = 0, meanAfter = 0;  ///< %; NaN where `highlights` is 0
   int better = 0, worse = 0;             ///< of `highlights`; the others stay as they were, to nine digits
   int lost = 0, gained = 0;              ///< held out in both, with an error only before, or only after
-  int withoutBefore = 0,
-      withoutAfter = 0;  ///< observed highlights of held-out frames that have no error: missed, failed or refused
+  /// Observed highlights of held-out frames without an error: missed, failed or refused.
+  int withoutBefore = 0, withoutAfter = 0;
   int spuriousBefore = 0, spuriousAfter = 0;
   int elsewhere = 0;  ///< highlights with an error in both that are not held out in both: they do not count
 };

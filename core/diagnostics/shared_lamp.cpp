@@ -34,7 +34,7 @@ SharedLamp judged(const Views& views, const Light& light) {
   return lamp;
 }
 
-/// Halfway between the points of two rays that are nearest to each other; nothing behind their origins, or where they are parallel.
+/// Halfway between the nearest points of two rays; nothing behind their origins, or if they are parallel.
 std::optional<Light> between(const ReflectedRay& a, const ReflectedRay& b) {
   const Eigen::Vector3d apart = b.origin - a.origin;
   const double c = a.direction.dot(b.direction), across = 1 - c * c;

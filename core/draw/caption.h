@@ -8,14 +8,14 @@
 
 namespace glint::draw {
 
-/// A caption as it stands under a figure: lines that the width of the page broke.
+/// A caption under a figure: lines that the width of the page broke.
 struct Caption {
   std::vector<std::string> lines;
   double sizePx = 0;
   double height = 0;  ///< px, with the room above and below the lines; 0 = no caption
 };
 
-/// Breaks a caption at blanks; a word that is wider than the page is cut. What does not fit into `mostHeight` ends in an ellipsis.
+/// Breaks a caption at blanks; a word that is wider than the page is cut. What exceeds `mostHeight` ends in an ellipsis.
 /// @param painter  measures
 /// @param width    px of the whole picture
 Caption captionOf(const Painter& painter, const std::string& text, double sizePx, double width, double mostHeight);

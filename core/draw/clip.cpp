@@ -8,7 +8,7 @@
 namespace glint::draw {
 namespace {
 
-/// From where to where, as shares of its length, a segment lies in the box; nothing when it does not.
+/// From where to where, as shares of its length, a segment lies in the box; nothing if it does not.
 std::optional<std::pair<double, double>> inside(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& low,
                                                 const Eigen::Vector2d& high) {
   double from = 0, to = 1;

@@ -14,7 +14,7 @@ struct Chain {
   bool closed = false;
 };
 
-/// What of a polyline lies in a box, border included. One that leaves it becomes open pieces; one that is wholly inside stays as
+/// The part of a polyline in a box, border included. A line that leaves it becomes open pieces; one wholly inside stays as
 /// it is. Points that are not finite are left out. @param box  without width: everything
 /// @see Liang & Barsky, A New Concept and Method for Line Clipping, 1984.
 std::vector<Chain> chainsInside(const std::vector<Eigen::Vector2d>& points, bool closed, const Box& box);

@@ -16,7 +16,7 @@ inline Colour modelColour(const std::string& model) {
   const std::array<int, 3> rgb = modelRgb(model);
   return {rgb[0] / 255.0, rgb[1] / 255.0, rgb[2] / 255.0};
 }
-/// Nearer to grey, for what counts less: of a poor model, of an earlier request, taken out by a filter.
+/// Nearer to grey, for what counts less: poor models, earlier requests, filtered predictions.
 inline Colour pale(Colour colour) {
   for (double& channel : colour) channel = 0.5 * (channel + 0.5);
   return colour;

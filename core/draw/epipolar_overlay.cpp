@@ -62,7 +62,7 @@ Outcome<PairView> viewOf(const Inspection& inspection, int frame, int highlight,
   return view;
 }
 
-/// The part of a line inside a box; empty when it passes by. Liang and Barsky 1984.
+/// The part of a line inside a box; empty if it passes by. Liang and Barsky 1984.
 std::vector<Pixel> clipped(const Eigen::Vector3d& line, const Eigen::AlignedBox2d& box) {
   const Pixel normal = line.head<2>(), along(-normal.y(), normal.x()), middle = box.center();
   const Pixel start = middle - (normal.dot(middle) + line.z()) * normal;

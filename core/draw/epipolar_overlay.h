@@ -28,7 +28,7 @@ inline constexpr Colour kRealEpipolar{0.66, 0.86, 0.16};  ///< those of real cam
 struct EpipolarPicture {
   std::array<FrameOverlay, 2> frames;
   std::optional<EpipolarTangents> tangents;
-  std::optional<Failure> failure;  ///< why there are none
+  std::optional<Failure> failure;  ///< why the lines are missing
 };
 
 /// Virtual cameras are those of the training views; in other frames the mirror is the tangent plane of the first model that

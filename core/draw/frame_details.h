@@ -11,11 +11,11 @@ namespace glint::draw {
 /// Contours live in ideal pixels; the photograph on screen is the distorted one.
 std::vector<Pixel> toPhotograph(const Camera& camera, const std::vector<Pixel>& ideal);
 
-/// Ideal pixel from which Selection::direction is measured: centroid of the observed contour, its peak where there is none.
-/// Nothing when the frame has no such highlight.
+/// Ideal pixel from which Selection::direction is measured: centroid of the observed contour, its peak without a contour.
+/// Nothing if the frame has no such highlight.
 std::optional<Pixel> directionOrigin(const Inspection& inspection, int frame, int highlight);
 
-/// The observed highlight that a predicted one was matched with; -1 when it is spurious.
+/// The observed highlight that a predicted one was matched with; -1 if it is spurious.
 int observedOf(const FrameComparison& comparison, int predicted);
 
 /// Crossing of the half line from `origin` (ideal pixels) with the parts of a prediction that do not bridge a gap.

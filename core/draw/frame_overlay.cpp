@@ -301,7 +301,7 @@ class FrameLayers {
 
   void addCaption(const std::string& model, FrameScore score) {
     if (unreadable_ && score.reason == unreadable_->message()) {
-      score.reason = "not compared";  // why is said once, for the frame
+      score.reason = "not compared";  // the frame says why, once
       score.spurious = 0;
     }
     // Drawn like a held-out frame's prediction, but it counts in no summary.
@@ -364,7 +364,7 @@ const std::vector<OverlayLayer>& overlayLayers() {
       {OverlayRole::Unmatched, "frame/unmatched", "Unmatched",
        "Crossed square: observed, and missed by the selected model (by any shown one, where none is selected), its contour "
        "dashed. "
-       "Triangle: predicted, and seen by nobody (spurious), its contour in dashes and dots",
+       "Triangle: predicted but not observed (spurious), its contour in dashes and dots",
        true},
       {OverlayRole::ResidualArrows, "frame/residuals", "Residuals",
        "Arrows from the observed to the predicted contour, every 10 degrees", false},

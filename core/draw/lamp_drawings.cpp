@@ -15,7 +15,7 @@ namespace {
 
 constexpr Colour kDrawnByHand{0.95, 0.75, 0.20};  // a person's outline; dashed, so that it is told apart without its colour
 constexpr Colour kArrow{0.90, 0.25, 0.25};
-/// Of the balls, from Okabe and Ito's palette: told apart by all eyes.
+/// Colours of the balls, from Okabe and Ito's palette, which all eyes can tell apart.
 constexpr std::array<Colour, 6> kBallColours{{{0.337, 0.706, 0.914},
                                               {0.902, 0.624, 0.000},
                                               {0.000, 0.620, 0.451},
@@ -50,7 +50,7 @@ void addMark(FrameOverlay& overlay, const Pixel& at, MarkShape shape, const Colo
   overlay.marks.push_back(mark);
 }
 
-/// From the predicted to the seen place.
+/// The arrow from the predicted to the seen place.
 void addArrow(FrameOverlay& overlay, const Pixel& seen, const Eigen::Vector2d& residual, double scale, const std::string& label) {
   const Eigen::Vector2d by = scale * residual, side(-by.y(), by.x());
   const Pixel to = seen + by;

@@ -8,7 +8,7 @@
 #include "core/draw/plot_data.h"
 #include "core/lamps/lamp_fit.h"
 
-// What photographs of mirror balls say about lamps, drawn.
+// Drawings of what photographs of mirror balls say about lamps.
 namespace glint::draw {
 
 /// Over one photograph: outlines as a person drew them (dashed), as they were refined, highlights with arrows along their
@@ -33,7 +33,7 @@ double ballResidualScale(const std::vector<FittedBall>& balls, const std::vector
 /// other balls alone. A photograph without an answer has a cross.
 /// @param lamps  one for each photograph
 PlotData ballResidualPlot(const std::vector<LampAnswer>& lamps, std::size_t balls);
-/// What each photograph says of the balls' outlines, in percent of what is known of them; the edges say the rest.
+/// Each photograph's share in what is known of the balls' outlines, percent; the edges add the rest.
 PlotData outlineSharePlot(const std::vector<LampAnswer>& lamps);
 
 }  // namespace glint::draw

@@ -18,7 +18,7 @@ struct LobeStyle {
 /// @param place  of the lobe in LobeComparison::matches
 const LobeStyle& lobeStyle(std::size_t place);
 
-/// "ggx, m = 0.1203, rms 0.61 %, best", or the reason why there is none.
+/// "ggx, m = 0.1203, rms 0.61 %, best", or the reason why it is missing.
 std::string lobeText(const LobeComparison& comparison, std::size_t place);
 
 }  // namespace glint::draw

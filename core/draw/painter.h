@@ -20,8 +20,8 @@ enum class Dash { Solid, Dashed, Dotted, DashDotted };
 enum class Align { Left, Centre, Right };
 
 /// What charts and overlays are painted with, whatever takes the strokes: pixels in memory (viz/canvas.h), a file that scales
-/// (core/draw/svg_painter.h) or the screen (gui/base/qt_painter.h). Coordinates are px, (0, 0) is the top left corner and y points
-/// down. What is painted later lies on top.
+/// (core/draw/svg_painter.h) or the screen (gui/base/qt_painter.h). Coordinates are px, (0, 0) is the top left corner and y
+/// points down. What is painted later lies on top.
 class Painter {
  public:
   virtual ~Painter() = default;
@@ -37,7 +37,7 @@ class Painter {
   virtual void text(const Eigen::Vector2d& at, const std::string& text, double sizePx, const Colour& colour,
                     Align align = Align::Left, bool vertical = false, bool bold = false) = 0;
   virtual double textWidth(const std::string& text, double sizePx, bool bold = false) const = 0;
-  /// What stands at a place in words, for pictures that answer the mouse by themselves; others leave it out.
+  /// What is at a place, in words, for pictures that answer the mouse by themselves; others leave it out.
   virtual void hint(const Eigen::Vector2d& /*centre*/, double /*radius*/, const std::string& /*text*/) {}
 
   /// The text, its end replaced by an ellipsis if it is wider than `widthPx`.

@@ -23,11 +23,11 @@ struct PlotTarget {
 };
 
 struct PlotPoint {
-  double x = 0, y = 0;   ///< in the axes' units, also where an axis is logarithmic; y NaN = a gap in the line
+  double x = 0, y = 0;   ///< in the axes' units, even if an axis is logarithmic; y NaN = a gap in the line
   bool noValue = false;  ///< y is NaN, and that is to be seen: a cross at the top of the plot, see PlotData::noValue
   std::optional<std::pair<double, double>> band;  ///< lower and upper end of the error bar
   std::string label;                              ///< lines for a tool tip
-  std::string note{};                             ///< stands beside the sample, which has a ring around it; "" = none
+  std::string note{};                             ///< beside the sample, which has a ring around it; "" = none
   bool hollow = false;                            ///< a ring in place of a disc
   bool triangle = false;                          ///< a triangle around it, see PlotData::triangles
   PlotTarget target;
@@ -65,17 +65,17 @@ struct PlotShade {
   std::string name{};  ///< for the legend, which says the same name once; "" = not there
 };
 
-/// One plot: everything that is drawn and written, without how. Plain data.
+/// One plot: all its content, without its look. Plain data.
 struct PlotData {
   std::string id;  ///< "error", "lobe", ...
   std::string title;
-  std::string empty;  ///< one sentence in place of a plot that there is not
-  bool dial =
-      false;  ///< y by direction x (rad) around a circle, 0 = right and pi/2 = down as in the photograph; the circle is y = 0
+  std::string empty;  ///< one sentence in place of a missing plot
+  /// y by direction x (rad) around a circle, 0 = right and pi/2 = down as in the photograph; the circle is y = 0.
+  bool dial = false;
   PlotAxis x, y;
   std::vector<PlotSeries> series;
   std::vector<PlotShade> shades;
-  std::vector<std::string> remarks{};  ///< stand before the legend: how many samples there are, what is not shown
+  std::vector<std::string> remarks{};  ///< precede the legend: how many samples there are, what is not shown
   std::string noValue;                 ///< what the crosses at the top stand for, for the legend: "missed highlight"
   std::string triangles{};             ///< the same of triangles: "spurious highlight"
 };

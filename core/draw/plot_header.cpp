@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kLine = 18;                         // height of a line, screen px
 constexpr double kLeastPlot = 100, kLeastDial = 90;  // height that the legend leaves to a plot with its axes, screen px
-constexpr double kSwatch = 18;                       // width of what stands before a name, screen px
+constexpr double kSwatch = 18;                       // width of the sign before a name, screen px
 
 /// One entry of the legend: what is drawn from the left end of its swatch about the line's middle, and its name.
 struct Entry {

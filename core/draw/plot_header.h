@@ -27,7 +27,7 @@ struct PlotLook {
 inline constexpr double kPlotFont = 12, kPlotSmallFont = 11;  // screen px
 
 /// Title and legend at the top of a plot: its series, its tinted ranges, and what the crosses stand for. Returns their height,
-/// device px. In a low picture the legend ends early, with dots. @param draw  else it is only measured. @param legend  else the
+/// device px. In a low picture the legend ends early, with dots. @param draw  false: only measures. @param legend  false: the
 /// title alone.
 double paintPlotHeader(Painter& painter, const PlotData& plot, const PlotLook& look, double width, double height, bool legend,
                        bool draw);

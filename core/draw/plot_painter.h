@@ -14,17 +14,17 @@ struct PlotStyle {
   friend bool operator==(const PlotStyle&, const PlotStyle&) = default;
 };
 
-/// What a plot marks of its samples.
+/// The samples that a plot marks.
 struct PlotMarks {
   std::vector<PlotSample> selected;
   std::optional<PlotSample> hovered;
 };
 
 /// Paints a plot over width x height device px, background included: title and legend at the top, then axes, grid, tinted ranges,
-/// series, error bars, crosses and marks; or a dial; or the sentence that stands in its place. In a low picture the legend ends
+/// series, error bars, crosses and marks; or a dial; or the sentence that replaces it. In a low picture the legend ends
 /// early, with dots. Every sample has its label as a hint.
 /// @param shown   the part of the range to show
-/// @return where the values lie; nothing where no plot was drawn
+/// @return where the values lie; nothing if no plot was drawn
 std::optional<PlotPlaces> paintPlot(Painter& painter, const PlotData& plot, const PlotStyle& style, const PlotRange& shown,
                                     const PlotMarks& marks, double width, double height);
 

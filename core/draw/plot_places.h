@@ -15,7 +15,7 @@ struct PlotPlaces {
   Eigen::Vector2d centre{0, 0};                     ///< of a dial
   double radius = 1;
   double scale = 1;            ///< device pixels per screen px
-  std::vector<int> crossRows;  ///< of each series: where its crosses stand, counted from the top; -1 without any
+  std::vector<int> crossRows;  ///< row of each series' crosses, counted from the top; -1 without any
 
   double xOf(const PlotData& plot, double x) const;
   /// Not finite for a gap.

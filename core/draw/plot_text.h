@@ -34,7 +34,7 @@ inline PlotSeries modelSeries(const std::string& model, bool poor, PlotShape sha
 
 inline bool isPoor(const ModelResult& result) { return !reasonsOf(result).poor.empty(); }  ///< a fit of it is
 
-/// Of the scene; its number where there is none.
+/// The frame's name in the scene; its number without a scene.
 inline std::string frameName(const Inspection& inspection, int frame) {
   return inspection.scene ? glint::frameName(*inspection.scene, frame) : std::to_string(frame);
 }

@@ -8,7 +8,7 @@
 
 namespace glint::draw {
 
-/// One plot as somebody looks at it: which part is shown, what is selected, and what lies where in the last picture.
+/// One plot as the user looks at it: which part is shown, what is selected, and what lies where in the last picture.
 class PlotView {
  public:
   void setStyle(const PlotStyle& style) { style_ = style; }

@@ -46,7 +46,8 @@ const std::vector<PlotKind>& plotKinds() {
        "best. For a point light."},
       {"axes", "Semi-axes", "Semi-axes of each model's ellipsoid, longest first, with one standard deviation where it is known."},
       {"singular", "Singular values",
-       "Of the linear system for Q*. A small last value beside a large second-last value means a well-determined ellipsoid."},
+       "Singular values of the linear system for Q*. A small last value beside a large second-last value means a well-determined "
+       "ellipsoid."},
       {"influence", "Influence of frames",
        "Each training frame left out in turn: increase of the held-out error without it, in percentage points. "
        "Errors are capped at 100 %."},

@@ -15,7 +15,7 @@
 
 namespace glint::draw {
 
-/// The plots that there are, in the order of a list to choose from.
+/// All plots, in the order of a list to choose from.
 struct PlotKind {
   const char* id;
   const char* title;
@@ -23,7 +23,7 @@ struct PlotKind {
 };
 const std::vector<PlotKind>& plotKinds();
 
-/// What reading a frame's image and surface told about it, off the interface thread.
+/// Samples of a frame's image and surface, read off the interface thread.
 struct FrameSamples {
   int frame = -1;
   std::string frameId;
@@ -36,11 +36,11 @@ struct FrameSamples {
     std::optional<LobeSamples> samples;  ///< exactly one of samples and failure
     std::optional<Failure> failure;
     std::optional<double> roughness;             ///< m of the model, where it has one
-    std::optional<LobeComparison> comparison{};  ///< of samples; none where `comparisonFailure` or `failure` says why
+    std::optional<LobeComparison> comparison{};  ///< of samples; none if `comparisonFailure` or `failure` says why
     std::optional<Failure> comparisonFailure{};
   };
   std::vector<Lobe> lobes;
-  std::string failure;  ///< why there is nothing; "" when there is
+  std::string failure;  ///< why there are no samples; "" if there are some
 };
 /// Reads the frame's linear image, mask and surface, and samples its highlights for the model's light. Slow: tens of milliseconds
 /// and more.
@@ -57,10 +57,10 @@ PlotData errorPlot(const Inspection& inspection, const ErrorPlotOptions& options
 /// log(I/K') against alpha of one highlight's pixels, the lobe fitted to them and the model's own. @param highlight  -1 = the
 /// first.
 PlotData lobePlot(const FrameSamples& samples, int highlight);
-/// Radiance over its peak against alpha: means and spread of the pixels of one highlight, and every lobe fitted to them, with roughness
+/// Radiance over its peak against alpha: mean and spread of one highlight's pixels, and every lobe fitted to them, with roughness
 /// and residual. @param highlight  -1 = the first.
 PlotData lobesPlot(const FrameSamples& samples, int highlight);
-/// The samples of one highlight; -1 = the first; null where there are none.
+/// The samples of one highlight; -1 = the first; null without samples.
 const FrameSamples::Lobe* lobeOfHighlight(const FrameSamples& samples, int highlight);
 /// Semi-axes of every model's ellipsoid, longest first, with one standard deviation where the fit tells one.
 PlotData semiAxesPlot(const Inspection& inspection);

@@ -10,7 +10,7 @@
 
 namespace glint::draw {
 
-/// What tells the dots of a scatter plot apart.
+/// What the colours of a scatter plot mean.
 enum class ScatterColour { Model, Role, Light, Status };
 struct ScatterColourKind {
   ScatterColour colour;
@@ -26,8 +26,8 @@ struct ScatterOptions {
   std::set<RowKey> brushed{};  ///< empty = none: else the others are grey
 };
 
-/// Two numbers of every highlight, one dot each. What lacks one of them is no dot: the plot's remarks count it in words, and its row of CSV has no
-/// value.
+/// Two numbers of every highlight, one dot each. A highlight that lacks one has no dot: the plot's remarks count it, and its
+/// row of CSV has no value.
 struct ScatterPlot {
   PlotData plot;
   std::vector<std::vector<int>> rows;         ///< of each series: the row of each of its points

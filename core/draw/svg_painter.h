@@ -28,9 +28,9 @@ class SvgPainter : public Painter {
   /// An encoded image, stretched over a box; its pixels stay squares. @param mime  "image/png"
   void picture(const std::vector<unsigned char>& encoded, const std::string& mime, const Box& box);
 
-  /// To stand in an HTML page. @param label  what a screen reader says
+  /// For an HTML page. @param label  what a screen reader says
   std::string element(const std::string& label) const;
-  /// To stand in a file of its own. @param description  longer than the title; "" = none
+  /// For a file of its own. @param description  longer than the title; "" = none
   std::string document(const std::string& title, const std::string& description = "") const;
 
  private:

@@ -11,12 +11,12 @@
 
 namespace glint::draw {
 
-// What has no partner: observed highlights that a model misses, and predicted ones that nobody saw (spurious).
+// What has no partner: observed highlights that a model misses, and predicted ones that were not observed (spurious).
 
-/// Whether a predicted highlight of a comparison is spurious. What lies outside of the image or where a person ignores a highlight is not.
+/// Whether a predicted highlight of a comparison is spurious. Not outside of the image, or where a person ignores a highlight.
 bool isSpurious(const FrameComparison& comparison, int predicted);
-/// Which of the models miss an observed highlight, from simple to rich. A model that predicts nothing anywhere is left out: its fit
-/// says why.
+/// Which of the models miss an observed highlight, from simple to rich. A model that predicts nothing anywhere is left out: its
+/// fit says why.
 /// @param observed  index into FrameEvidence::scored()
 /// @param counts    whether a model is asked
 std::vector<std::string> missedBy(const Inspection& inspection, int frame, int observed,
@@ -32,11 +32,11 @@ struct FrameUnmatched {
   std::vector<Spurious> spurious;  ///< models from simple to rich
   friend bool operator==(const FrameUnmatched&, const FrameUnmatched&) = default;
 };
-/// Of all models, by frame; a frame where all have a partner is not there. One pass, for lists of long sequences.
+/// Those of all models, by frame; leaves out frames in which all have a partner. One pass, for lists of long sequences.
 std::map<int, FrameUnmatched> unmatchedByFrame(const Inspection& inspection);
-/// The spurious highlight that is selected; null where nothing is, or where it is not spurious any more.
+/// The spurious highlight that is selected; null if nothing is, or if it is no longer spurious.
 const PredictedHighlight* selectedSpurious(const Inspection& inspection, const Selection& selection);
-/// The comparison of the selected model that a missed or spurious selection is a row of, and that row; nulls where there is none.
+/// The comparison of the selected model that a missed or spurious selection is a row of, and that row; nulls without one.
 struct UnmatchedRow {
   const FrameComparison* comparison = nullptr;
   const FrameComparison::Row* row = nullptr;

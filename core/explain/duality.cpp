@@ -10,7 +10,7 @@
 namespace glint {
 namespace {
 
-/// The fit of a model for this frame's surface and this light; null where it has none with an ellipsoid.
+/// The fit of a model for this frame's surface and this light; null if it has none with an ellipsoid.
 const ModelFit* fitWithEllipsoid(const Inspection& inspection, int frame, const std::string& light, const std::string& model) {
   const auto found = inspection.models.find(model);
   if (found == inspection.models.end()) return nullptr;
@@ -27,7 +27,7 @@ Failure noEllipsoid(const Inspection& inspection, const std::string& model) {
     for (const ModelResult::Fit& f : found->second.fits) {
       if (!f.fit) return f.fit.failure();
       if (const EllipsoidFit* const quadric = f.fit->as<EllipsoidFit>())
-        return {Reason::NotAnEllipsoid, model + " has found a quadric that is none: " + describe(quadric->quadric)};
+        return {Reason::NotAnEllipsoid, model + " has found a quadric that is no ellipsoid: " + describe(quadric->quadric)};
     }
   return {Reason::NotAnEllipsoid, "no model here has one"};
 }

@@ -10,15 +10,15 @@
 
 namespace glint {
 
-/// An ellipsoid as its cones see it, and the same as points of the dual space: why a fit is linear in Q* and not in Q. A photograph
-/// tells which planes touch the ellipsoid (pi^T Q* pi = 0, linear in Q*), not where they touch it.
+/// An ellipsoid as its cones see it, and the same as points of the dual space: why a fit is linear in Q* and not in Q. A
+/// photograph tells which planes touch the ellipsoid (pi^T Q* pi = 0, linear in Q*), not where they touch it.
 struct Duality {
   struct Touch {
     ConePlane cone;
     Eigen::Vector3d at{0, 0, 0};          ///< on the plane, over the point of the ellipsoid that is nearest to it; world, m
     double away = 0;                      ///< m, of the plane from the ellipsoid's centre, outwards
     double gap = 0;                       ///< m, between plane and ellipsoid: positive beside it, negative where it cuts
-    std::optional<Eigen::Vector3d> dual;  ///< in the chart; none where the plane goes through the ellipsoid's centre
+    std::optional<Eigen::Vector3d> dual;  ///< in the chart; none if the plane goes through the ellipsoid's centre
   };
   struct View {
     int frame = -1;
@@ -38,11 +38,11 @@ struct Duality {
   int atInfinity = 0;     ///< planes without a dual point
 };
 
-/// Of the training views of one model's fit for this frame and light. Pure; microseconds.
+/// The duality of the training views of one model's fit for this frame and light. Pure; microseconds.
 /// @param light  "" = the first that the model has a fit of.
 /// @param model  one without an ellipsoid here, or "" = the richest with one.
 /// @param planes  of each cone, >= 3.
-/// @return  NotAnEllipsoid where no model has one; what conePlanes() says; TooFewViews where a fit names no view.
+/// @return  NotAnEllipsoid if no model has one; what conePlanes() says; TooFewViews where a fit names no view.
 Outcome<Duality> dualityOf(const Inspection& inspection, int frame, const std::string& light, const std::string& model,
                            int planes = 24);
 

@@ -376,7 +376,7 @@ void comparisonStep(const Case& c, ExplainStep& step) {
   step.numbers.push_back(one("", !modelByName(c.out.model).traits().mirrored ? "its centre from the peak" : "offset of the peaks",
                              m.peakOffsetPx, "px"));
   if (c.inspection.isTraining(c.out.frame)) step.broken.push_back({"training-frame", {}});
-  // What the surface did to the model's assumption was said where the mirror was: this is its price.
+  // The step of the mirror says what the surface did to the model's assumption: this is its price.
   const ModelTraits::Assumes assumed = assumes(c.out.model);
   std::vector<std::string> because;
   if (assumed == ModelTraits::Assumes::Plane) because = {"primal-off-plane"};

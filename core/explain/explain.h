@@ -37,9 +37,9 @@ struct ExplainStep {
 struct Explanation {
   int frame = -1;
   int highlight = -1;        ///< index in the frame's evidence; -1 = it has none
-  std::string light, model;  ///< "" where there is none
-  std::optional<TrainingView>
-      view;  ///< of this highlight, with its canonical contour where a light is known, whether the frame trains or not
+  std::string light, model;  ///< "" without one
+  /// The view of this highlight, with its canonical contour if a light is known, whether the frame trains or not.
+  std::optional<TrainingView> view;
   std::optional<Light> lightUsed;  ///< for the canonical contour
   std::vector<ExplainStep> steps;  ///< all of `explainSteps()`, in that order
 };
@@ -48,7 +48,7 @@ struct Explanation {
 /// comparison.
 const std::vector<std::string>& explainSteps();
 
-/// The wanted model; where it is "" or was not computed, the richest with an ellipsoid, else the richest; "" where there is none.
+/// The wanted model; where it is "" or was not computed, the richest with an ellipsoid, else the richest; "" without any.
 std::string modelToExplain(const Inspection& inspection, const std::string& wanted);
 
 /// Pure; takes milliseconds. @param highlight  index in the frame's evidence; out of range = the first.

@@ -25,14 +25,14 @@ struct Case {
   const FrameComparison* comparison = nullptr;
   const FrameComparison::Row* row = nullptr;
   const Camera& camera() const { return inspection.scene->frames[std::size_t(out.frame)].camera; }
-  /// That of this highlight; where it was missed, the one that lies beside it.
+  /// The prediction of this highlight; if it was missed, the one beside it.
   const PredictedHighlight* predicted() const;
   /// Whether a frame has the same light and models as this one: with a model for each surface, only where it sees the same
   /// surface.
   bool sharesModel(int frame) const;
-  /// The light that the contours of all these frames tell; null where there is none.
+  /// The light that the contours of all these frames tell; null without such a light.
   const LightEstimate* common() const;
-  /// The light that the model has found for itself, where it is another one than that; else null.
+  /// The model's own light, if it differs from the common one; else null.
   const Light* own() const;
 };
 
@@ -40,12 +40,12 @@ struct Case {
 bool reached(const Case& c, ExplainStep& step);
 /// What a model takes the surface for.
 ModelTraits::Assumes assumes(const std::string& model);
-/// How many of 72 points of the contour, equally spaced, lie where the surface ends as the camera sees it: its edge cuts the highlight.
+/// How many of 72 equally spaced contour points lie where the camera sees the surface end: its edge cuts the highlight.
 int endsAtEdge(const TrainingView& view);
 
 void virtualCameraStep(const Case& c, ExplainStep& step);
 void lightStep(const Case& c, ExplainStep& step);
-/// Says of a step that rests on the common light that the model has another one.
+/// Tells, in a step based on the common light, that the model has another one.
 void addOtherLight(const Case& c, ExplainStep& step);
 
 }  // namespace glint::explaining

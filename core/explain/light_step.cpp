@@ -22,7 +22,7 @@ double largestSigma(const Eigen::Matrix3d& covariance) {
   return std::sqrt(covariance.selfadjointView<Eigen::Lower>().eigenvalues().maxCoeff());
 }
 
-/// Between two lights, m; between their directions, deg, where both are at infinity.
+/// Distance of two lights, m; if both are at infinity, the angle between their directions, deg.
 ExplainNumber between(const std::string& name, const Light& a, const Light& b) {
   if (!a.atInfinity() && !b.atInfinity()) return one("", name, (a.position() - b.position()).norm(), "m");
   const Eigen::Vector3d u = a.homogeneous().head<3>().normalized(), v = b.homogeneous().head<3>().normalized();

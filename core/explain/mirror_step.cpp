@@ -23,7 +23,7 @@ struct End {
   Eigen::Vector3d seen{0, 0, 0}, reflected{0, 0, 0};
 };
 
-/// Both ends of the highlight along a tangent direction; empty where the contour leaves the surface there.
+/// Both ends of the highlight along a tangent direction; empty if the contour leaves the surface there.
 std::optional<std::array<End, 2>> endsAlong(const TrainingView& v, const Surface& surface, const Eigen::Vector3d& direction) {
   const Eigen::Vector3d eye = v.camera.centreInWorld(), at = v.seen->brightest.point.position;
   const Eigen::Vector3d beside = (at - eye).cross(direction);
@@ -47,7 +47,7 @@ std::optional<std::array<End, 2>> endsAlong(const TrainingView& v, const Surface
 
 double angleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
-/// Largest angle between the normal at P_B and those along the contour, of its points that lie on the surface, rad; 0 without any.
+/// Largest angle between the normal at P_B and those at contour points on the surface, rad; 0 without any.
 double largestTurn(const TrainingView& v, const Surface& surface) {
   const Eigen::Vector3d eye = v.camera.centreInWorld();
   double most = 0;
@@ -60,8 +60,8 @@ double largestTurn(const TrainingView& v, const Surface& surface) {
 /// Size of the highlight in a direction, m.
 double lengthOf(const std::optional<std::array<End, 2>>& ends) { return ends ? (*ends)[0].out + (*ends)[1].out : 0; }
 
-/// What the camera sees within the highlight in two directions, by a flat mirror and by this one, and how far behind the mirror its
-/// image lies there: 1/d' = 1/d + 2 kappa cos(theta) / (1 - (e . V)^2), Coddington's equations for any tangent direction e.
+/// What the camera sees within the highlight in two directions, by a flat mirror and by this one, and how far behind the mirror
+/// its image lies there: 1/d' = 1/d + 2 kappa cos(theta) / (1 - (e . V)^2), Coddington's equations for any tangent direction e.
 void fieldsOfView(const Case& c, const Curvature& k, ExplainStep& step) {
   const TrainingView& v = *c.out.view;
   const Eigen::Vector3d toCamera = v.camera.centreInWorld() - v.seen->brightest.point.position, view = toCamera.normalized(),

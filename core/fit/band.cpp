@@ -20,12 +20,12 @@ constexpr double kVisiblePx = 0.05;   // errors of whole views below this are no
 constexpr double kDominates = 2;      // times the noise of a point
 constexpr double kPoorShare = 0.1;    // of the contour's radius: a model that is off by more explains nothing
 constexpr double kLeastShare = 0.02;  // of the evidence: below, an alternative is not predicted
-// A tolerance +-t is a uniform error, of variance t^2 / 3 (JCGM 100:2008, 4.3.7), each of its two ends half of it. A little more, t^2 / 2.5, so that the
-// band still holds an input at the very end of its tolerance when noise comes on top: 1.96 sigma is then 1.24 d.
+// A tolerance +-t is a uniform error of variance t^2 / 3 (JCGM 100:2008, 4.3.7), half per end. A little more, t^2 / 2.5, so
+// that the band still holds an input at the very end of its tolerance when noise comes on top: 1.96 sigma is then 1.24 d.
 constexpr double kToleranceShare = 0.2;
 
-/// Sizes of everything but the cameras' distances: a surface that is larger by `factor` about the origin, seen from the same cameras, looks
-/// as the given one does from cameras nearer to the origin by as much.
+/// Sizes of everything but the cameras' distances: a surface that is larger by `factor` about the origin, seen from the same
+/// cameras, looks as the given one does from cameras nearer to the origin by as much.
 CameraChange scaled(double factor) {
   return [factor](const Camera& c) {
     Camera moved = c;
@@ -52,8 +52,8 @@ Outcome<ModelFit> fitWith(const FitInput& input, const CameraChange& change, con
   return accepted(fitModel(model, std::move(views), light, settings), poor);
 }
 
-/// Mean square of the distances of the training contours' points from the contours that a fit predicts there, px^2: the same measure for
-/// every model. NaN where it predicts none.
+/// Mean square of the distances of the training contours' points from the contours that a fit predicts there, px^2: the same
+/// measure for every model. NaN where it predicts none.
 double meanSquare(const HighlightModel& model, const ModelFit& fit, const FitInput& input, const Settings& settings) {
   double sum = 0, count = 0;
   for (const TrainingView& v : input.views) {
@@ -73,7 +73,7 @@ double meanSquare(const HighlightModel& model, const ModelFit& fit, const FitInp
   return count > 0 ? sum / count : std::nan("");
 }
 
-/// How much of the evidence each fit has: the likelihood of residuals whose variance is unknown, by as many independent ones as there are.
+/// How much of the evidence each fit has: the likelihood of that many independent residuals of unknown variance.
 std::vector<double> sharesOf(const std::vector<double>& meanSquares, double freedom) {
   const double best = std::max(*std::min_element(meanSquares.begin(), meanSquares.end()), 1e-300);  // no division by zero
   std::vector<double> shares;
@@ -101,8 +101,8 @@ FittedBand bandOf(const HighlightModel& model, const ModelFit& fit, const FitInp
   const PoorFits poor = fit.poor.empty() ? PoorFits::Refuse : PoorFits::Take;
   if (surfaceRefined) band->addOwnCovariance();
 
-  // Other lobes, or reflectance beside the limit angle. One that the evidence prefers is away by d for certain: uniform between -d and d; several that it likes alike are a mixture,
-  // whose variance is d^2 times the share.
+  // Other lobes, or reflectance beside the limit angle. One that the evidence prefers is away by d for certain: uniform between
+  // -d and d; several that it likes alike are a mixture, whose variance is d^2 times the share.
   struct Other {
     const HighlightModel* model;
     ModelFit fit;

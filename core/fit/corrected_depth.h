@@ -13,7 +13,7 @@
 
 namespace glint {
 
-/// A frame's own depth map with its stored depth corrected. NoSurface when the frame has another surface or no depth; FrameUnreadable.
+/// A frame's own depth map with corrected depth. NoSurface if the frame has another surface or no depth; FrameUnreadable.
 Outcome<std::shared_ptr<const Surface>> correctedDepthMap(const Frame& frame, MeshPolicy policy,
                                                           const DepthCorrection& correction);
 

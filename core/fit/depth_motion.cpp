@@ -32,7 +32,7 @@ bool anyNear(const FrameEvidence& e, const Pixel& place) {
          std::any_of(e.textures.begin(), e.textures.end(), [&](const WithheldTexture& t) { return near(t.highlight); });
 }
 
-/// Nothing where the frame's own depth has no point there.
+/// Nothing if the frame's own depth has no point there.
 std::optional<QuickLook> quickLook(const Scene& scene, int frame, const Highlight& h, const std::vector<int>& panel,
                                    const std::vector<FrameEvidence>& evidence, const PanelDepths& depths) {
   if (h.fromScene || h.contour.points.size() < 3) return std::nullopt;
@@ -72,7 +72,7 @@ std::shared_ptr<const Image> PanelDepths::image(int frame) const {
     if (Outcome<std::optional<Image>> depth = readDepth(scene_.frames[static_cast<std::size_t>(frame)], policy_); depth && *depth)
       read = std::make_shared<const Image>(*std::move(*depth));
   } catch (const InputError&) {
-    // Whoever needs the depth map says so.
+    // The user of the depth map reports it.
   }
   const std::lock_guard<std::mutex> lock(mutex_);
   recent_.emplace_front(frame, read);

@@ -13,12 +13,12 @@
 
 namespace glint {
 
-/// The depth maps of frames that are asked about each other's bright spots, read when first needed; the last sixteen are kept. Thread-safe.
+/// Depth maps of frames that answer about each other's bright spots. Reads them when needed, keeps the last sixteen. Thread-safe.
 class PanelDepths {
  public:
   PanelDepths(const Scene& scene, const Settings& settings);
   /// @param ideal  pixel
-  /// @return  m along the optical axis, the median of what the 3 x 3 pixels there have; nothing where most of them have none, or the file cannot be read
+  /// @return  m along the axis, the median of 3 x 3 pixels; nothing if most of them have no depth, or the file is unreadable
   std::optional<double> at(int frame, const Pixel& ideal) const;
   /// The depth map of a frame has a point of the world: on the image, in front, and as far away to a fiftieth.
   bool has(int frame, const Eigen::Vector3d& point) const;
@@ -32,10 +32,10 @@ class PanelDepths {
   mutable std::list<std::pair<int, std::shared_ptr<const Image>>> recent_;  // newest first; null = none or unreadable
 };
 
-/// motionVerdicts() of one frame, whose surface is loaded only where it can matter. Where that is the frame's own depth map, a view answers about a
-/// spot if its own depth map has the same point: poses and depth then say that this part of the object is where it was. Spots that no other
-/// depth map has are said by name (MotionVerdict::apart): the object bends or moves, or poses and depth do not agree.
-/// @param surface  of the frame; null = nothing is said
+/// motionVerdicts() of one frame; loads its surface only if it can matter. If that is the frame's own depth map, a view answers
+/// about a spot only if its own depth map has the same point: then poses and depth agree that this part of the object did not
+/// move. Names spots that no other depth map has (MotionVerdict::apart): the object bends or moves, or poses and depth disagree.
+/// @param surface  of the frame; null = no verdicts
 std::vector<MotionVerdict> judgedByMotion(const Scene& scene, int frame, const std::vector<int>& panel,
                                           const std::vector<FrameEvidence>& evidence,
                                           const std::function<std::shared_ptr<const Surface>()>& surface,

@@ -12,7 +12,7 @@
 #include "core/base/number_text.h"
 #include "core/base/safe_text.h"
 #include "core/geometry/distortion.h"
-#include "core/highlight/clipped_skirt.h"
+#include "core/highlight/clipped_flank.h"
 
 namespace glint {
 namespace {
@@ -34,21 +34,21 @@ std::optional<Failure> toIdealPixels(Highlight& h, const Camera& camera) {
   if (const std::optional<Failure> failure = undistort(h.peak)) return failure;
   h.areaPx2 = std::abs(signedArea(h.contour));
   h.ellipse.reset();
-  if (!h.skirt) return std::nullopt;
-  auto skirt = std::make_shared<ClippedSkirt>(*h.skirt);
-  for (std::size_t i = 0; i < skirt->levels.size(); ++i) {
-    SkirtLevel& level = skirt->levels[i];
+  if (!h.flank) return std::nullopt;
+  auto flank = std::make_shared<ClippedFlank>(*h.flank);
+  for (std::size_t i = 0; i < flank->levels.size(); ++i) {
+    FlankLevel& level = flank->levels[i];
     for (Pixel& p : level.contour.points)
       if (undistort(p)) {  // lower levels reach farther out, where the lens may show nothing
-        skirt->levels.resize(i);
+        flank->levels.resize(i);
         break;
       }
-    if (i == skirt->levels.size()) break;
+    if (i == flank->levels.size()) break;
     level.areaPx2 = std::abs(signedArea(level.contour));
     level.ellipse.reset();
     if (const Outcome<Ellipse> e = fitEllipse(level.contour.points)) level.ellipse = *e;
   }
-  h.skirt = std::move(skirt);
+  h.flank = std::move(flank);
   return std::nullopt;
 }
 
@@ -58,22 +58,23 @@ void fitMissingEllipse(Highlight& h) {
 }
 
 /// The value of each pixel by the combination of the nearest region.
-void takeSpecularPart(const Image& linear, const std::vector<PartedRegion>& parted, LinearPixels& pixels) {
-  require(linear.channels == 3, "parted pixels: 3 channels");
+void takeSpecularPart(const Image& linear, const std::vector<SeparatedRegion>& separated, LinearPixels& pixels) {
+  require(linear.channels == 3, "separated pixels: 3 channels");
   std::vector<Eigen::Matrix2d> inverse;
-  for (const PartedRegion& region : parted) inverse.push_back(region.footprint.shape.inverse());
+  for (const SeparatedRegion& region : separated) inverse.push_back(region.footprint.shape.inverse());
   for (int y = 0; y < linear.height; ++y)
     for (int x = 0; x < linear.width; ++x) {
       std::size_t nearest = 0;
       double least = std::numeric_limits<double>::infinity();
-      for (std::size_t k = 0; k < parted.size(); ++k) {
-        const Eigen::Vector2d d = Pixel(x, y) - parted[k].footprint.centre;
+      for (std::size_t k = 0; k < separated.size(); ++k) {
+        const Eigen::Vector2d d = Pixel(x, y) - separated[k].footprint.centre;
         if (const double squared = d.dot(inverse[k] * d); squared < least) {
           least = squared;
           nearest = k;
         }
       }
-      const double s = parted[nearest].channels.dot(Eigen::Vector3d(linear.at(x, y, 0), linear.at(x, y, 1), linear.at(x, y, 2)));
+      const double s =
+          separated[nearest].channels.dot(Eigen::Vector3d(linear.at(x, y, 0), linear.at(x, y, 1), linear.at(x, y, 2)));
       pixels.value.at(x, y) = std::isfinite(s) ? static_cast<float>(s) : 0.f;
     }
 }
@@ -106,14 +107,14 @@ DetectOptions detectOptionsFor(const Frame& frame, FrameSource source, const Set
 }
 
 Outcome<LinearPixels> pixelsOf(const Frame& frame, FrameSource source, const Settings& settings,
-                               const std::vector<PartedRegion>& parted) {
+                               const std::vector<SeparatedRegion>& separated) {
   const Outcome<Image> linear = readLinear(frame, source);
   if (!linear) return linear.failure();
   const Outcome<std::optional<Image>> mask = readMask(frame);
   if (!mask) return mask.failure();
   LinearPixels pixels =
       linearPixels(*linear, mask->has_value() ? &**mask : nullptr, detectOptionsFor(frame, source, settings).clipValue);
-  if (!parted.empty()) takeSpecularPart(*linear, parted, pixels);
+  if (!separated.empty()) takeSpecularPart(*linear, separated, pixels);
   return pixels;
 }
 
@@ -158,7 +159,7 @@ FrameEvidence gatherEvidence(const Scene& scene, int index, FrameSource source, 
     }
     for (Highlight& h : *found) {
       if (std::optional<Failure> failure = toIdealPixels(h, frame.camera))
-        evidence.failure = std::move(failure);  // stands only when no other highlight is left
+        evidence.failure = std::move(failure);  // kept only if no other highlight is left
       else
         evidence.highlights.push_back(std::move(h));
     }
@@ -174,9 +175,10 @@ FrameEvidence gatherEvidence(const Scene& scene, int index, FrameSource source, 
   return evidence;
 }
 
-Parting partEvidence(const Scene& scene, int index, FrameSource source, const Settings& settings, FrameEvidence& evidence) {
+SpecularSeparation separateEvidence(const Scene& scene, int index, FrameSource source, const Settings& settings,
+                                    FrameEvidence& evidence) {
   const auto because = [](std::string reason) {
-    Parting none;
+    SpecularSeparation none;
     none.reason = std::move(reason);
     return none;
   };
@@ -198,14 +200,14 @@ Parting partEvidence(const Scene& scene, int index, FrameSource source, const Se
     }
   DetectOptions options = detectOptionsFor(frame, source, settings);
   options.separatePeaks = frame.lightsOn.size() > 1;
-  Parting parting = partHighlights(*linear, mask->has_value() ? &**mask : nullptr, options, measured);
-  if (!parting.parted) return parting;
+  SpecularSeparation separation = separateHighlights(*linear, mask->has_value() ? &**mask : nullptr, options, measured);
+  if (!separation.separated) return separation;
   for (Highlight& h : measured) {
     if (const std::optional<Failure> failure = toIdealPixels(h, frame.camera)) return because(failure->message());
     fitMissingEllipse(h);
   }
   evidence.highlights = std::move(measured);
-  return parting;
+  return separation;
 }
 
 void requireTruthFolder(const std::string& folder, const Scene& scene) {

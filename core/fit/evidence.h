@@ -7,7 +7,7 @@
 
 #include "core/base/settings.h"
 #include "core/fit/frame_evidence.h"
-#include "core/highlight/parting.h"
+#include "core/highlight/specular_separation.h"
 #include "core/reflectance/pixel_patch.h"
 #include "core/scene/scene.h"
 
@@ -15,7 +15,7 @@ namespace glint {
 
 /// How the highlights of several lights are detected (DetectOptions::separatePeaks).
 struct SeparateLights {
-  bool separate = false;                  ///< also where the frame does not state several lights
+  bool separate = false;                  ///< also if the frame does not state several lights
   std::vector<PeakReference> references;  ///< ideal pixels
 };
 
@@ -23,29 +23,30 @@ struct SeparateLights {
 DetectOptions detectOptionsFor(const Frame& frame, FrameSource source, const Settings& settings);
 
 /// The image that detection sees, as evidence. FrameUnreadable.
-/// @param parted  how highlights of the frame were parted (FrameEvidence::parted): each pixel then holds the specular part by the combination of the
-///                nearest one, counted in its footprints, below 0 where noise says so. Empty: the mean of the channels
+/// @param separated  FrameEvidence::separated: each pixel then holds the specular part by
+///                the nearest one's combination, in footprints; below 0 where noise says so. Empty: the mean of the channels
 Outcome<LinearPixels> pixelsOf(const Frame& frame, FrameSource source, const Settings& settings,
-                               const std::vector<PartedRegion>& parted = {});
+                               const std::vector<SeparatedRegion>& separated = {});
 
-/// Contours at other levels, to the highlight of the same light whose peak they enclose. One around several peaks is evidence once.
+/// Contours at other levels, to the highlight of the same light whose peak they enclose. One around several peaks counts once.
 void addOtherLevels(const std::vector<Highlight>& given, std::vector<Highlight>& highlights);
 
-/// Highlights of one frame in ideal pixels: those that the scene gives, else detected (each at the level of its own peak where the frame states
-/// several lights). The light is set where the frame says which one is on (one light: its id; none stated: "light").
+/// Highlights of one frame in ideal pixels: those that the scene gives, else detected ones (each at the level of its own peak if
+/// the frame states several lights). Sets the light if the frame says which one is on (one light: its id; none stated: "light").
 FrameEvidence gatherEvidence(const Scene& scene, int frame, FrameSource source, const Settings& settings,
                              const SeparateLights& lights = {});
 
-/// Traces the detected highlights of a frame again on their specular part alone, where its colours allow it (`partHighlights`). Highlights that the scene
-/// gives stay as they are.
-/// @return what came of it; the reason also where the lens distortion has no inverse
-Parting partEvidence(const Scene& scene, int frame, FrameSource source, const Settings& settings, FrameEvidence& evidence);
+/// Traces the detected highlights of a frame again on their specular part alone, where its colours allow it
+/// (`separateHighlights`). Highlights that the scene gives stay as they are.
+/// @return what came of it; the reason also if the lens distortion has no inverse
+SpecularSeparation separateEvidence(const Scene& scene, int frame, FrameSource source, const Settings& settings,
+                                    FrameEvidence& evidence);
 
-/// Contours stored as in data/cycles/*/contours (FOLDER/ID.json) at `level`, for scoring. FrameUnreadable when the frame has no
-/// file. InputError when a file does not parse, does not hold the level or has a contour without area.
+/// Contours stored as in data/cycles/*/contours (FOLDER/ID.json) at `level`, for scoring. FrameUnreadable if the frame has no
+/// file. InputError if a file does not parse, does not hold the level or has a contour without area.
 Outcome<std::vector<Highlight>> readTruth(const std::string& folder, const Scene& scene, int frame, double level);
 
-/// InputError when `folder` is none, or holds contours of no frame at all.
+/// InputError if `folder` is not a folder, or holds no frame's contours.
 void requireTruthFolder(const std::string& folder, const Scene& scene);
 
 /// The contour resampled to 72 points, with independent Gaussian noise per coordinate on them and on the peak (--noise-px).

@@ -49,7 +49,7 @@ class LightFitter {
     const auto source = scene_.surfaces.find(surface);
     if (source == scene_.surfaces.end() || !source->second.mesh)
       return;  // a shape is exact, a depth map has a depth that could be off
-    // What one mesh has wrong another one has not.
+    // One correction describes the errors of one mesh only.
     if (std::any_of(fit.views.begin(), fit.views.end(),
                     [&](const TrainingView& v) { return surfaces_.keyOf(v.frame) != surface; }))
       return;

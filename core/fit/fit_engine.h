@@ -17,19 +17,19 @@ struct LightFit {
   SurfaceCorrection correction;
 };
 
-/// The one way from views to a light: estimateLight(), then what light.refine_depth and light.refine_normals ask for. A correction is kept where the
-/// views on the corrected surface keep what it promised.
+/// The one way from views to a light: estimateLight(), then what light.refine_depth and light.refine_normals ask for. A
+/// correction is kept where the views on the corrected surface keep what it promised.
 /// @param views  of one light, and of one surface where models are per surface; on the surfaces as they are given.
 LightFit fitLight(std::vector<TrainingView> views, const Scene& scene, const SurfaceCache& surfaces, const Settings& settings);
 
 /// What a model is fitted to: the views, with canonical contours under the light where the model needs them and a view has none.
-/// @param light     for models that need one; empty where none was asked for.
+/// @param light     for models that need one; empty if none was asked for.
 /// @param pixelFit  of the pixels of exactly these views, where it is known already.
 FitInput fitInput(const HighlightModel& model, std::vector<TrainingView> views,
                   const std::optional<Outcome<LightEstimate>>& light, const Settings& settings,
                   std::shared_ptr<const PixelFit> pixelFit = nullptr, const ProgressFn& progress = {});
 
-/// Fits a model to that. The model's failures.
+/// Fits a model to that input. Fails as the model does.
 Outcome<ModelFit> fitModel(const HighlightModel& model, std::vector<TrainingView> views,
                            const std::optional<Outcome<LightEstimate>>& light, const Settings& settings,
                            std::shared_ptr<const PixelFit> pixelFit = nullptr, const ProgressFn& progress = {});

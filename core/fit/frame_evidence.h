@@ -7,7 +7,7 @@
 
 #include "core/base/outcome.h"
 #include "core/highlight/highlight.h"
-#include "core/highlight/parting.h"
+#include "core/highlight/specular_separation.h"
 
 namespace glint {
 
@@ -26,10 +26,10 @@ struct FrameEvidence {
   std::optional<Failure> failure;           ///< why there are no highlights: NoHighlight, FrameUnreadable, ...
   std::vector<RejectedCandidate> rejected;  ///< what detection saw and did not take, measured pixels
   std::vector<WithheldTexture> textures;    ///< taken out of `highlights`, by rising place
-  /// detect.background = colours: why the colours do not tell what is specular; "" where they do, or were not asked.
-  std::string notParted;
-  std::vector<PartedRegion> parted;  ///< where they do: how, around each highlight that was detected; measured pixels
-  bool againstTruth = false;         ///< --truth is given: `truth` is scored, whatever was detected
+  /// detect.background = colours: why the colours do not tell what is specular; "" if they do, or were not asked.
+  std::string notSeparated;
+  std::vector<SeparatedRegion> separated;  ///< where they do: how, around each highlight that was detected; measured pixels
+  bool againstTruth = false;               ///< --truth is given: `truth` is scored, whatever was detected
   /// Where a what-if took some out or changed which there are: which of the highlights as found each one is; else empty.
   std::vector<int> found;
   std::vector<Highlight> ignored;  ///< by hand: neither evidence nor scored, and a prediction there is not spurious

@@ -16,7 +16,7 @@
 #include "core/fit/evidence.h"
 #include "core/geometry/distortion.h"
 
-// COCO's object detection format (Lin et al., Microsoft COCO: Common objects in context, ECCV 2014; cocodataset.org, "Data format").
+// COCO's object detection format (Lin et al., Microsoft COCO: Common objects in context, ECCV 2014; cocodataset.org).
 
 namespace glint {
 namespace {
@@ -95,7 +95,7 @@ class LabelReading {
       const JsonNode node = list.at(i);
       const std::string name = node.at("name").text(), start = "highlight ";
       const std::string bare = name.compare(0, start.size(), start) == 0 ? name.substr(start.size()) : name;
-      // Of a scene that names no light every category is one: "light" is what such a scene's own is called.
+      // If the scene names no light, every category is one: such a scene's own is called "light".
       const bool known = lights.count(bare) || lights.count(name) || (lights.empty() && bare == "light");
       if (!categories_.emplace(node.at("id").integer(), known ? (lights.count(name) ? name : bare) : "").second)
         node.at("id").fail("duplicate id");

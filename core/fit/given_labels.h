@@ -17,17 +17,17 @@ struct LabelledScene {
   std::vector<std::string> warnings;  ///< one line each
 };
 
-/// The scene with the highlights of a COCO file: what `predict --labels coco` wrote and a person corrected, or labels of other origin. Frames
-/// that have a label lose the highlights that they had at its level; all others keep theirs.
-///   image       a frame: by its path in the scene, else by its name with or without ending, or the frame's id, where one frame alone has it.
-///               Others are listed in a warning. Never opened
-///   category    "highlight lamp" or "lamp" names the light where the scene knows it, else the light stays open
-///   polygon     the largest of an annotation; minus half a pixel, and without the lens's distortion. Corners that a person set may be three
-///   attributes  "level" where it is there, else 0.5
-/// A polygon has no peak. Where the scene's own highlight of that frame has one inside, it stays; else that of the highlight which is detected
-/// in the photograph there; else the polygon's centroid, with a warning.
-/// @throw InputError (file, place) for a file that is no COCO, an image of another size than its frame, two images for one frame, labels as bit
-///        masks (RLE) or boxes alone, polygons outside of the image or without area, and where no image is a frame; Stopped
+/// The scene with the highlights of a COCO file: one that `predict --labels coco` wrote and a person corrected, or labels of
+/// other origin. Frames with a label lose the highlights that they had at its level; all others keep theirs.
+///   image       a frame: by its path in the scene, else by its name with or without ending, or the frame's id, if only one frame
+///               has it. A warning lists others. Never opened
+///   category    "highlight lamp" or "lamp" names the light if the scene knows it, else the light stays open
+///   polygon     the largest of an annotation; minus half a pixel, and without the lens's distortion. Three corners suffice
+///   attributes  "level" if present, else 0.5
+/// A polygon has no peak. It takes that of the scene's own highlight inside of it, else that of the highlight detected there in
+/// the photograph; else the polygon's centroid, with a warning.
+/// @throw InputError (file, place) for a file that is no COCO, an image of another size than its frame, two images of one frame,
+///        bit masks (RLE) or boxes alone, polygons outside of the image or without area, and if no image is a frame; Stopped
 LabelledScene withLabels(const Scene& scene, const std::filesystem::path& file, const ProgressFn& progress = {});
 /// The same from the file's text.
 LabelledScene withLabels(const Scene& scene, const std::string& text, const std::string& file, const ProgressFn& progress);

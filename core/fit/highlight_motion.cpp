@@ -80,7 +80,7 @@ struct Place {
   double tolerance() const { return std::max(kMatchPx, kMatchShare * radiusOf(areaPx2)); }
 };
 
-/// Nothing where the view does not see all of it, or nearly edge-on.
+/// Nothing if the view does not see all of it, or nearly edge-on.
 std::optional<Place> placeIn(const Camera& camera, const Surface& surface, const Spot& spot) {
   const Eigen::Vector3d towards = camera.centreInWorld() - spot.middle.position;
   if (!(spot.middle.normal.dot(towards) > kEdgeOn * towards.norm())) return std::nullopt;
@@ -106,7 +106,7 @@ double distanceToSegment(const Pixel& p, const Pixel& a, const Pixel& b) {
 
 /// Where a highlight would be in another view: the brightest points of lamps ever farther away along the mirrored ray.
 struct Path {
-  std::vector<std::vector<Pixel>> places;  ///< of each lamp, from near to far; empty where none is seen
+  std::vector<std::vector<Pixel>> places;  ///< of each lamp, from near to far; empty if none is seen
   bool empty() const {
     return std::all_of(places.begin(), places.end(), [](const auto& p) { return p.empty(); });
   }
@@ -186,7 +186,7 @@ bool Judge::isExpected(const std::vector<Highlight>& candidates, const Place& pl
   if (h_.clipped || candidates.empty()) return true;
   double strongest = 0;
   for (const Highlight& c : candidates) {
-    if (c.clipped) return false;  // nobody knows how strong it is
+    if (c.clipped) return false;  // its strength is unknown
     strongest = std::max(strongest, c.peakValue);
   }
   return h_.peakValue >= kFoundAbove * level_ * strongest;
@@ -251,8 +251,8 @@ void Judge::second(const Camera& camera, const FrameEvidence& evidence, Answer& 
   if (predicted) answer.says = Answer::Says::Stays;
 }
 
-/// Regression of what is left of the motion on that of the nearest lamp's highlight: its share, plus twice its standard deviation. Infinity where
-/// nothing is known.
+/// Regression of what is left of the motion on that of the nearest lamp's highlight: its share, plus twice its standard
+/// deviation. Infinity where nothing is known.
 double shareOfNearest(const std::vector<const Answer*>& stays) {
   double across = 0, along = 0, rest = 0;
   int n = 0;
@@ -270,7 +270,7 @@ double shareOfNearest(const std::vector<const Answer*>& stays) {
   return std::max(0.0, share) + 2 * sigma / std::sqrt(along);
 }
 
-/// Views that see the spot from one side say the same, and are counted once; whoever of them speaks against paint is heard.
+/// Views that see the spot from one side agree and count once; one of them that contradicts paint counts.
 std::set<int> sidesWith(const std::vector<Answer>& answers, Answer::Says says) {
   std::set<int> sides;
   for (const Answer& a : answers)
@@ -298,7 +298,7 @@ MotionVerdict Judge::verdict(const std::vector<Answer>& answers) const {
   return v;
 }
 
-/// Whether it may be paint, if all views that have not answered yet speak for it.
+/// Whether it may be paint, if all views that have not answered yet suggest it.
 bool mayBeTexture(const std::vector<Answer>& answers, int waiting) {
   const int away = static_cast<int>(sidesWith(answers, Answer::Says::Away).size());
   const int there = waiting + static_cast<int>(std::count_if(answers.begin(), answers.end(),
@@ -317,7 +317,7 @@ MotionVerdict tooFew(const std::vector<Answer>& answers) {
   return v;
 }
 
-/// Of each camera the side from which it sees a point: those within a degree of the first one of a side are of that side.
+/// Each camera's side of a point: cameras within a degree of the first one of a side belong to that side.
 std::vector<int> sidesOf(const std::vector<const Camera*>& cameras, const Eigen::Vector3d& point) {
   std::vector<Eigen::Vector3d> first;
   std::vector<int> sides;

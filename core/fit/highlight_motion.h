@@ -16,10 +16,10 @@ class PanelDepths;
 enum class MotionUse { Off, Flag, Reject };
 MotionUse motionUse(const Settings& settings);
 
-/// What other views say about a bright spot: paint stays on its point of the surface, a highlight moves over the surface with the camera.
+/// What other views say about a bright spot: paint stays on its surface point, a highlight moves over it with the camera.
 struct MotionVerdict {
   enum class Kind {
-    Unremarkable,  ///< it is elsewhere in other views, or nothing speaks for paint
+    Unremarkable,  ///< it is elsewhere in other views, or nothing suggests paint
     CannotTell,    ///< it stays on its point, but a highlight might do so too
     Texture,       ///< it stays on its point where a highlight would have left it
     Waiting        ///< views that were not searched yet may decide
@@ -30,37 +30,37 @@ struct MotionVerdict {
   int away = 0;           ///< views from different sides that see the point, should find the spot there, and do not
   bool apart = false;     ///< the frame's surface is its own depth map, and that of no other view has the spot's point
   double lampWithin = 0;  ///< where stays > 0: a lamp that leaves a highlight there is nearer to the surface than this, m
-  /// In words, as a reason or a flag; "" where there is nothing to say.
+  /// In words, as a reason or a flag; "" if there is nothing to say.
   std::string text() const;
 };
 
-/// The frames that are asked about the highlights of each frame: up to twelve that see the same surface, spread evenly over the sequence. Frames with
-/// given highlights ask none and are not asked: a hand that labels highlights leaves the paint out. Frames whose surface is their own depth map
-/// ask each other; `judgedByMotion` (depth_motion.h) takes care of that.
+/// The frames that are asked about the highlights of each frame: up to twelve that see the same surface, spread evenly over the
+/// sequence. Frames with given highlights ask none and are not asked: a hand that labels highlights leaves the paint out. Frames
+/// whose surface is their own depth map ask each other; `judgedByMotion` (depth_motion.h) takes care of that.
 /// @return  by frame, sorted, without the frame itself
 std::vector<std::vector<int>> motionPanels(const Scene& scene, const SurfaceCache& surfaces);
 
 /// Tells paint from highlights by their motion over the surface (method.md section 1, "Motion").
 /// With P the surface point under the middle of a contour, every other view that sees P answers by the two places
 ///   paint:      the contour, carried over on the surface
-///   highlight:  predicted brightest points of lamps along the mirrored ray at P, from a fifth of the camera's distance to infinity, which stand
-///               still in the world or with the camera (so an object that is turned before a still camera is served as well)
-/// It speaks for paint where a candidate of like size and strength lies on the first and the second is farther away than twice what such a match
-/// leaves open, 4 px at least; against it where the spot would be strong enough to be found at the first and is not. Paint: at least two views speak for it, three
-/// times as many as speak against it, views within one degree of each other counted once, and what is left of the motion towards the second
-/// place is less than a lamp at a fiftieth of the camera's distance would cause. Nearer lamps cannot be told from paint, nor can relief that
-/// the surface does not have: the text says so.
+///   highlight:  predicted brightest points of lamps along the mirrored ray at P, from a fifth of the camera's distance to
+///               infinity, at rest in the world or with the camera (which serves objects that turn before a still camera)
+/// It speaks for paint if a candidate of like size and strength lies on the first, and the second is farther away than
+/// twice the match's tolerance, at least 4 px; against it if the spot would be strong enough to be found at the first and is not.
+/// Paint needs two views for it, three times as many as against it (views within one degree count once), and a remaining motion
+/// towards the second place below what a lamp at a fiftieth of the camera's distance would cause. Nearer lamps look like paint,
+/// and so does relief that the surface lacks: the text says so.
 /// @param frame     whose highlights are judged; spots that the image or the silhouette cuts, or that are seen edge-on, are not
 /// @param panel     see motionPanels()
 /// @param evidence  of all frames, as detected; `frame` < 0 = not searched yet
-/// @param surface   that these frames see; null = nothing is said
+/// @param surface   that these frames see; null = no verdicts
 /// @param depths    where that is the frame's own depth map: views whose depth maps do not have the spot's point answer nothing
 /// @return  one for each highlight of the frame, in their order
 std::vector<MotionVerdict> motionVerdicts(const Scene& scene, int frame, const std::vector<int>& panel,
                                           const std::vector<FrameEvidence>& evidence, const Surface* surface,
                                           const Settings& settings, const PanelDepths* depths = nullptr);
 
-/// Takes the highlights that are paint out of the evidence: into `rejected` with the reason, and into `textures`. NoHighlight where none is left.
+/// Moves paint from the evidence to `rejected`, with the reason, and to `textures`. NoHighlight if none is left.
 /// @param camera    of the frame: `rejected` holds measured pixels
 /// @param verdicts  one for each highlight
 void withholdTextures(FrameEvidence& evidence, const std::vector<MotionVerdict>& verdicts, const Camera& camera);

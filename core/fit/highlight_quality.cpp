@@ -8,7 +8,7 @@
 #include "core/base/median.h"
 #include "core/base/number_text.h"
 #include "core/highlight/background.h"
-#include "core/highlight/clipped_skirt.h"
+#include "core/highlight/clipped_flank.h"
 #include "core/highlight/pixel_noise.h"
 #include "core/light/estimate.h"
 
@@ -52,8 +52,8 @@ std::optional<Footprint> footprintOnImage(const Highlight& h, const Camera& came
   return footprint;
 }
 
-/// How much smaller the contour of a Gaussian lobe would be without the blur: r^2 = 2 ln(1/q) (variance of the lobe + variance of the blur). No edge
-/// moves by more than the blur itself.
+/// How much smaller the contour of a Gaussian lobe would be without the blur: r^2 = 2 ln(1/q) (variance of the lobe + variance of
+/// the blur). No edge moves by more than the blur itself.
 double widenedBy(const FrameBlur& blur, const Ellipse& e, double level) {
   double most = 0;
   for (int axis = 0; axis < 2; ++axis) {
@@ -79,7 +79,7 @@ void measureContour(const Highlight& h, const Frame& frame, const LinearPixels& 
   }
   if (byNoise.empty()) return;
   q.noisePx = upperMedian(byNoise);
-  if (h.clipped) q.levelPx = h.skirt ? h.skirt->sigmaPx : upperMedian(byLevel);
+  if (h.clipped) q.levelPx = h.flank ? h.flank->sigmaPx : upperMedian(byLevel);
   if (footprint && !h.clipped)
     q.backgroundPx = backgroundUncertaintyPct(pixels.value, pixels.usable, *footprint, h.peakValue) / 100 *
                      std::sqrt(4 / M_PI * std::max(0.0, h.areaPx2));
@@ -101,7 +101,7 @@ void lookAtSilhouette(const Highlight& h, const Camera& camera, const Surface& s
     q.flags.push_back(formatted("at the silhouette: %.0f %% of the contour", 100 * q.silhouetteShare));
 }
 
-/// By how much two mirrored rays miss a common lamp, rad: seen from the nearer of the two places, or between them where they part.
+/// By how much two mirrored rays miss a common lamp, rad: seen from the nearer of the two places, or halfway where they diverge.
 double disagreement(const ReflectedRay& a, const ReflectedRay& b) {
   const double apart = std::atan2(a.direction.cross(b.direction).norm(), a.direction.dot(b.direction));
   const Eigen::Vector3d between = b.origin - a.origin;
@@ -124,8 +124,8 @@ std::vector<HighlightQuality> highlightQualities(const Frame& frame, const Linea
     const Highlight& h = highlights[i];
     HighlightQuality& q = qualities[i];
     if (h.contour.points.size() < 3) continue;
-    if (h.clipped) q.flags.push_back(h.skirt ? "clipped core: " + inWords(*h.skirt) : "clipped core");
-    if (h.cutPx2 > kWorthCutPx2) q.flags.push_back(formatted("streaks and narrow tongues cut off: %.0f px2", h.cutPx2));
+    if (h.clipped) q.flags.push_back(h.flank ? "clipped core: " + inWords(*h.flank) : "clipped core");
+    if (h.cutPx2 > kWorthCutPx2) q.flags.push_back(formatted("streaks cut off: %.0f px2", h.cutPx2));
     if (h.touchesBorder) q.flags.emplace_back("cut by the image's edge");
     measureContour(h, frame, pixels, noise, q);
     if (surface) lookAtSilhouette(h, frame.camera, *surface, q);

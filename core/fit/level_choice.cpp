@@ -28,7 +28,7 @@ struct FrameAtLevel {
   double noisePx = 0;
 };
 
-/// By what share the radius of a lobe's contour changes with the level: the larger of a Gaussian's and of GGX's, q = (1 + (2^(1/2) - 1) r^2)^-2.
+/// Relative change of a contour's radius with the level: the larger of a Gaussian's and GGX's, q = (1 + (2^(1/2) - 1) r^2)^-2.
 double lobeChange(double level, double factor) {
   const auto ggx = [](double q) { return std::sqrt(1 / std::sqrt(q) - 1); };
   return std::max(std::abs(std::sqrt(std::log(factor * level) / std::log(level)) - 1),

@@ -20,12 +20,12 @@ struct LevelChoice {
   double noisePx = 0;  ///< median over these frames: what the pixels' noise moves the contour
 };
 
-/// Chooses the level for `detect.level`, one for all frames (method.md section 1). Where the scene gives contours, theirs. Else levels are tried from
-/// 0.5 outwards (0.5, 0.4, 0.6, 0.3, 0.7) on up to six of the frames: the first at which the largest highlight of every frame is stable under a
-/// tenth of the level (ellipse's centre within 2 % of the longer semi-axis, axes as an ideal lobe does, Gaussian or GGX) and stands out of noise by more than
-/// half a pixel's worth; else the one at which most are. Clipped highlights are contoured at a fraction of the clip value, so every level is below it.
+/// Chooses the level for `detect.level`, one for all frames (method.md section 1): the scene's contours have theirs. Else
+/// tries 0.5, 0.4, 0.6, 0.3, 0.7 on up to six frames, taking the first at which each frame's largest highlight is stable to a
+/// tenth of the level (centre within 2 % of the longer semi-axis, axes like an ideal lobe's, Gaussian or GGX) and half a pixel
+/// above noise; else the one at which most are. A clipped highlight lies at a fraction of the clip value, always below it.
 /// @param frames  that are looked at, by index
-/// @return  NoHighlight where none of them shows one; FrameUnreadable
+/// @return  NoHighlight if none of them shows one; FrameUnreadable
 Outcome<LevelChoice> chooseLevel(const Scene& scene, const std::vector<int>& frames, FrameSource source, const Settings& settings,
                                  const ProgressFn& progress = {});
 

@@ -33,7 +33,7 @@ std::vector<BundleView> bundleViewsOf(const std::vector<TrainingView>& views) {
   return result;
 }
 
-/// The reflectance model of some views' contours; none where it fails.
+/// The reflectance model of some views' contours; none if it fails.
 std::optional<ModelFit> reflectanceOf(const std::vector<TrainingView>& views, const LightEstimate& light,
                                       const Settings& settings) {
   Settings contours = settings;
@@ -44,7 +44,7 @@ std::optional<ModelFit> reflectanceOf(const std::vector<TrainingView>& views, co
   return fit && fit->lightEstimate && fit->as<ReflectanceFit>() ? std::optional<ModelFit>(*fit) : std::nullopt;
 }
 
-/// The angle of the contour that a reflectance fit predicts, near a pixel: that of the pixel less its distance from the predicted contour.
+/// The angle of a reflectance fit's predicted contour near a pixel: the pixel's angle less its distance from that contour.
 class LobeAngles {
  public:
   LobeAngles(const ModelFit& fit, const std::vector<TrainingView>& views) : light_(*fit.lightEstimate) {

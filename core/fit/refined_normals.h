@@ -19,12 +19,12 @@ struct RefinedNormals {
   double slope = 0, openTilt = 1;     ///< as NormalRefinement
   double plainPx = 0, refinedPx = 0;  ///< what the model leaves of the training contours before and after, RMS
   std::optional<ParameterUncertainty> uncertainty;  ///< of the limit angle's light, where that model told
-  /// For the user: how far the normals turned, what it gained and what stays open.
+  /// Tells the user how far the normals turned, what it gained and what stays open.
   std::string remark() const;
 };
 
-/// Corrects the mesh that all views of one light see. Bumps are what neither the limit angle nor the reflectance model explains; the better of the two says
-/// what the angle along each contour should be (refineNormals), and must leave less on the corrected mesh than on the given one. Empty where nothing is gained.
+/// Corrects the mesh that all views of one light see. Bumps are what neither limit angle nor reflectance model explains. The
+/// better model tells the angle along each contour (refineNormals), and must fit the corrected mesh better. Empty without a gain.
 /// @param views    with their light as estimated. @param surface  their key.
 /// NotSupported unless `light.solver` is bundle and the mesh has vertex normals; the failures of refineNormals().
 Outcome<std::optional<RefinedNormals>> refineNormals(const std::vector<TrainingView>& views, const LightEstimate& light,

@@ -15,9 +15,9 @@ namespace glint {
 bool lightsNeedAllFrames(const Scene& scene);
 
 /// Gives every highlight its light where several are on or none is stated (core/light/track.h), and brings the highlights of
-/// one light in a frame to one level. Does nothing where every highlight has its light.
+/// one light in a frame to one level. Does nothing if every highlight has its light.
 /// @param evidence     one per frame; changed in place
-/// @param surfaceOf    of a frame; null where it has none
+/// @param surfaceOf    of a frame; null if it has none
 /// @param detectAgain  evidence of a frame with its lights kept apart; called from several threads
 /// Throws Stopped.
 void assignSeveralLights(const Scene& scene, std::vector<FrameEvidence>& evidence,

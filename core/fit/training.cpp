@@ -52,8 +52,8 @@ TrainingView seenAgain(const TrainingView& view, const Camera& camera, std::shar
 
 namespace {
 
-/// Whether the limit angle gets an extent. With -1 the views decide: only where one constant leaves residuals that are both visible and
-/// systematic is the extent tried at all, and it is kept when it predicts left-out views better by more than the standard error of the gain.
+/// Whether the limit angle gets an extent. With -1 the views decide: an extent is tried only if one constant leaves visible,
+/// systematic residuals, and kept if it predicts left-out views better by more than the standard error of the gain.
 int limitOrders(const std::vector<ContourEvidence>& evidence, const std::vector<int>& places, const Bundle& constant,
                 const BundleOptions& options, int asked) {
   if (asked >= 0) return asked;

@@ -23,8 +23,8 @@ TrainingView seenAgain(const TrainingView& view, const Camera& camera, std::shar
 /// TooFewViews; LightBehindSurface; what the bundle reports. A bundle that fails falls back to nothing: its reason is returned.
 Outcome<LightEstimate> estimateLight(const std::vector<TrainingView>& views, const Settings& settings);
 
-/// Depth correction of some views of one light whose surfaces are their own frames' depth maps (light.refine_depth). The bundle's failures;
-/// NotSupported unless `light.solver` is bundle.
+/// Depth correction of some views of one light whose surfaces are their own frames' depth maps (light.refine_depth). The bundle's
+/// failures; NotSupported unless `light.solver` is bundle.
 Outcome<DepthRefinement> refineDepth(const std::vector<TrainingView>& views, const Light& start, const Settings& settings);
 
 /// Fills `canonical` of a view (method.md section 6). Views with `failure` stay as they are.

@@ -49,9 +49,9 @@ struct Camera {
   /// Depth along the optical axis, world units.
   double depth(const Eigen::Vector3d& pointInWorld) const;
   bool hasDistortion() const { return !lens.isIdeal(); }
-  /// Ideal pixel of a measured (distorted) one. Not finite where there is none (beyond the fold of a strong distortion, or 90
-  /// degrees and more from the axis of a fisheye): the caller checks, or asks withoutDistortion (core/geometry/distortion.h), which
-  /// names the reason. Near 90 degrees it lies far outside of width x height.
+  /// Ideal pixel of a measured (distorted) one. Not finite where no such pixel exists (beyond the fold of a strong distortion, or
+  /// 90 degrees and more from the axis of a fisheye): the caller checks, or asks withoutDistortion (core/geometry/distortion.h),
+  /// which names the reason. Near 90 degrees it lies far outside of width x height.
   Pixel undistorted(const Pixel& measured) const;
   /// Measured pixel of an ideal one (closed form). Not finite where the lens shows none, see distorted(Lens).
   Pixel distorted(const Pixel& ideal) const;

@@ -14,8 +14,8 @@
 namespace glint {
 namespace {
 
-/// Keys that other programs write and that would move what a camera sees or where a surface is: to keep them and go on would answer for another
-/// scene. Matched without regard to case.
+/// Keys that other programs write and that would move what a camera sees or where a surface is: to keep them and go on would
+/// answer for another scene. Matched without regard to case.
 const std::set<std::string> kCameraGeometry = {"k1",           "k2",          "k3",           "k4",           "k5",
                                                "k6",           "p1",          "p2",           "s1",           "s2",
                                                "s3",           "s4",          "omega",        "fov",          "shear",
@@ -60,7 +60,7 @@ LensModel readLensModel(const JsonNode& node) {
   node.fail("'" + name + "' is not supported, only " + known);
 }
 
-/// "model" and "distortion" of a camera; ideal where neither stands.
+/// "model" and "distortion" of a camera; ideal without both.
 Lens readLens(const JsonNode& camera) {
   Lens lens;
   if (const auto model = camera.find("model")) lens.model = readLensModel(*model);

@@ -33,10 +33,10 @@ struct Ellipse {
   std::vector<Pixel> sample(int n) const;
 };
 
-/// C* = C^-1 up to scale. RankDeficient when C has rank < 3 to round-off, judged from its centre where it has one
+/// C* = C^-1 up to scale. RankDeficient if C has rank < 3 to round-off, judged from its centre where it has one
 /// (so neither the unit of the pixel nor the distance from the origin matters).
 Outcome<DualConic> dualOf(const Conic& c);
-/// C = C*^-1 up to scale, sign such that an ellipse's interior is negative. RankDeficient when rank < 3.
+/// C = C*^-1 up to scale, sign such that an ellipse's interior is negative. RankDeficient if rank < 3.
 Outcome<Conic> conicOf(const DualConic& c);
 
 /// Real ellipse of a conic. RankDeficient for rank < 3; NotAnEllipse for hyperbola, parabola and imaginary
@@ -52,7 +52,7 @@ Outcome<Ellipse> toEllipse(const DualConic& c);
 Outcome<Ellipse> fitEllipse(const std::vector<Pixel>& points);
 
 /// The two lines through `point` (homogeneous pixels) that touch the conic, each normalised to |(a,b)| = 1.
-/// NotAnEllipse when the point lies inside (no real tangents).
+/// NotAnEllipse if the point lies inside (no real tangents).
 Outcome<std::array<Eigen::Vector3d, 2>> tangentLines(const Conic& c, const Eigen::Vector3d& point);
 
 }  // namespace glint

@@ -24,7 +24,7 @@ class Ellipsoid {
   /// NotAnEllipsoid if S has a negative eigenvalue (below -1e-12 of the largest) or more than one zero; NotFinite.
   static Outcome<Ellipsoid> fromCentreAndShape(const Eigen::Vector3d& centre, const Eigen::Matrix3d& shape);
   /// With Q* scaled so that (3,3) = +1 and c its last column: the same conditions on S = c c^T - Q*_3x3.
-  /// NotAnEllipsoid also when (3,3) vanishes (an ellipsoid at infinity). Signature (3,1) alone would admit a hyperboloid.
+  /// NotAnEllipsoid also if (3,3) vanishes (an ellipsoid at infinity). Signature (3,1) alone would admit a hyperboloid.
   static Outcome<Ellipsoid> fromDual(const DualQuadric& dual);
 
   DualQuadric dual() const;
@@ -46,7 +46,7 @@ DualConic outline(const DualQuadric& quadric, const Projection& projection);
 Outcome<Ellipse> outlineEllipse(const Ellipsoid& ellipsoid, const Projection& projection);
 
 /// Counts of positive and negative eigenvalues, flipped so that (3,3) of the quadric is positive. By Sylvester's law they are
-/// those of (3,3) and of -S, zero below 1e-12 of the largest of S: independent of the unit of length; "hyperboloid", "ellipsoid", "cone" ... for messages.
+/// those of (3,3) and of -S, zero below 1e-12 of the largest of S: independent of the unit of length. Messages use its name.
 struct Signature {
   int positive = 0, negative = 0, zero = 0;
 };

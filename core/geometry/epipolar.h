@@ -10,9 +10,9 @@
 
 namespace glint {
 
-/// F of two projections with finite centres, real or mirrored: x2^T F x1 = 0 for the images of one point; F = [e2]x M2 M1^-1 with M the
-/// left 3x3 blocks and e2 = M2 (C1 - C2). Scaled to |F| = 1. RankDeficient when the centres coincide (then there are no epipolar lines)
-/// or when a left block is singular; NotFinite.
+/// F of two projections with finite centres, real or mirrored: x2^T F x1 = 0 for the images of one point; F = [e2]x M2 M1^-1 with
+/// M the left 3x3 blocks and e2 = M2 (C1 - C2). Scaled to |F| = 1. RankDeficient if the centres coincide (then there are no
+/// epipolar lines) or when a left block is singular; NotFinite.
 /// @see Hartley & Zisserman, Multiple View Geometry, 2nd ed., sec. 9.2.2.
 Outcome<Eigen::Matrix3d> fundamentalMatrix(const Projection& first, const Projection& second);
 
@@ -22,8 +22,8 @@ struct EpipolarView {
   std::array<Eigen::Vector3d, 2> tangents;     ///< through the epipole, touching this image's ellipse
   std::array<Pixel, 2> contacts;               ///< where they touch it
   std::array<Eigen::Vector3d, 2> transferred;  ///< epipolar lines here of the other image's tangents; i belongs to tangents[i]
-  /// By how much transferred[i] misses this ellipse, px: positive when it passes outside, negative when it cuts. 0 for the outlines of
-  /// one ellipsoid.
+  /// By how much transferred[i] misses this ellipse, px: positive when it passes outside, negative when it cuts. 0 for the
+  /// outlines of one ellipsoid.
   std::array<double, 2> missPx{};
 };
 
@@ -32,13 +32,13 @@ struct EpipolarTangents {
   double rmsPx() const;  ///< of the four misses
 };
 
-/// Tangent epipolar lines of a pair of ellipses (method.md section 14). A plane through both centres that touches an ellipsoid touches its
-/// outlines in both images, so the tangents of one image are carried to tangents of the other by l2 ~ F [e1]x l1. Where they are not, no
-/// ellipsoid has both ellipses as outlines.
+/// Tangent epipolar lines of a pair of ellipses (method.md section 14). A plane through both centres that touches an ellipsoid
+/// touches its outlines in both images, so the tangents of one image are carried to tangents of the other by l2 ~ F [e1]x l1.
+/// Where they are not, no ellipsoid has both ellipses as outlines.
 ///
 /// @param p1,p2  pixels from world; mirrored for virtual cameras.  @param e1,e2  ellipses in ideal pixels.
-/// @return  NotAnEllipse when an epipole lies inside its ellipse (the baseline meets the object: no real tangents); as fundamentalMatrix.
-/// @see Hartley & Zisserman, 2nd ed., result 9.5 (transfer); Porrill and Pollard, Curve matching and stereo calibration, IVC 1991 (epipolar tangency).
+/// @return  NotAnEllipse if an epipole lies in its ellipse (the baseline meets the object: no tangents); as fundamentalMatrix.
+/// @see Hartley & Zisserman, result 9.5; Porrill and Pollard, Curve matching and stereo calibration, IVC 1991 (tangency).
 Outcome<EpipolarTangents> epipolarTangents(const Projection& p1, const Ellipse& e1, const Projection& p2, const Ellipse& e2);
 
 }  // namespace glint

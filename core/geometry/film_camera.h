@@ -5,8 +5,8 @@
 
 namespace glint {
 
-/// What a photograph's focal length on 35 mm film says of its camera: the same angle of view across the diagonal (CIPA DC-008, tag 0xA405), square
-/// pixels, the principal point in the middle, no distortion. Good to a few percent: EXIF rounds to millimetres, and lenses distort.
+/// A camera from a photograph's focal length on 35 mm film: the same angle of view across the diagonal (CIPA DC-008, tag 0xA405),
+/// square pixels, central principal point, no distortion. Good to a few percent: EXIF rounds to millimetres, and lenses distort.
 /// @param mm  above 0
 inline Camera filmCamera(double mm, int width, int height) {
   constexpr double kFilmDiagonal = 43.2666;  // mm, of 36 x 24

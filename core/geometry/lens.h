@@ -10,7 +10,7 @@
 
 namespace glint {
 
-/// How a lens bends rays, by COLMAP's names; the parameters stand in COLMAP's order after cx cy. A point of the camera's frame at
+/// How a lens bends rays, by COLMAP's names; the parameters have COLMAP's order after cx cy. A point of the camera's frame at
 /// (x, y, 1) is measured at (u, v), both without K; r^2 = x^2 + y^2, theta = atan(r). Without parameters (all 0) the fisheye
 /// models measure theta (x, y) / r, the others (x, y).
 enum class LensModel {
@@ -34,7 +34,7 @@ inline constexpr std::array<LensModel, 10> kLensModels{LensModel::OpenCv,       
 
 /// As scene.json writes it: "OPENCV", ... "THIN_PRISM_FISHEYE", "VISUALSFM".
 const char* nameOf(LensModel model);
-/// Nothing where there is none of this name.
+/// Nothing for an unknown name.
 std::optional<LensModel> lensModelNamed(std::string_view name);
 /// "k1 k2 p1 p2 k3"
 const char* parametersOf(LensModel model);
@@ -58,7 +58,7 @@ Eigen::Vector2d distorted(const Lens& lens, const Eigen::Vector2d& ideal);
 /// connected with the centre is an answer; of VISUALSFM, which is stated the other way round, it ends where (x, y) folds back.
 /// Fisheye lenses see beyond 90 degrees, where no (x, y, 1) is. The branch of a polynomial in theta and the pole of FULL_OPENCV
 /// are found exactly, other folds by samples on the way from the centre.
-/// @return  NotConverged where no point of that branch is measured at (u, v); OutsideImage where it is 90 degrees or more from
+/// @return  NotConverged if no point of that branch is measured at (u, v); OutsideImage if it is 90 degrees or more from
 ///          the axis ("is seen 93 degrees from the optical axis; only less than 90 are supported") or lies beyond 180, where
 ///          nothing is; NotFinite.
 Outcome<Eigen::Vector2d> undistorted(const Lens& lens, const Eigen::Vector2d& measured);

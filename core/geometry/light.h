@@ -37,8 +37,8 @@ class Light {
 /// @param n,toLight,toCamera  unit vectors away from the surface. L = -V gives NaN.
 double incidentAngle(const Eigen::Vector3d& n, const Eigen::Vector3d& toLight, const Eigen::Vector3d& toCamera);
 
-/// d alpha / d (l, w) at a point, for the light (l, w) of any scale seen with N.L > 0: d alpha = -t . dL / |L + V| with t the unit vector
-/// across H towards N. Zero at alpha = 0, where alpha has a cusp.
+/// d alpha / d (l, w) at a point, for the light (l, w) of any scale seen with N.L > 0: d alpha = -t . dL / |L + V| with t the
+/// unit vector across H towards N. Zero at alpha = 0, where alpha has a cusp.
 /// @param n,toCamera  unit vectors away from the surface.
 Eigen::Vector4d incidentAngleByLight(const Eigen::Vector3d& point, const Eigen::Vector3d& n, const Eigen::Vector3d& toCamera,
                                      const Eigen::Vector4d& light);

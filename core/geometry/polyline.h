@@ -19,12 +19,12 @@ double signedArea(const Polyline& line);  ///< px^2, shoelace, open lines are cl
 Pixel centroid(const Polyline& line);     ///< area centroid; mean of the points when the area vanishes
 bool contains(const Polyline& line, const Pixel& p);    ///< even-odd rule; boundary points either way
 double distance(const Polyline& line, const Pixel& p);  ///< px to the nearest point of the chain; infinity when empty
-/// Farthest crossing of the half line from `origin` in `direction` (rad, 0 = right, pi/2 = down) with the chain, px from the origin; nothing
+/// Farthest crossing of the half line from `origin` in `direction` (rad, 0 = right, pi/2 = down) with the chain, px; nothing
 /// when they do not meet. The farthest, because on a contour that folds back the outer side is the one that is seen.
 std::optional<double> reach(const Polyline& line, const Pixel& origin, double direction);
 /// n points equally spaced in arc length, first at the first point. Needs >= 1 point.
 std::vector<Pixel> resample(const Polyline& line, int n);
-/// Its own points nearest to those of `resample`, each once: at most n, in order. Exact where the points are exact and the chords are not.
+/// Its own points nearest to those of `resample`: at most n, in order, none twice. As exact as the points, unlike the chords.
 std::vector<Pixel> thinned(const Polyline& line, int n);
 /// Consecutive repeated points (closer than `tolerancePx`) removed.
 Polyline withoutRepeats(const Polyline& line, double tolerancePx = 1e-9);

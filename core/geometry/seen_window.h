@@ -12,8 +12,8 @@ namespace glint {
 /// ends 85 degrees from the optical axis, where ideal pixels lose their meaning, and is never empty.
 Eigen::AlignedBox2d seenWindow(const Camera& camera);
 
-/// Whether an ideal pixel is in the photograph: its measured place is between the centres of the outermost pixels, or at most `marginPx`
-/// beyond them; measured pixels. False where the lens shows none.
+/// Whether an ideal pixel is in the photograph: its measured place is between the centres of the outermost pixels, or at most
+/// `marginPx` beyond them; measured pixels. False if the lens shows none.
 bool isInPhotograph(const Camera& camera, const Pixel& ideal, double marginPx = 0);
 
 }  // namespace glint

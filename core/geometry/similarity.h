@@ -6,7 +6,7 @@
 namespace glint {
 
 /// x -> scale * rotation * x + translation: a frame and its unit seen from another one.
-/// Invariant: scale > 0, rotation is one (det +1); who makes one sees to it.
+/// Invariant: scale > 0, rotation is one (det +1); the caller ensures it.
 struct Similarity {
   double scale = 1;
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();

@@ -119,7 +119,7 @@ double backgroundUncertaintyPct(const Image& image, const std::vector<char>& usa
   const Background ggx = fitBackground(image, usable, footprint, 0, Tail::Ggx);
   if (gaussian.pixels == 0 || ggx.pixels == 0) return 0;
   if (ggx.spread > kNearlyAsGood * gaussian.spread) return 0;
-  // A background that is too high by b shifts the level q to q + (1 - q) b / I_peak; level^(rho^2) then says how far the contour moves.
+  // A background too high by b shifts the level q to q + (1 - q) b / I_peak; level^(rho^2) says how far the contour moves.
   const double off =
       (gaussian.at(footprint.centre.x(), footprint.centre.y()) - ggx.at(footprint.centre.x(), footprint.centre.y())) / peakValue;
   const double q = footprint.level, moved = (1 - q) * off / (2 * q * -std::log(q));

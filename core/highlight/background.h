@@ -28,15 +28,15 @@ struct Footprint {
   double level = 0.5;
 };
 
-/// How a lobe falls off beyond the contour, rho in units of the footprint: level^(rho^2) of a Gaussian lobe (Beckmann, and about the
-/// cosine powers), or (1 + (level^-1/2 - 1) rho^2)^-2 of GGX.
+/// How a lobe falls off beyond the contour, rho in units of the footprint: level^(rho^2) of a Gaussian lobe (Beckmann, and about
+/// the cosine powers), or (1 + (level^-1/2 - 1) rho^2)^-2 of GGX.
 enum class Tail { Gaussian, Ggx };
 
 /// Fits the background to the usable pixels around a highlight, together with the lobe's own tail. With rho the distance from
 /// the centre in units of the footprint, a Gaussian lobe is level^(rho^2); the model over rho in [inner, outer] is
 ///   I = b(x, y) + (a0 + a1 u + a2 v) level^(rho^2),
-/// or with GGX's tail in the last factor, linear in its nine unknowns, solved with Tukey weights. Only pixels where the tail is weak (rho >= inner) enter, so the lobe's
-/// true shape matters little.
+/// or with GGX's tail in the last factor, linear in its nine unknowns, solved with Tukey weights. Only pixels where the tail is
+/// weak (rho >= inner) enter, so the lobe's true shape matters little.
 /// @param image   one channel, linear.
 /// @param usable  one per pixel, non-zero where the pixel may be used (glossy, finite).
 /// @param fallback  constant returned when fewer than a few dozen pixels are usable.
@@ -47,8 +47,8 @@ Background fitBackground(const Image& image, const std::vector<char>& usable, co
 Background fitBackground(const Image& image, const std::vector<char>& usable, const Footprint& footprint, double fallback,
                          const std::function<double(double rho2)>& fall);
 
-/// By how much a contour may be off because the lobe's tail is unknown: the background is fitted with both tails. Where GGX's explains
-/// the surroundings at least nearly as well, the difference at the highlight counts; a Gaussian tail that fits clearly better leaves none.
+/// How far a contour may be off because the lobe's tail is unknown: fits the background with both. If GGX's explains the
+/// surroundings at least nearly as well, the difference at the highlight counts; none if a Gaussian fits clearly better.
 /// @param footprint  of the highlight at its level. @param peakValue  above the background
 /// @return change of the contour's radius, in percent of its diameter; 0 where the surroundings tell nothing (few pixels)
 double backgroundUncertaintyPct(const Image& image, const std::vector<char>& usable, const Footprint& footprint,

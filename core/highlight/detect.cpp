@@ -8,12 +8,12 @@
 
 #include "core/base/median.h"
 #include "core/highlight/background.h"
-#include "core/highlight/clipped_skirt.h"
+#include "core/highlight/clipped_flank.h"
 #include "core/highlight/highlight.h"
 #include "core/highlight/iso_contour.h"
 #include "core/highlight/peak.h"
 #include "core/highlight/pixel_noise.h"
-#include "core/highlight/tongues.h"
+#include "core/highlight/streaks.h"
 
 namespace glint {
 namespace {
@@ -28,9 +28,9 @@ constexpr std::size_t kMostPeaks = 48;     // that are followed up: noise has ma
 constexpr double kSamePeakPx = 1.5;        // of the same peak, found again
 constexpr std::size_t kMostRejected = 32;  // that are listed: noise has many
 constexpr double kNarrowPiece =
-    0.1;  // of the disc inside a clipped highlight: radius of a piece of its streaks, as withoutTongues cuts them
+    0.1;  // of the disc inside a clipped highlight: radius of a piece of its streaks, as withoutStreaks cuts them
 constexpr double kBesidePx = 1.0;           // in discs inside a clipped highlight: its streaks end within that
-constexpr int kSkirtShare = 1;              // of a clipped candidate's box, on each side: its slope down to a tenth lies within
+constexpr int kFlankShare = 1;              // of a clipped candidate's box, on each side: its slope down to a tenth lies within
 constexpr double kBackgroundShare = 0.01;   // of the clip height: by that much a quadratic in the pixel misses real shading
 constexpr int kBackgroundRounds = 3;        // with the tail that the slope shows: it settles in two
 constexpr double kSettledBackground = 0.1;  // of its standard deviation
@@ -108,7 +108,7 @@ struct Candidate {
   Background background;
   Image corrected;                    ///< I - b inside `box`; 0 on unusable pixels
   double top = 0;                     ///< strongest value: of the fitted peak, else of the pixels
-  std::optional<ClippedSkirt> skirt;  ///< of a clipped one
+  std::optional<ClippedFlank> flank;  ///< of a clipped one
   int clippedPixels = 0;
 };
 
@@ -225,7 +225,7 @@ class Detector {
   }
 
  private:
-  /// Values of the brightest 3x3 median (single hot pixels do not set the level); nothing when none is above the base.
+  /// Values of the brightest 3x3 median (single hot pixels do not set the level); nothing if none is above the base.
   std::optional<double> brightestMedian() const {
     const int w = p_.value.width, h = p_.value.height;
     const cv::Mat values(h, w, CV_32F, const_cast<float*>(p_.value.data.data()));
@@ -272,7 +272,7 @@ class Detector {
     const Outcome<PeakFit> peak = fitPeak(c.corrected, at.x, at.y, options_.peakWindowLevel);
     const bool clipped = saturatedNear(c.box, region);
     c.top = peak && !clipped ? peak->value : c.corrected.at(at.x, at.y);
-    if (clipped) addSkirt(c, tight, at);
+    if (clipped) addFlank(c, tight, at);
     const Pixel where = (peak ? peak->at : Pixel(at.x, at.y)) + Pixel(c.box.x, c.box.y);
     const double top = c.top;
     return {std::move(c), Top{where, top}};
@@ -280,16 +280,16 @@ class Detector {
 
   /// The slope of a clipped candidate, and the background again with the tail that it shows: the first fit has a Gaussian's
   /// below half of the clip value, and takes a longer one for shading.
-  void addSkirt(Candidate& c, const cv::Rect& tight, const cv::Point& top) const {
+  void addFlank(Candidate& c, const cv::Rect& tight, const cv::Point& top) const {
     const Footprint footprint = footprintOf(labels_, c.label, tight, kCandidateShare * options_.level);
     const Background longTail =
         options_.removeBackground ? fitBackground(p_.value, p_.usable, footprint, base_, Tail::Ggx) : c.background;
     const Pixel at(top.x + c.box.x, top.y + c.box.y);
     traceSlope(c, tight, at, longTail);
     const double unit = M_PI * std::sqrt(footprint.shape.determinant());  // area of the footprint, px^2
-    for (int round = 0; round < kBackgroundRounds && options_.removeBackground && c.skirt->trusted; ++round) {
+    for (int round = 0; round < kBackgroundRounds && options_.removeBackground && c.flank->trusted; ++round) {
       Candidate next = c;
-      const SkirtPeak& peak = *c.skirt->peak;
+      const FlankPeak& peak = *c.flank->peak;
       next.background =
           fitBackground(p_.value, p_.usable, footprint, base_, [&](double rho2) { return peak.fallAt(unit * rho2); });
       if (next.background.spread > kWorseBackground * c.background.spread) return;
@@ -297,7 +297,7 @@ class Detector {
       next.top = next.corrected.at(top.x, top.y);
       traceSlope(next, tight, at, longTail);
       const double moved = std::abs(next.background.at(at.x(), at.y()) - c.background.at(at.x(), at.y()));
-      const bool settled = moved < kSettledBackground * c.skirt->backgroundSigma;
+      const bool settled = moved < kSettledBackground * c.flank->backgroundSigma;
       c = std::move(next);
       if (settled) return;
     }
@@ -306,8 +306,8 @@ class Detector {
   /// The slope at several levels, in a view wide enough for its lowest ones.
   void traceSlope(Candidate& c, const cv::Rect& tight, const Pixel& top, const Background& longTail) const {
     const cv::Rect box =
-        grown(tight, kSkirtShare * std::max(tight.width, tight.height) + kRoiMargin, p_.value.width, p_.value.height);
-    SkirtView view;
+        grown(tight, kFlankShare * std::max(tight.width, tight.height) + kRoiMargin, p_.value.width, p_.value.height);
+    FlankView view;
     view.corrected = correctedRoi(p_, c.background, box);
     view.noise = noise_;
     view.minAreaPx2 = options_.minAreaPx2;
@@ -323,9 +323,9 @@ class Detector {
     // How far the background may be off: what GGX's tail would leave of it, and a little of what no model of it follows.
     view.backgroundSigma =
         std::max(kBackgroundShare * c.top, std::abs(longTail.at(top.x(), top.y()) - c.background.at(top.x(), top.y())));
-    c.skirt = traceSkirt(view);
+    c.flank = traceFlank(view);
     const Pixel origin(box.x, box.y);
-    for (SkirtLevel& level : c.skirt->levels) {
+    for (FlankLevel& level : c.flank->levels) {
       level.contour = moved(std::move(level.contour), box);
       if (level.ellipse) level.ellipse->centre += origin;
     }
@@ -336,8 +336,8 @@ class Detector {
     const auto largest = std::max_element(candidates_.begin(), candidates_.end(), [](const Candidate& a, const Candidate& b) {
       return a.clippedPixels < b.clippedPixels;
     });
-    if (largest != candidates_.end() && largest->skirt && reachesLevel(*largest->skirt, options_.level))
-      largest->top = std::max(largest->top, largest->skirt->peak->value);
+    if (largest != candidates_.end() && largest->flank && reachesLevel(*largest->flank, options_.level))
+      largest->top = std::max(largest->top, largest->flank->peak->value);
   }
 
   /// Regions above a little less than the level of the brightest value.
@@ -349,7 +349,7 @@ class Detector {
       if (!boxes[label].empty()) candidates_.push_back(candidateOf(static_cast<int>(label), boxes[label]).first);
   }
 
-  /// Every peak with a contour of its own, strongest first: what stands alone at some value is a region of its own at its own level.
+  /// Every peak with a contour of its own, strongest first: one that is separate at some value has its own region at its level.
   std::optional<Failure> findSeparately() {
     const std::optional<double> top = brightestMedian();
     if (!top) return Failure{Reason::NoHighlight, "nothing rises above the background"};
@@ -393,13 +393,13 @@ class Detector {
         peak = found.at;
       if (!(found.value > 0)) continue;
       reference_ = found.value;
-      if (alone && candidate.skirt && reachesLevel(*candidate.skirt, options_.level))
-        reference_ = std::max(reference_, candidate.skirt->peak->value);
+      if (alone && candidate.flank && reachesLevel(*candidate.flank, options_.level))
+        reference_ = std::max(reference_, candidate.flank->peak->value);
       for (const PeakReference& r : options_.references)
         if ((r.peak - peak).norm() <= kSamePeakPx) reference_ = r.value;
       const std::size_t before = found_.size();
       trace(candidate);
-      // Of the contours at this level only the one around the peak is its own, and only where no stronger peak owns it.
+      // At this level only the contour around the peak is its own, and only if no stronger peak owns it.
       for (std::size_t i = found_.size(); i-- > before;) {
         const bool own = contains(found_[i].contour, peak);
         const bool taken = own && std::any_of(seeds.begin(), seeds.end(), [&](const Seed& o) {
@@ -477,18 +477,18 @@ class Detector {
     h.touchesBorder = onImageBorder(h.contour);
     h.clipped = saturatedNear(box, region);
     if (h.clipped) {
-      TongueCut cut = withoutTongues(h.contour);
+      StreakCut cut = withoutStreaks(h.contour);
       h.contour = std::move(cut.line);
       h.cutPx2 = cut.cutPx2;
     }
     h.areaPx2 = signedArea(h.contour);
     // A candidate may hold several highlights; its slope is that of one.
-    const bool itsSlope = candidate.skirt && (candidate.skirt->levels.empty() ||
-                                              contains(h.contour, centroid(candidate.skirt->levels.front().contour)));
+    const bool itsSlope = candidate.flank && (candidate.flank->levels.empty() ||
+                                              contains(h.contour, centroid(candidate.flank->levels.front().contour)));
     if (h.clipped && itsSlope) {
-      auto skirt = std::make_shared<ClippedSkirt>(*candidate.skirt);
-      noteContour(*skirt, options_.level, reference_, h.contour);
-      h.skirt = std::move(skirt);
+      auto flank = std::make_shared<ClippedFlank>(*candidate.flank);
+      noteContour(*flank, options_.level, reference_, h.contour);
+      h.flank = std::move(flank);
     }
     if (const Outcome<Ellipse> ellipse = fitEllipse(h.contour.points)) h.ellipse = *ellipse;
     const Outcome<PeakFit> peak = fitPeak(roi, at.x, at.y, options_.peakWindowLevel);

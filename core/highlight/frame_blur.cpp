@@ -74,7 +74,7 @@ Eigen::Vector2d gradientAt(const Image& v, int x, int y) {  // Scharr
          32;
 }
 
-/// Variance of a profile's derivative, px^2; nothing where it is no step between two flat sides.
+/// Variance of a profile's derivative, px^2; nothing if it is no step between two flat sides.
 std::optional<double> variance(const EdgeImage& e, const Pixel& centre, const Eigen::Vector2d& along, double reach) {
   const int n = static_cast<int>(reach / kStepPx);
   const std::size_t m = 2 * static_cast<std::size_t>(n) + 1, ends = static_cast<std::size_t>(kEndPx / kStepPx) + 1;

@@ -8,8 +8,8 @@
 
 namespace glint {
 
-/// How blurred a frame is at most, from its sharpest edges (a frame in which nothing is sharp looks the same as a blurred one): defocus and the like, equal in all directions, and motion along one. Along a direction t the
-/// variance is sigma0^2 + (length cos(t - direction))^2 / 12. What a sharp lens and square pixels would show counts as no blur.
+/// How blurred a frame is at most, by its sharpest edges (without sharp things a frame looks blurred): defocus, equal in all
+/// directions, and motion along one. Variance along t: sigma0^2 + (length cos(t - direction))^2 / 12; a sharp lens has 0.
 struct FrameBlur {
   double sigmaPx = 0;       ///< standard deviation across the motion
   double motionPx = 0;      ///< length of the path during the exposure; 0 where none shows
@@ -19,14 +19,14 @@ struct FrameBlur {
   double varianceAlong(double rad) const;  ///< px^2
 };
 
-/// Measures step edges: along the gradient, the variance of the profile's derivative, less that of the interpolation and of a pixel. In each of eight
-/// directions the lower quartile counts, because soft shading is no blur; a fit of three coefficients over the directions parts motion from the rest. Motion is
-/// told only where six directions follow the fit well; else the sharpest direction is the answer.
-/// It is the blur of what has edges: a moving object before a still wall is more blurred than this says, and of a matt object before a dark ground, whose
-/// silhouette fades, this says too much: rendered ellipsoids without any blur gave up to 2.6 px and now and then a motion of 12 px. Callers say so.
-/// @param image    1 or 3 channels, linear. @param clipValue  edges that touch values at or above it are left out; 0 = none
-/// @return  TooFewPoints where fewer than four directions have edges enough; the direction of a blur is then not known, nor its size.
-/// @see Couzinie-Devy, Sun, Alahari and Ponce, Learning to estimate and remove non-uniform image blur, CVPR 2013 (the idea of local edges).
+/// Measures step edges: along the gradient, the variance of its derivative, less that of interpolation and of a pixel. The
+/// lower quartile of each of eight directions counts (soft shading is no blur); a fit of three coefficients over the directions
+/// separates motion from the rest. Tells motion only if six directions follow the fit well; else the sharpest direction counts.
+/// This is the blur of edges. A moving object before a still wall is more blurred. A matt object whose silhouette fades
+/// into a dark ground is less: rendered ellipsoids without blur gave up to 2.6 px, at times a motion of 12 px. Callers say so.
+/// @param image    1 or 3 channels, linear. @param clipValue  leaves out edges that touch values at or above it; 0 = none
+/// @return  TooFewPoints if fewer than four directions have enough edges: then neither direction nor size of a blur is known.
+/// @see Couzinie-Devy, Sun, Alahari and Ponce, Learning to estimate and remove non-uniform image blur, CVPR 2013 (local edges).
 Outcome<FrameBlur> measureBlur(const Image& image, double clipValue);
 
 }  // namespace glint

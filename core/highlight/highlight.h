@@ -13,7 +13,7 @@
 
 namespace glint {
 
-struct ClippedSkirt;
+struct ClippedFlank;
 
 /// A contour of a highlight at one more level.
 struct LevelContour {
@@ -31,12 +31,12 @@ struct Highlight {
   std::optional<Ellipse> ellipse;  ///< least-squares ellipse of the contour
   double areaPx2 = 0;
   bool clipped = false;  ///< saturated: the peak is the ellipse centre, or that of a known lobe
-  /// Of a clipped one that was detected: its slope at several levels, the peak that continues it, and where the contour lies on it.
-  std::shared_ptr<const ClippedSkirt> skirt;
+  /// A detected clipped one has its slope at several levels, the peak that continues it, and the contour's place on it.
+  std::shared_ptr<const ClippedFlank> flank;
   /// Where a known lobe says that the contour lies at another fraction of the true peak than `level`: clipped above the level.
   std::optional<double> trueLevel;
   bool touchesBorder = false;             ///< cut by the image border
-  double cutPx2 = 0;                      ///< area of streaks and other narrow tongues that were cut off; clipped highlights only
+  double cutPx2 = 0;                      ///< area of streaks that were cut off; clipped highlights only
   bool fromScene = false;                 ///< given in the scene file, not detected
   std::string byHand{};                   ///< what a person did to its shape, and what that leaves in doubt; "" = nothing
   std::vector<LevelContour> otherLevels;  ///< beside `contour`, where several levels are evidence (fit.evidence = levels)
@@ -50,7 +50,7 @@ struct PeakReference {
 
 /// Something that stands out of the background and is no highlight, with the reason.
 struct RejectedCandidate {
-  Pixel place{0, 0};  ///< measured pixels, as of the image
+  Pixel place{0, 0};  ///< measured pixels of the image
   double areaPx2 = 0;
   std::string reason;  ///< in words
 };
@@ -63,8 +63,8 @@ struct DetectOptions {
   double peakWindowLevel = 0.9;  ///< pixels above this fraction of the peak enter the log-quadratic fit
   double clipValue = 0;          ///< values at or above are saturated; 0 = none
   bool removeBackground = true;  ///< subtract the local diffuse background (median of the surrounding glossy pixels)
-  /// Several lights of unequal strength: weaker peaks are sought too, and every contour lies at `level` of its own peak, or of the reference that
-  /// names it (the strongest peak of its light, once that is known). A peak that does not stand out of a stronger one's contour at that level is none.
+  /// For several lights of unequal strength: finds weaker peaks, too. Each contour lies at `level` of its own peak, or of the
+  /// reference that names it (the strongest peak of its light, once known). Peaks inside a stronger one's contour do not count.
   bool separatePeaks = false;
   std::vector<PeakReference> references;
   std::optional<double> reference;  ///< contours lie at `level` of this value, wherever the strongest peak is
@@ -75,8 +75,8 @@ struct DetectOptions {
 /// @param linear  1 or 3 channels (3 are averaged), linear radiance. Non-finite or negative values are not used: where one
 ///                touches a highlight, that highlight fails.
 /// @param mask    optional, non-zero on the glossy object; same size.
-/// The peak of a clipped highlight is estimated from the slope around its core (`traceSkirt`). The contour lies at `level` of it where that is outside of the
-/// core, else at `level` of the clip value; narrow tongues of it (`withoutTongues`) are cut off, and narrow pieces beside it are rejected.
+/// The slope around a clipped core tells its peak (`traceFlank`). The contour lies at `level` of the peak if that is
+/// outside of the core, else at `level` of the clip value. Cuts off narrow streaks (`withoutStreaks`), drops narrow pieces.
 /// @param rejected  optional: where candidates go that became no highlight, largest first, at most 32.
 /// @return at least one highlight, strongest first. NoHighlight; NotFinite (detail counts the bad pixels); Clipped never fails,
 /// it flags.

@@ -15,8 +15,8 @@ struct IsoContour {
 };
 
 /// All closed boundaries of { value >= level }, largest absolute area first. Regions cut by the image border are closed along it.
-/// Where two opposite corners of a cell are inside and the others are not, the two are not joined. A contour starts at its first point in the order
-/// of rows.
+/// Where two opposite corners of a cell are inside and the others are not, the two are not joined. A contour starts at its first
+/// point in the order of rows.
 /// @param image  one channel, every value finite (std::invalid_argument otherwise).
 /// @see Lorensen and Cline, Marching cubes, SIGGRAPH 1987.
 std::vector<IsoContour> isoContours(const Image& image, double level);

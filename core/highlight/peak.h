@@ -25,7 +25,7 @@ struct PeakFit {
 /// border).
 Outcome<PeakFit> fitPeak(const Image& image, int x, int y, double windowLevel);
 
-/// How far the peak lies outside its own contour, px; 0 where it lies inside, or beside it by no more than a peak is known to
+/// How far the peak lies outside its own contour, px; 0 where it lies inside, or beside it by at most a peak's uncertainty
 /// (0.5 px). A measured peak is the maximum of the region that the contour surrounds, so one outside was moved by hand or noise,
 /// and its ray does not come from the highlight. 0 where there is no contour.
 double outsideOfContour(const Highlight& highlight);

@@ -13,8 +13,8 @@ struct HighlightQuality {
   double noisePx = 0;              ///< from the pixels' noise, over the gradient on the contour (median)
   double backgroundPx = 0;         ///< because the lobe's tail may pass for background
   double blurPx = 0;               ///< by how much the frame's blur has widened it
-  /// A clipped highlight: how far its contour may be from that at its level (sigmaPx of its ClippedSkirt); what a tenth of the level
-  /// moves it where the slope was not traced.
+  /// A clipped highlight: how far its contour may be from that at its level (sigmaPx of its ClippedFlank); what a tenth of the
+  /// level moves it where the slope was not traced.
   double levelPx = 0;
   double silhouetteShare = 0;  ///< of the contour: that runs along the surface's silhouette, or off it
 

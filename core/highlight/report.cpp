@@ -9,7 +9,7 @@
 #include "core/base/atomic_file.h"
 #include "core/base/json_text.h"
 #include "core/codecs/codecs.h"
-#include "core/highlight/clipped_skirt.h"
+#include "core/highlight/clipped_flank.h"
 
 namespace glint {
 namespace {
@@ -33,9 +33,9 @@ Json toJson(const FrameBlur& blur) {
   return {{"sigma_px", blur.sigmaPx}, {"motion_px", blur.motionPx}, {"direction_deg", direction}, {"edges", blur.edges}};
 }
 
-Json toJson(const Parting& parting) {
+Json toJson(const SpecularSeparation& separation) {
   Json regions = Json::array();
-  for (const PartedRegion& r : parting.regions) {
+  for (const SeparatedRegion& r : separation.regions) {
     const auto triple = [](const Eigen::Vector3d& v) { return Json::array({v.x(), v.y(), v.z()}); };
     regions.push_back({{"channels", triple(r.channels)},
                        {"lamp_colour", triple(r.lampColour)},
@@ -43,7 +43,7 @@ Json toJson(const Parting& parting) {
                        {"noise", r.noise},
                        {"leftover", r.leftover}});
   }
-  return {{"parted", parting.parted}, {"reason", parting.reason}, {"highlights", std::move(regions)}};
+  return {{"parted", separation.separated}, {"reason", separation.reason}, {"highlights", std::move(regions)}};
 }
 
 Json toJson(const RejectedCandidate& r) { return {{"place", pair(r.place)}, {"area_px2", r.areaPx2}, {"reason", r.reason}}; }
@@ -52,32 +52,32 @@ Json toJson(const Ellipse& e) {
   return {{"centre", pair(e.centre)}, {"semi_axes", pair(e.semiAxes)}, {"angle_deg", e.angle * 180 / M_PI}};
 }
 
-Json toJson(const ClippedSkirt& skirt) {
+Json toJson(const ClippedFlank& flank) {
   Json levels = Json::array();
-  for (const SkirtLevel& level : skirt.levels)
+  for (const FlankLevel& level : flank.levels)
     levels.push_back({{"value", level.value},
-                      {"of_clip", level.value / skirt.clipHeight},
+                      {"of_clip", level.value / flank.clipHeight},
                       {"area_px2", level.areaPx2},
                       {"out_of_round", level.outOfRound},
                       {"ellipse", level.ellipse ? toJson(*level.ellipse) : Json(nullptr)}});
-  Json j = {{"clip_height", skirt.clipHeight},
+  Json j = {{"clip_height", flank.clipHeight},
             {"peak", nullptr},
             {"peak_relative_sigma", nullptr},
             {"shape", nullptr},
             {"tail", nullptr},
             {"misfit", nullptr},
-            {"trusted", skirt.trusted},
-            {"outside_core", skirt.outsideCore},
-            {"contour_value", skirt.contourValue},
+            {"trusted", flank.trusted},
+            {"outside_core", flank.outsideCore},
+            {"contour_value", flank.contourValue},
             {"true_level", nullptr},
-            {"in_words", inWords(skirt)}};
-  if (skirt.peak) {
-    j["peak"] = skirt.peak->value;
-    j["peak_relative_sigma"] = skirt.peak->logSigma;
-    j["shape"] = skirt.peak->shape;
-    j["tail"] = skirt.peak->tail;
-    j["misfit"] = skirt.peak->misfit;
-    j["true_level"] = skirt.contourValue / skirt.peak->value;
+            {"in_words", inWords(flank)}};
+  if (flank.peak) {
+    j["peak"] = flank.peak->value;
+    j["peak_relative_sigma"] = flank.peak->logSigma;
+    j["shape"] = flank.peak->shape;
+    j["tail"] = flank.peak->tail;
+    j["misfit"] = flank.peak->misfit;
+    j["true_level"] = flank.contourValue / flank.peak->value;
   }
   j["levels"] = std::move(levels);
   return j;
@@ -99,7 +99,7 @@ Json toJson(const Highlight& h, double uncertaintyPct, const HighlightQuality* q
     j["contour_px"] = toJson(*quality);
     j["silhouette_share"] = quality->silhouetteShare;
   }
-  j["clipped_core"] = h.skirt ? toJson(*h.skirt) : Json(nullptr);
+  j["clipped_core"] = h.flank ? toJson(*h.flank) : Json(nullptr);
   j["ellipse"] = h.ellipse ? toJson(*h.ellipse) : Json(nullptr);
   Json contour = Json::array();
   for (const Pixel& p : h.contour.points) contour.push_back(pair(p));
@@ -123,7 +123,7 @@ std::string detectionJson(const std::string& input, double level, const std::str
                                        i < frame.quality.size() ? &frame.quality[i] : nullptr));
     j["rejected"] = Json::array();
     for (const RejectedCandidate& r : frame.rejected) j["rejected"].push_back(toJson(r));
-    j["parting"] = frame.parting ? toJson(*frame.parting) : Json(nullptr);
+    j["parting"] = frame.separation ? toJson(*frame.separation) : Json(nullptr);
     j["blur"] = frame.blur ? toJson(*frame.blur) : Json(nullptr);
     list.push_back(std::move(j));
   }

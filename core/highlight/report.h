@@ -11,8 +11,8 @@
 #include "core/geometry/camera.h"
 #include "core/highlight/frame_blur.h"
 #include "core/highlight/highlight.h"
-#include "core/highlight/parting.h"
 #include "core/highlight/quality.h"
+#include "core/highlight/specular_separation.h"
 
 namespace glint {
 
@@ -21,10 +21,10 @@ struct DetectedFrame {
   std::string id;
   std::vector<Highlight> highlights;
   std::vector<double> uncertaintyPct;  ///< per highlight: of its contour, in percent of the diameter: the lobe's tail is unknown
-  std::vector<HighlightQuality> quality;    ///< per highlight
-  std::vector<RejectedCandidate> rejected;  ///< ideal pixels
-  std::optional<FrameBlur> blur;            ///< where the frame has edges that show one
-  std::optional<Parting> parting;           ///< where it was asked for
+  std::vector<HighlightQuality> quality;         ///< per highlight
+  std::vector<RejectedCandidate> rejected;       ///< ideal pixels
+  std::optional<FrameBlur> blur;                 ///< where the frame has edges that show one
+  std::optional<SpecularSeparation> separation;  ///< where it was asked for
   std::optional<Failure> failure;
 };
 
@@ -37,7 +37,7 @@ std::string detectionJson(const std::string& input, double level, const std::str
 /// when clipped), drawn anti-aliased at a scale of at least 2 so that sub-pixel positions can be seen.
 Image drawDetection(const Image& photograph, const Camera& camera, const std::vector<Highlight>& highlights);
 
-/// Writes sRGB 0..1 as 8-bit PNG, atomically. InputError when it cannot be written.
+/// Writes sRGB 0..1 as 8-bit PNG, atomically. InputError if it cannot be written.
 void writePng(const std::filesystem::path& file, const Image& image);
 
 }  // namespace glint

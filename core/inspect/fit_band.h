@@ -6,11 +6,11 @@
 
 namespace glint {
 
-/// What the fit of a key is computed from: its training views (on corrected surfaces where there are some), its light, and the lobe of its
-/// pixels where it is of all of these views.
+/// What the fit of a key is computed from: its training views (on corrected surfaces where there are some), its light, and the
+/// lobe of its pixels where it is of all of these views.
 FitInput fitInputOf(const Inspection& inspection, const HighlightModel& model, const FitKey& key);
 
-/// The band of a fit that an inspection computed; without one, and without words, where the fit failed or no training view is its own.
+/// The band of an inspection's fit; empty, without words, if the fit failed or no training view is its own.
 FittedBand bandOf(const Inspection& inspection, const HighlightModel& model, const ModelResult::Fit& fit);
 
 }  // namespace glint

@@ -9,11 +9,11 @@ namespace glint {
 
 /// Some frame, whether it trains or not, shows a highlight of this light.
 bool isSeen(const Inspection& inspection, const std::string& light);
-/// Lights that are on in most frames of a fit and show no highlight of their own in any frame: this one's may be theirs too. "" where none is.
+/// Lights on in most frames of a fit that show no highlight of their own: this one's may be theirs, too. "" without such lights.
 std::string mergedRemark(const Inspection& inspection, const ModelFit& fit);
-/// Training frames that show the fit's light and have no view because they repeat another one. "" where there are none.
+/// Training frames that show the fit's light and have no view because they repeat another one. "" without such frames.
 std::string repeatedRemark(const Inspection& inspection, const ModelFit& fit);
-/// Training highlights of the fit's light whose shape was made by hand, each with what that leaves in doubt. "" where there are none.
+/// Training highlights of the fit's light shaped by hand, each with what that leaves in doubt. "" without such highlights.
 std::string byHandRemark(const Inspection& inspection, const ModelFit& fit);
 
 }  // namespace glint

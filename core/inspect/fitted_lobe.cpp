@@ -29,7 +29,7 @@ const ModelResult::Fit* reflectanceFit(const Inspection& in, int frame) {
   return best == fits.end() ? nullptr : &*best;
 }
 
-/// From the limit angle of the frame's light, else of any.
+/// A lobe from the limit angle of the frame's light, else of any.
 std::optional<FittedLobe> lobeOfLimitAngle(const Inspection& in, int frame) {
   std::optional<FittedLobe> found;
   for (const TrainingView& v : in.views) {

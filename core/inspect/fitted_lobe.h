@@ -17,7 +17,7 @@ struct FittedLobe {
 /// That of the model reflectance where it was computed and fitted; else the width at which a Gaussian lobe falls to the contours'
 /// level q at the light's limit angle, m = tan(alpha_lim) / sqrt(-log q), as Torrance-Sparrow.
 /// @param frame  where there are several lights or surfaces, one of this frame comes first.
-/// NotSupported where contours are synthesised (a fit would give back the lobe that made them), or where nothing was computed
+/// NotSupported if contours are synthesised (a fit would give back the lobe that made them), or if nothing was computed
 /// that tells the lobe; else the reason why the fit failed.
 Outcome<FittedLobe> fittedLobe(const Inspection& inspection, int frame);
 

@@ -18,17 +18,17 @@ struct FrameScore {
   std::string reason;  ///< first failure's message when nothing matched; else ""
 };
 FrameScore frameScore(const ModelResult& result, int frame);
-/// Of one light alone.
+/// The score of one light alone.
 FrameScore scoreOf(const FrameComparison& comparison);
 /// The same for the frames 0 .. frames - 1, in one pass.
 std::vector<FrameScore> frameScores(const ModelResult& result, int frames);
 
-/// The error of a frame that may be shown by itself. None where a highlight was missed: the others' mean would make that frame
+/// The error of a frame that may be shown by itself. None if a highlight was missed: the others' mean would make that frame
 /// look good.
 std::optional<double> wholeErrorPct(const FrameScore& score);
-/// "missed 1 of 2 highlights, the other: 0.13 %"; "" where none was.
+/// "missed 1 of 2 highlights, the other: 0.13 %"; "" if none was.
 std::string missedText(const FrameScore& score);
-/// "2 spurious highlights: predicted where none is seen"; "" where there is none.
+/// "2 spurious highlights: predicted where none is seen"; "" without spurious ones.
 std::string spuriousText(const FrameScore& score);
 
 /// Names of the inspection's models, from simple to rich (method.md section 7), unknown ones last; only those in `only` unless it

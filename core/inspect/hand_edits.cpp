@@ -79,7 +79,7 @@ void describe(Highlight& h) {
   if (h.contour.points.size() >= 5)
     if (const Outcome<Ellipse> e = fitEllipse(h.contour.points)) h.ellipse = *e;
   h.otherLevels.clear();
-  h.skirt = nullptr;  // of the shape as it was seen
+  h.flank = nullptr;  // of the shape as it was seen
   h.trueLevel.reset();
 }
 
@@ -128,7 +128,7 @@ std::pair<std::size_t, Pixel> onChain(const Polyline& line, const Pixel& p) {
   return best;
 }
 
-/// Both sides of a cut between the points of the contour nearest to two places; nothing where one has no area.
+/// Both sides of a cut between the points of the contour nearest to two places; nothing if one has no area.
 std::optional<std::pair<Polyline, Polyline>> cut(const Polyline& line, const Pixel& from, const Pixel& to) {
   auto [i, a] = onChain(line, from);
   auto [j, b] = onChain(line, to);

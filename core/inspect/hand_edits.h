@@ -15,10 +15,10 @@ namespace glint {
 bool isIgnored(const WhatIf& whatIf, int frame, const Highlight& highlight);
 bool hasEdits(const WhatIf& whatIf, int frame);
 
-/// Applies a frame's edits in their order. Highlights that are left keep their number (FrameEvidence::asFound); of merged ones the
-/// first, of a cut one the part that holds the peak keeps it, and what is new gets numbers behind those found. What was taken out by
-/// Ignore is in FrameEvidence::ignored, and out of `truth`; the other kinds change nothing of the truth. An edit whose highlight is not
-/// there, or whose image cannot be read, changes nothing. Where no highlight is left the failure is NoHighlight.
+/// Applies a frame's edits in their order. Highlights that are left keep their number (FrameEvidence::asFound); of merged ones
+/// the first, of a cut one the part that holds the peak keeps it, and what is new gets numbers behind those found. What was taken
+/// out by Ignore is in FrameEvidence::ignored, and out of `truth`; the other kinds change nothing of the truth. An edit whose
+/// highlight is missing, or whose image cannot be read, changes nothing. Where no highlight is left the failure is NoHighlight.
 /// @param scene  with the request's what-if
 void applyEdits(FrameEvidence& evidence, const Scene& scene, const InspectionRequest& request);
 
@@ -26,10 +26,10 @@ void applyEdits(FrameEvidence& evidence, const Scene& scene, const InspectionReq
 HighlightEdit ignoreEdit(int frame, const Highlight& highlight);
 HighlightEdit mergeEdit(int frame, const Highlight& first, const Highlight& second);
 /// The shortest cut of a highlight through a place inside of it: through the neck, where one clicks at a neck.
-/// NotReached where the place is outside, or a part would have no area.
+/// NotReached if the place is outside, or a part would have no area.
 Outcome<HighlightEdit> splitEdit(int frame, const Highlight& highlight, const Pixel& at);
-/// A highlight grown from one pixel, on trial: the reason where nothing can be grown there (NoHighlight: it does not stand out of a
-/// brighter spot, or of its surroundings; FrameUnreadable; NotSupported where contours are synthesised).
+/// A highlight grown from one pixel, on trial: the reason where nothing can be grown there (NoHighlight: it does not stand out of
+/// a brighter spot, or of its surroundings; FrameUnreadable; NotSupported if contours are synthesised).
 /// @param light  whose it is
 Outcome<HighlightEdit> seedEdit(const Scene& scene, const InspectionRequest& request, int frame, const Pixel& at,
                                 const std::string& light);

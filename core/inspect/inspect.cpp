@@ -56,9 +56,9 @@ struct Group {
   std::vector<int> views;  ///< indices into Inspection::views
 };
 
-/// Whether two frames are one photograph given twice: the same camera, surface and highlights, to the last bit. Noise never repeats itself
-/// like that, so the second one is no further observation: it would only take weight from priors, and stand in for the first one where
-/// that is left out to judge a choice.
+/// Whether two frames are one photograph given twice: the same camera, surface and highlights, to the last bit. Noise never
+/// repeats itself like that, so the second one is no further observation: it would only take weight from priors, and replace
+/// the first one where that is left out to judge a choice.
 bool sameObservation(const Inspection& r, int frame, int other) {
   if (r.train.perSurface && r.surfaces->keyOf(frame) != r.surfaces->keyOf(other)) return false;  // they serve fits of their own
   const Frame &a = r.scene->frames[static_cast<std::size_t>(frame)], &b = r.scene->frames[static_cast<std::size_t>(other)];
@@ -112,7 +112,7 @@ class Run {
     const Outcome<std::shared_ptr<const Surface>> s = r_.surfaces->surfaceOf(frame, meshPolicy(r_.request.settings));
     return s ? *s : nullptr;
   }
-  /// A step that missed the surface gets the reason why there is none: the file that cannot be read.
+  /// A step that missed the surface gets the reason why the surface is missing: the file that cannot be read.
   Failure explained(int frame, const Failure& failure) const {
     if (failure.reason != Reason::NoSurface) return failure;
     const Outcome<std::shared_ptr<const Surface>> s = r_.surfaces->surfaceOf(frame, meshPolicy(r_.request.settings));
@@ -172,7 +172,7 @@ void Run::highlights() {
   if (together && !missing.empty()) assignSeveralLights();
 }
 
-/// Frames whose evidence is not there yet and is asked for.
+/// Frames whose evidence does not exist yet and is asked for.
 std::vector<int> Run::framesToGather() const {
   std::vector<int> frames;
   const bool all = !only_.frame || r_.train.perSurface || lightsAreOpen();
@@ -305,7 +305,7 @@ std::vector<Group> Run::groups() const {
 
 void Run::lights() {
   const std::vector<Group> all = groups();
-  // Of which lights and surfaces: a look at one frame may not have seen them all.
+  // The key names lights and surfaces: a look at one frame may not have seen them all.
   std::string names;
   for (const Group& g : all) names += "|" + textOf(g.key);
   std::set<std::string> stages{"light"};

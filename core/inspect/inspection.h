@@ -28,7 +28,7 @@ struct TrainSpec {
   bool perSurface = false;
   std::vector<int> frames;  ///< sorted, unique; all frames when perSurface
 };
-/// InputError (place "--train") when it does not parse or names a frame that does not exist.
+/// InputError (place "--train") if it does not parse or names a frame that does not exist.
 TrainSpec parseTrainSpec(const std::string& text, const Scene& scene);
 /// What trains, for a person: "0000-0003,0007" by ids, "first:6, 0000-0005", "per-surface".
 std::string trainText(const TrainSpec& train, const Scene& scene);
@@ -84,9 +84,9 @@ struct Inspection {
   std::shared_ptr<const SurfaceCache> surfaces;
   InspectionRequest request;
   TrainSpec train;
-  std::vector<FrameEvidence> evidence;  ///< one per frame; `frame` is -1 where inspectOneFrame() did not look
-  std::map<int, FrameEvidence>
-      evidenceBefore;  ///< of frames whose highlights the what-if moved or whose lights it switched off: as found
+  std::vector<FrameEvidence> evidence;  ///< one per frame; `frame` is -1 if inspectOneFrame() did not look
+  /// As found, of frames whose highlights the what-if moved or whose lights it switched off.
+  std::map<int, FrameEvidence> evidenceBefore;
   /// Where a lobe's background replaced the smooth one (detect.background = lobe): the evidence as first detected; else empty.
   std::vector<FrameEvidence> detected;
   std::vector<TrainingView> views;           ///< one per training highlight; on the corrected surface where there is a correction
@@ -102,7 +102,7 @@ struct Inspection {
   WorkCounts work;
   /// A training view on its surface as given, without canonical contour: what another fit than the inspection's own starts from.
   TrainingView viewAsGiven(int view) const;
-  /// The evidence of a frame, gathered from these inputs of Stage::Evidence; null where it is of others, or was not gathered.
+  /// The evidence of a frame, gathered from these inputs of Stage::Evidence; null if it is of others, or was not gathered.
   const FrameEvidence* evidenceOf(int frame, const StageInputs& from) const;
   /// What a later run takes its evidence and lobes from, and computes everything else anew.
   Inspection evidenceAlone() &&;
@@ -111,10 +111,10 @@ struct Inspection {
 
   /// Whose estimate and fits serve a light in a frame. Without a surface where `surfaces` is not set.
   FitKey keyFor(int frame, const std::string& light) const;
-  /// The estimate of a light, null where it failed or no model needs it.
+  /// The estimate of a light, null if it failed or no model needs it.
   const LightEstimate* lightOf(const FitKey& key) const;
   const LightEstimate* lightFor(int frame, const std::string& light) const { return lightOf(keyFor(frame, light)); }
-  /// Why a light was not estimated; null where it was, or where no model needs it.
+  /// Why a light was not estimated; null if it was, or if no model needs it.
   const Failure* lightFailureFor(int frame, const std::string& light) const;
   /// Every estimate or failure that serves a frame, by light id.
   std::vector<std::pair<std::string, const Outcome<LightEstimate>*>> lightsFor(int frame) const;
@@ -137,11 +137,11 @@ Inspection inspect(std::shared_ptr<const Scene> scene, const InspectionRequest& 
 Inspection inspectOneFrame(std::shared_ptr<const Scene> scene, const InspectionRequest& request, int frame,
                            const ProgressFn& progress = {}, const Inspection* previous = nullptr);
 
-/// What `inspectOneFrame` would say with those of the models alone that take no pixels: sooner, as a lobe's fit to the pixels is the longest
-/// part of many first runs. Given on as `previous` it leaves only the rest to be done.
+/// What `inspectOneFrame` would say with those of the models alone that take no pixels: sooner, as a lobe's fit to the pixels is
+/// the longest part of many first runs. Given on as `previous` it leaves only the rest to be done.
 /// Contours that the lobe finds again (detect.background = lobe) are those of the smooth background for as long.
-/// @return nothing where that is not worth a step of its own: no pixels are asked for, or every model takes them; `previous` has the lobe, or
-///         contours found with one; or it shows a model that takes pixels, which would be gone for a moment.
+/// @return nothing if that is not worth a step of its own: no pixels are asked for, or every model takes them; `previous` has
+///         the lobe, or contours found with one; or it shows a model that takes pixels, which would be gone for a moment.
 /// Failures as inspectOneFrame.
 std::optional<Inspection> firstLook(std::shared_ptr<const Scene> scene, const InspectionRequest& request, int frame,
                                     const ProgressFn& progress = {}, const Inspection* previous = nullptr);

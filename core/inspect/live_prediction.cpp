@@ -38,7 +38,7 @@ Prediction predictionFor(const Inspection& inspection, const ModelResult::Fit& f
   if (!why) return prediction;
   if (why->reason != Reason::NoSurface) return prediction.filtered.empty() ? Prediction(*why) : prediction;
   if (frame < 0) return Failure{Reason::NoSurface, "the frames see different surfaces, and none of them has this id"};
-  // A step that missed the surface gets the reason why there is none: the file that cannot be read.
+  // A step that missed the surface gets the reason why the surface is missing: the file that cannot be read.
   const auto given = inspection.surfaces->surfaceOf(frame, meshPolicy(inspection.request.settings));
   return given ? *why : given.failure();
 }

@@ -14,13 +14,13 @@
 
 namespace glint {
 
-/// The surface that a model's predictions of a light use in a frame; null for a model that needs nothing but the camera (method.md
-/// section 11), and where there is none.
+/// The surface that a model's predictions of a light use in a frame. Null without a surface, and for a model that needs nothing
+/// but the camera (method.md section 11).
 std::shared_ptr<const Surface> surfaceOfModel(const Inspection& inspection, const HighlightModel& model, int frame,
                                               const std::string& light);
 
-/// What one fit predicts in a camera, on the surface of a frame of the scene; highlights that are too small to be told are dropped.
-/// `timeUs` is the model's own time, 0 of a failure. `inspect` and LivePredictor make every prediction here.
+/// What one fit predicts in a camera, on the surface of a frame of the scene; highlights that are too small to be told are
+/// dropped. `timeUs` is the model's own time, 0 of a failure. `inspect` and LivePredictor make every prediction here.
 /// @param frame    whose surface it is; < 0 = none is known: models that need one fail with NoSurface
 /// @param camera   the frame's own, or another one
 /// @param surface  surfaceOfModel(), which outlives the call
@@ -31,7 +31,7 @@ Prediction predictionFor(const Inspection& inspection, const ModelResult::Fit& f
 struct LiveHighlights {
   std::string model, light;
   Prediction prediction;
-  std::string poor{};  ///< why its fit is poor; "" where it is ok
+  std::string poor{};  ///< why its fit is poor; "" if it is ok
 };
 
 struct LiveAnswer {
@@ -43,18 +43,18 @@ struct LiveAnswer {
 /// Fits once, and predicts for poses that are in no scene, one after another: what a SLAM or AR program asks for.
 class LivePredictor {
  public:
-  /// Fits the models of the request from its training frames; with predict.band also the bands of their predictions, which take their time at
-  /// each pose. InputError as `inspect`; Stopped.
+  /// Fits the models of the request from its training frames; with predict.band also the bands of their predictions, which take
+  /// their time at each pose. InputError as `inspect`; Stopped.
   LivePredictor(std::shared_ptr<const Scene> scene, const InspectionRequest& request, const ProgressFn& progress = {});
 
   const Inspection& inspection() const { return inspection_; }
-  /// Why no pose can be answered: no model was fitted. Nothing where one was.
+  /// Why no pose can be answered: no model was fitted. Nothing if one was.
   std::optional<Failure> failure() const;
 
-  /// @param id      of a frame of the scene: its surface and the lights that are on in it count, and its intrinsics. Another id: all
-  ///                fitted lights, and the surface and intrinsics that all frames share
-  /// @param camera  intrinsics and size, where they are given; its pose is not looked at
-  /// @return  NotSupported where the intrinsics are not known. That a surface is not known is the failure of a prediction.
+  /// @param id      of a frame of the scene: its surface and the lights that are on in it count, and its intrinsics. Another id:
+  ///                all fitted lights, and the surface and intrinsics that all frames share
+  /// @param camera  intrinsics and size, where they are given; ignores its pose
+  /// @return  NotSupported if the intrinsics are not known. That a surface is not known is the failure of a prediction.
   Outcome<LiveAnswer> predict(const std::string& id, const Eigen::Isometry3d& cameraFromWorld,
                               const std::optional<Camera>& camera) const;
 

@@ -112,7 +112,7 @@ void fitLobes(Inspection& r, const SurfaceOfFrame& surfaceOf, bool together, con
         FrameEvidence evidence = sameLevel ? r.evidence[static_cast<std::size_t>(f)] : evidenceFor(*r.scene, f, half);
         if (!sameLevel) dropTextures(evidence, r.evidence[static_cast<std::size_t>(f)].textures);
         const std::shared_ptr<const Surface> surface = surfaceOf(f);
-        const Outcome<LinearPixels> pixels = pixelsOf(frame, r.request.source, r.request.settings, evidence.parted);
+        const Outcome<LinearPixels> pixels = pixelsOf(frame, r.request.source, r.request.settings, evidence.separated);
         if (!surface || !pixels) return;
         for (int h = 0; h < static_cast<int>(evidence.highlights.size()); ++h) {
           const Highlight& highlight = evidence.highlights[static_cast<std::size_t>(h)];

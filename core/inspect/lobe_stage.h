@@ -12,8 +12,8 @@
 
 namespace glint {
 
-/// The stage between detection and training (method.md section 15): the lobe of every light is fitted to the pixels of the training
-/// frames, and the contours of all frames are found again with the background that this lobe leaves.
+/// The stage between detection and training (method.md section 15): the lobe of every light is fitted to the pixels of the
+/// training frames, and the contours of all frames are found again with the background that this lobe leaves.
 
 /// The request asks for pixels: as evidence, or for the background.
 bool looksAtPixels(const InspectionRequest& request);
@@ -22,8 +22,8 @@ bool looksAtPixels(const InspectionRequest& request);
 /// @param previous  earlier results on the same scene, or null
 std::optional<InspectionRequest> withoutPixels(const Scene& scene, const InspectionRequest& request, const Inspection* previous);
 
-/// What the stage depends on; the models' settings do not count. It always looks at highlights as detected at half their peak, so that another level, which a user drags,
-/// fits no lobe again.
+/// What the stage depends on; the models' settings do not count. It always looks at highlights as detected at half their peak, so
+/// that another level, which a user drags, fits no lobe again.
 /// @param together  lights are told apart from all frames: then the highlights of the request's own level are taken
 std::string lobeInputs(const InspectionRequest& request, const TrainSpec& train, bool together);
 
@@ -33,26 +33,26 @@ using SurfaceOfFrame = std::function<std::shared_ptr<const Surface>(int frame)>;
 /// Stopped.
 void fitLobes(Inspection& inspection, const SurfaceOfFrame& surfaceOf, bool together, const ProgressFn& progress);
 
-/// The stage's fit of a light for the reflectance model. None where there is none, or where the request names the lobe or the lamp's shape:
-/// the stage does not look at these, so that contours are the same for all of them.
+/// The stage's fit of a light for the reflectance model. Nothing without such a fit, or where the request names the lobe or the
+/// lamp's shape: the stage does not look at these, so that contours are the same for all of them.
 std::shared_ptr<const PixelFit> pixelFitFor(const Inspection& inspection, const FitKey& key);
 
 /// Replaces the evidence of frames that were not looked at before by contours with the lobe's background; keeps the evidence as
 /// detected in Inspection::detected. Throws Stopped.
 void contourAgain(Inspection& inspection, const SurfaceOfFrame& surfaceOf, const ProgressFn& progress);
 
-/// One frame's evidence, contoured again with the lobes that an inspection found. Empty where no light's lobe explains the frame.
+/// One frame's evidence, contoured again with the lobes that an inspection found. Empty if no light's lobe explains the frame.
 /// @param scene,request  whose frame and settings count; they may be newer than the inspection's
 std::optional<FrameEvidence> contouredAgain(const Inspection& lobes, const Scene& scene, const InspectionRequest& request,
                                             int frame, const FrameEvidence& detected,
                                             const std::shared_ptr<const Surface>& surface);
 
-/// Where the evidence is `levels`: contours of a frame's detected highlights at those of `fit.levels` that are not their own, found as their own
-/// were. None for what the user moved, and at levels that lie in clipped pixels.
+/// Where the evidence is `levels`: contours of a frame's detected highlights at those of `fit.levels` that are not their own,
+/// found as their own were. None for what the user moved, and at levels that lie in clipped pixels.
 void addDetectedLevels(const Inspection& inspection, const SurfaceOfFrame& surfaceOf, FrameEvidence& evidence);
 
-/// Joins the views with their pixels: those of the highlight of the same light whose peak lies in the view's contour. None where noise was
-/// added or the user moved the highlight: its contour then says more than the pixels do.
+/// Joins the views with their pixels: those of the highlight of the same light whose peak lies in the view's contour. None where
+/// noise was added or the user moved the highlight: its contour then says more than the pixels do.
 void attachPixels(Inspection& inspection);
 
 }  // namespace glint

@@ -64,7 +64,7 @@ Inspection besideObservation(const Inspection& earlier, const Observation& obser
                [&](const TrainingView& v) { return v.frame == frame; });
   r.lights = earlier.lights;
   r.corrections = earlier.corrections;
-  r.correctedDepthMaps = std::make_shared<CorrectedDepthMaps>();  // the frame may stand elsewhere now
+  r.correctedDepthMaps = std::make_shared<CorrectedDepthMaps>();  // the frame may have moved
   r.inputs = observation.inputs;
   for (const auto& [name, before] : earlier.models) {
     ModelResult& now = r.models[name];

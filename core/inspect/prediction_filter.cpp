@@ -15,7 +15,7 @@
 namespace glint {
 namespace {
 
-/// log of the radiance relative to what mirrors exactly; nothing where the fit does not tell.
+/// log of the radiance relative to what mirrors exactly; nothing if the fit does not tell.
 std::optional<double> logBrightness(const ModelFit& fit, const PredictedHighlight& h, const Eigen::Vector3d& eye, double level) {
   if (!fit.lightEstimate) return std::nullopt;
   const SurfacePoint at = facing(h.brightest.point, eye);
@@ -39,7 +39,7 @@ std::optional<std::string> tooFaint(const std::optional<double>& own, const std:
   return formatted("weaker than predict.filter_brightness: %.2g of the brightest predicted one, of at least %.3g", share, least);
 }
 
-/// Of the contour's middle on the surface: a brightest point may lie beside what makes the outline.
+/// Asks for the contour's middle on the surface: a brightest point may lie beside what makes the outline.
 bool shadowed(const ModelFit& fit, const PredictedHighlight& h, const Camera& camera, const Surface* surface) {
   if (!surface || !fit.lightEstimate) return false;
   const Outcome<SurfacePoint> hit = surface->firstHit(camera.ray(centroid(h.contour)));

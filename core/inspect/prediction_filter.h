@@ -8,9 +8,9 @@
 
 namespace glint {
 
-/// Takes out of a prediction what the settings leave out, into Prediction::filtered, each with its reason; where nothing is left, the
+/// Moves what the settings exclude from a prediction to Prediction::filtered, each with its reason; if nothing is left, the
 /// first reason is the answer (NoHighlight).
-///   predict.filter_area        smaller than detection takes: detect.min_area, px^2. The whole contour counts, also beyond the image
+///   predict.filter_area        smaller than detection takes: detect.min_area, px^2. Counts the contour beyond the image, too
 ///   predict.filter_brightness  fainter than this share of the brightest one of the same prediction. I falls with the angle alpha
 ///                              between normal and half vector at the brightest point as a Gaussian lobe does,
 ///                              log I = log(q) (tan alpha / tan alpha_lim)^2 with the level q (method.md section 5), or by the

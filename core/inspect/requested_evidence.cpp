@@ -22,9 +22,9 @@ FrameEvidence evidenceFor(const Scene& scene, int frame, const InspectionRequest
   evidence = gatherEvidence(scene, frame, request.source, request.settings);
   const bool detected = !evidence.highlights.empty() && !evidence.highlights.front().fromScene;
   if (detected && request.settings.text("detect.background") == "colours") {
-    Parting parting = partEvidence(scene, frame, request.source, request.settings, evidence);
-    evidence.notParted = std::move(parting.reason);
-    evidence.parted = std::move(parting.regions);
+    SpecularSeparation separation = separateEvidence(scene, frame, request.source, request.settings, evidence);
+    evidence.notSeparated = std::move(separation.reason);
+    evidence.separated = std::move(separation.regions);
   }
   if (request.truthFolder.empty()) return evidence;
   evidence.againstTruth = true;

@@ -18,7 +18,7 @@ enum class Stage { Evidence, Lobes, Views, Lights, CanonicalContours, Fits, Pred
 class StageInputs {
  public:
   StageInputs() = default;
-  /// Of a run that went no further than the evidence.
+  /// The inputs of a run that went no further than the evidence.
   explicit StageInputs(std::string evidence) { set(Stage::Evidence, std::move(evidence)); }
 
   void set(Stage stage, std::string inputs) { inputs_[index(stage)] = std::move(inputs); }

@@ -9,9 +9,9 @@
 
 namespace glint {
 
-/// What counts, in % of a highlight's diameter, where a contour error cannot: for an observed highlight that is not predicted, and at most for one
-/// that is; for one that is predicted where none is observed. That is little, because a filter may take it out, while nothing mends a contour: it
-/// decides between equal contours.
+/// The error, in % of a highlight's diameter, that counts without a contour error: for an observed highlight that is not
+/// predicted, and at most for one that is; for one that is predicted where none is observed. That is little, because a filter may
+/// take it out, while nothing repairs a contour: it decides between equal contours.
 inline constexpr double kMissedPct = 100, kSpuriousPct = 0.1;
 
 /// What `evaluate` prints of one model (docs/formats.md, "evaluate --json"): held-out frames only, except per surface.
@@ -27,8 +27,8 @@ struct ModelSummary {
   Statistic iou;  ///< per (frame, light), over the union of all regions
   Statistic timeUs;
   double timeP99Us = 0;
-  /// The one number by which models and settings are compared: ComparisonTally::wrongPct() over all comparisons, per observed highlight. The
-  /// mean contour error where nothing is missed or spurious. NaN where nothing was observed.
+  /// The one number by which models and settings are compared: ComparisonTally::wrongPct() over all comparisons, per observed
+  /// highlight. The mean contour error where nothing is missed or spurious. NaN where nothing was observed.
   double wrongPct = 0;
 
   const char* status() const { return !answered ? "failed" : poor ? "poor" : "ok"; }
@@ -47,7 +47,7 @@ struct ComparisonTally {
     double contourErrorPct = 0, contourErrorPx = 0, ellipseErrorPct = 0, hausdorffPx = 0, peakOffsetPx = 0, coverage = 0;
   };
   std::vector<Measured> measured;  ///< of each highlight with metrics
-  /// Sum over its highlights: contour errors, each at most kMissedPct, kMissedPct for each other observed one, kSpuriousPct for each spurious one.
+  /// Sum over highlights: contour errors of at most kMissedPct, kMissedPct per other observed one, kSpuriousPct per spurious one.
   double wrongPct() const;
   std::vector<BandScore> bands;  ///< of each matched highlight with a band
 };
@@ -67,8 +67,8 @@ struct FitReasons {
 };
 FitReasons reasonsOf(const ModelResult& result);
 const char* fitStatus(const ModelResult::Fit& fit);  ///< "ok", "poor", "failed"
-std::string fitReason(const ModelResult::Fit& fit);  ///< "" where it is ok
-/// Why the fit behind a comparison is poor; "" where it is ok, has failed, or there is none.
+std::string fitReason(const ModelResult::Fit& fit);  ///< "" if it is ok
+/// Why the fit behind a comparison is poor; "" if it is ok, has failed, or does not exist.
 std::string poorFit(const ModelResult& result, const FrameComparison& comparison);
 /// The model was fitted, and failed for this light on every surface: it says nothing there.
 bool failedFor(const Inspection& inspection, const std::string& model, const std::string& light);

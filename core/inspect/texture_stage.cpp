@@ -19,7 +19,7 @@ bool waits(const std::vector<MotionVerdict>& verdicts) {
                      [](const MotionVerdict& v) { return v.kind == MotionVerdict::Kind::Waiting; });
 }
 
-/// Null where it cannot be read: whoever needs it says so.
+/// Null if it cannot be read: its user reports that.
 std::shared_ptr<const Surface> surfaceIfAny(const SurfaceOfFrame& surfaceOf, int frame) {
   try {
     return surfaceOf(frame);
@@ -62,7 +62,7 @@ void rejectTextures(Inspection& r, std::vector<int> frames, const SurfaceOfFrame
     again.insert(missing.begin(), missing.end());
     frames.assign(again.begin(), again.end());
   }
-  // Only now: everyone was judged by what all were detected with.
+  // Textures go only now, because every frame was judged by the full evidence of the others.
   for (const auto& [f, said] : verdicts)
     if (!said.empty())
       withholdTextures(r.evidence[static_cast<std::size_t>(f)], said, r.scene->frames[static_cast<std::size_t>(f)].camera);

@@ -11,14 +11,14 @@
 
 namespace glint {
 
-/// Between detection and everything that uses its highlights: bright texture goes out of the evidence of these frames (detect.motion,
-/// core/fit/highlight_motion.h).
+/// Between detection and everything that uses its highlights: bright texture goes out of the evidence of these frames
+/// (detect.motion, core/fit/highlight_motion.h).
 /// @param frames  whose evidence was gathered, and is as detected
-/// @param gather  gathers further frames that have to be asked; they are judged as well. Not called while those that are there decide. Throws Stopped
+/// @param gather  gathers further frames that must be asked and judged. Not called while the present ones decide. Throws Stopped
 void rejectTextures(Inspection& inspection, std::vector<int> frames, const SurfaceOfFrame& surfaceOf,
                     const std::function<void(const std::vector<int>&)>& gather, const ProgressFn& progress);
 
-/// Of a fit: how much bright texture its training frames show. "" where there is none.
+/// How much bright texture a fit's training frames show; "" without any.
 std::string textureRemark(const Inspection& inspection);
 
 }  // namespace glint

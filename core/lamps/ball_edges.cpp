@@ -200,7 +200,7 @@ std::vector<Image> linearLight(std::span<const Image> photographs) {
 
 namespace {
 
-/// The lines of a sector: parallel to its middle one in number of the arc's pixels, each from `reach` inside of the outline outwards.
+/// The lines of a sector: parallel to its middle one, one per pixel of the arc, from `reach` inside of the outline outwards.
 std::vector<RadialLine> sectorLines(const OutlineModel& outline, int sector, double reach) {
   constexpr double kSector = 2 * std::numbers::pi / kOutlineSectors;
   constexpr int kMostLines = 15;
@@ -215,8 +215,8 @@ std::vector<RadialLine> sectorLines(const OutlineModel& outline, int sector, dou
   return lines;
 }
 
-/// Every edge of one photograph, before neighbours are asked. The noise is what the lines of a sector differ by: an edge that runs along the outline
-/// does not count as noise. White noise of the mean, sigma, has the slope sigma (4 sqrt(pi) blur^3)^-1/2 behind the derivative of a Gaussian.
+/// Every edge of one photograph, before neighbours are asked. Noise is the difference of a sector's lines: an edge along the
+/// outline is no noise. White noise sigma has the slope sigma (4 sqrt(pi) blur^3)^-1/2 behind a Gaussian's derivative.
 SectorEdges edgesOf(const Image& linear, const std::vector<std::vector<RadialLine>>& lines, int samples, double spacing) {
   std::vector<std::vector<double>> slopes(kOutlineSectors), codes(kOutlineSectors);
   std::vector<double> noise;

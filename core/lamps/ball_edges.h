@@ -17,9 +17,9 @@ namespace glint {
 inline constexpr int kOutlineSectors =
     120;  // 3 degrees: 22 px of a ball of 420 px, so noise is averaged and a sector is nearly straight
 
-/// A circle, or with a camera the outline of a sphere: the cone of rays that touch it, cut by the image plane. Three unknowns x: for the circle centre and
-/// radius; for the sphere the image of its centre and the outline's smaller half axis, f tan(alpha) / cos(theta), alpha the cone's half angle, theta its
-/// axis against the optical axis.
+/// A circle, or with a camera the outline of a sphere: the cone of rays that touch it, cut by the image plane. Three unknowns x:
+/// for the circle centre and radius; for the sphere the image of its centre and the outline's smaller half axis, f tan(alpha) /
+/// cos(theta), alpha the cone's half angle, theta its axis against the optical axis.
 struct OutlineModel {
   Eigen::Vector3d x = Eigen::Vector3d::Zero();
   std::optional<OutlineCamera> camera;
@@ -43,8 +43,8 @@ struct BallEdge {
 /// Linear light of photographs with 8-bit sRGB values, 0 to 255, mean of the channels.
 std::vector<Image> linearLight(std::span<const Image> photographs);
 
-/// Edges that continue through neighbouring sectors: steepest places of linear light along lines across the outline, within `reach` of it.
-/// @param linear  one channel. @param blurPx  of the derivative's Gaussian. @param slant  by how much an edge may move from one sector to the next, px
+/// Edges that continue through neighbouring sectors: steepest places of linear light on lines across the outline, within `reach`.
+/// @param linear  one channel. @param blurPx  of the Gaussian's derivative. @param slant  an edge's largest step between sectors
 std::vector<BallEdge> ballEdges(std::span<const Image> linear, const OutlineModel& outline, double reach, double blurPx,
                                 double slant);
 

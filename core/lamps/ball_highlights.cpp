@@ -143,7 +143,7 @@ cv::Rect cropAround(const BallView& view, const Candidate& candidate) {
   return wide & cv::Rect(0, 0, view.values.cols, view.values.rows);
 }
 
-/// The disc of the part of { value >= level } around `place`, sampled finely enough. Radius 0: there is none.
+/// The disc of the part of { value >= level } around `place`, sampled finely enough. Radius 0: no such part.
 Core discAt(const BallView& view, const Candidate& candidate, double level) {
   const cv::Rect crop = cropAround(view, candidate);
   const int times = std::clamp(static_cast<int>(std::ceil(kFineRadius / std::max(candidate.radius, 1.0))), 1, kFinest);
@@ -192,8 +192,9 @@ std::vector<Candidate> candidates(const BallView& view, double level, const cv::
   return found;
 }
 
-/// Whether this place on a ball shows another one, for a distant camera and balls at the same depth. In radii of the ball, D away, the other's centre is
-/// reflected at s from the ball's centre: D (1 - 2 s^2) + s = 0, s = (1 + sqrt(1 + 8 D^2)) / (4 D); it appears half as large as its angle, times cos.
+/// Whether a place on a ball shows another one, for a distant camera and equal depths. In radii, D away, the other's centre
+/// is reflected at s from the ball's: D (1 - 2 s^2) + s = 0, s = (1 + sqrt(1 + 8 D^2)) / (4 D); half as large as its angle, times
+/// cos.
 bool showsAnotherBall(const Eigen::Vector2d& place, std::span<const BallOutline> balls, std::size_t which) {
   const BallOutline& own = balls[which];
   for (std::size_t j = 0; j < balls.size(); ++j) {
@@ -212,7 +213,7 @@ bool atLimb(const Eigen::Vector2d& place, const BallOutline& ball) { return (pla
 
 std::string placeText(const Eigen::Vector2d& p) { return formatted("%.1f, %.1f", p.x(), p.y()); }
 
-/// The contour around a place at a level, in the shot; empty where there is none.
+/// The contour around a place at a level, in the shot; empty without one.
 std::vector<Eigen::Vector2d> contourAround(const BallView& view, const Candidate& candidate, double level) {
   const cv::Rect crop = cropAround(view, candidate);
   Image image(crop.width, crop.height, 1);
@@ -248,7 +249,7 @@ LampObservation measurePeak(const BallView& view, const Candidate& lamp, bool cl
   return result;
 }
 
-/// Why the largest candidate is not the lamp's reflection, or not surely; nothing where it is.
+/// Why the largest candidate is not the lamp's reflection, or not surely; nothing if it is.
 std::optional<Failure> objection(const BallView& view, const std::vector<Candidate>& bright, std::span<const BallOutline> balls,
                                  std::size_t which, const Image& photograph, const Eigen::Vector2d& corner) {
   const Candidate& lamp = bright[0];

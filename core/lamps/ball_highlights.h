@@ -9,9 +9,9 @@
 
 namespace glint {
 
-/// Bright reflections on one ball that stay where they are from photograph to photograph, such as a window's: none of them is that of the lamp of each.
+/// Bright reflections on one ball that stay in place from photograph to photograph, such as a window's: they are not the lamps'.
 struct StillReflections {
-  Image mask;                                        ///< one channel, above 0 on them and close around; empty = there are none
+  Image mask;                                        ///< one channel, above 0 on them and close around; empty without any
   Eigen::Vector2d corner = Eigen::Vector2d::Zero();  ///< of its first pixel in the shot
   std::vector<Eigen::Vector2d> places;               ///< their middles in the shot
 
@@ -19,25 +19,26 @@ struct StillReflections {
   bool cover(const Eigen::Vector2d& place) const;
 };
 
-/// What is bright in three of four photographs. A lamp that moves is at no place in so many.
-/// @param photographs  of one size, as for findLampHighlight(); of fewer than two there is nothing to say. @param corner,ball  as there
+/// Finds what is bright in three of four photographs. A moving lamp never stays in place for so many.
+/// @param photographs  of one size, as for findLampHighlight(); fewer than two tell nothing. @param corner,ball  as there
 StillReflections stillReflections(std::span<const Image> photographs, const Eigen::Vector2d& corner, const BallOutline& ball);
 
 /// The reflection of the lamp on a mirror ball.
 ///
-/// The lamp's image is usually clipped, and scratches, dust and the lens surround it with streaks and stars. So its place is not where the light's mean lies,
-/// but the middle of the largest disc that fits into what is brighter than a level: streaks are narrower than the core and do not move it. Five levels
-/// close below the top tell how far the place can be relied on. All channels count (their least): streaks are coloured, the core is not.
-/// Everything else on the ball that is bright is dropped by name: the lamp's own streaks, smaller and dimmer things, the reflection of another ball (where a
-/// distant camera sees a ball of the same depth in this one; its highlights are images of the lamp, too), what lies at the outline.
+/// The lamp's image is usually clipped, and scratches, dust and lens add streaks and stars. So its place is not the
+/// mean of the light, but the middle of the largest disc brighter than a level: streaks are narrower than the core and do not
+/// move it. Five levels close below the top tell how reliable the place is. The least channel counts: streaks are coloured, the
+/// core is not. Other bright things are dropped by name: the lamp's own streaks, smaller and dimmer things, what lies at the
+/// outline, and reflections of another ball (if a distant camera sees it at the same depth; its highlights are images of the
+/// lamp, too).
 ///
 /// @param photograph  8-bit values 0 to 255 as float, 1 or 3 channels.
 /// @param corner      the place of its first pixel in the shot.
 /// @param balls       the outlines of all balls in the shot. @param which  the ball to look at.
-/// @param still       what is not looked at.
-/// @return  `frame` stays empty. The covariance has the scatter of the levels and the shape of the core, longer along a streak; it knows nothing of the outline.
-///          NoHighlight: nothing stands out; two that are equal; the largest lies where another ball is reflected, or at the outline; Clipped: as wide as a
-///          fifth of the ball's radius, so that the light has no single place; OutsideImage: cut by the photograph's border; NotFinite.
+/// @param still       places to ignore.
+/// @return  `frame` stays empty. The covariance has the scatter of the levels and the core's shape, but nothing of the outline.
+///          NoHighlight: nothing stands out, two are equal, or the largest is another ball or at the outline; Clipped:
+///          as wide as a fifth of the ball's radius, no single place; OutsideImage: cut by the photograph's border; NotFinite.
 Outcome<LampObservation> findLampHighlight(const Image& photograph, const Eigen::Vector2d& corner,
                                            std::span<const BallOutline> balls, std::size_t which,
                                            const StillReflections& still = {});

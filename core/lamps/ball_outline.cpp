@@ -40,7 +40,7 @@ constexpr double kLeastGain = 0.1;   // of squared heights at twice the blur: a 
 constexpr double kLevelShare = 0.5;  // of a grey level: rounding
 constexpr double kShiftShare = 0.8,
                  kAside = 0.25;       // of the shift, along it and across: 95 % of the errors within three of it (tests)
-constexpr double kRoughShare = 0.01;  // of the radius: what a person who draws a circle gets right on a large ball
+constexpr double kRoughShare = 0.01;  // of the radius: the accuracy of a circle that a person draws on a large ball
 constexpr double kCovered = 2;        // standard deviations to a given outline around the edges
 constexpr int kLeftOut = 12;          // parts of the outline, each left out once
 
@@ -54,7 +54,7 @@ struct WeightedEdge {
   double residual = 0, weight = 0;
 };
 
-/// In every sector the outermost edge within `outer` of the outline, with those of other photographs that agree with it.
+/// Every sector's outermost edge within `outer` of the outline, with those of other photographs that agree with it.
 std::vector<SectorEdge> outermost(const OutlineModel& model, const std::vector<BallEdge>& edges, double outer, double together) {
   std::array<double, kOutlineSectors> top;
   top.fill(-1e300);
@@ -89,7 +89,7 @@ WeightedEdge weightedEdge(const OutlineModel& model, const Eigen::Vector2d& plac
   return {r, std::abs(t) < 1 ? (1 - t * t) * (1 - t * t) : 0.0};
 }
 
-/// One step of weighted Gauss-Newton. False where the edges do not determine one.
+/// One step of weighted Gauss-Newton. False if the edges do not determine one.
 bool outlineStep(OutlineModel& model, const std::vector<SectorEdge>& edges, const Widths& widths, int leftOut = -1) {
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
   Eigen::Vector3d right = Eigen::Vector3d::Zero();
@@ -128,8 +128,8 @@ double support(const OutlineModel& model, const std::vector<BallEdge>& edges, do
   return sum;
 }
 
-/// From wide weights outwards; with equal ones from close by, where these find clearly more of an outline. The widths that were used; nothing where
-/// neither fit holds.
+/// From wide weights outwards; with equal ones from close by, where these find clearly more of an outline. The widths that were
+/// used; nothing if neither fit holds.
 std::optional<Widths> settle(OutlineModel& model, const std::vector<BallEdge>& edges, double blur, double widest) {
   const Widths outwards{kInner * blur, kOuter * blur}, equal{kOuter * blur, kOuter * blur};
   OutlineModel close = model;
@@ -214,9 +214,9 @@ double heightOn(const OutlineModel& model, const std::vector<BallEdge>& edges, d
   return steps.empty() ? 0.0 : upperMedian(steps);
 }
 
-/// What all edges have wrong together. A step beside light that rises or falls up to the rim, as in what a ball mirrors, seems to lie
-/// slope / step sigma^2 aside, sigma the whole blur: with twice the blur of ours by how much more, and the heights tell sigma. Grey levels are
-/// whole numbers: a faint edge is known to the width of one level.
+/// The error that all edges share. A step beside light that rises or falls up to the rim, as in what a ball mirrors, seems to
+/// lie slope / step sigma^2 aside, sigma the whole blur: with twice the blur of ours by how much more, and the heights tell
+/// sigma. Grey levels are whole numbers: a faint edge is known to the width of one level.
 Eigen::Matrix3d commonErrors(const OutlineModel& model, const std::vector<Image>& linear, const std::vector<BallEdge>& edges,
                              double blur) {
   const double twice = 2 * blur, fine = heightOn(model, edges, kOuter * blur);

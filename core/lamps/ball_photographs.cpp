@@ -67,7 +67,7 @@ std::vector<double> numbersOf(const std::string& text, std::size_t count, const 
 fs::path folderOf(const fs::path& input, const NamedBall& ball) {
   if (ball.folder.empty()) return input;
   const fs::path as = ball.folder, in = input / ball.folder;
-  std::error_code ignored;  // what cannot be asked about is not there
+  std::error_code ignored;  // unreadable counts as missing
   const bool here = fs::is_directory(as, ignored), inside = as.is_relative() && fs::is_directory(in, ignored);
   const std::string place = "--ball " + ball.text;
   if (here && inside && !fs::equivalent(as, in, ignored))
@@ -81,7 +81,7 @@ fs::path folderOf(const fs::path& input, const NamedBall& ball) {
 /// Folders beside those that balls name, with photographs of the same names.
 std::vector<std::string> foldersLeftOut(const std::vector<fs::path>& used, const std::vector<Shot>& shots) {
   std::set<fs::path> named, parents, found;
-  std::error_code ignored;  // what cannot be asked about is not there
+  std::error_code ignored;  // unreadable counts as missing
   for (const fs::path& folder : used) named.insert(fs::weakly_canonical(folder, ignored));
   for (const fs::path& folder : named) parents.insert(folder.parent_path());
   for (const fs::path& parent : parents)
@@ -212,8 +212,8 @@ class ShotReader {
   double givenSigmaPx_;
   const ProgressFn& progress_;
   std::map<std::size_t, Image> size_;  ///< of each ball's photographs, without pixels
-  std::optional<OutlineCamera>
-      outlineCamera_;  ///< none where a lens bends outlines: its ellipse is then found from the edge points alone
+  /// None if a lens bends outlines: the edge points alone then tell the ellipse.
+  std::optional<OutlineCamera> outlineCamera_;
   std::vector<BallOutline> found_;
   std::vector<StillReflections> still_;  ///< of each ball
   std::vector<bool> unmoved_;            ///< of each ball: nothing on it was seen to move, so nothing tells a lamp from a window
@@ -345,8 +345,8 @@ ShotReader::Seen ShotReader::highlightsOf(const Shot& shot) {
 
 /// What makes it doubtful that a reflection which was not seen to move is the lamp's; "" = nothing does.
 std::string ShotReader::doubtOf(std::size_t k, const std::vector<LampAnswer>& lamps) const {
-  // A lamp that appears 20 degrees wide stands as near as three of its own widths; a window is seldom below 5. An ellipse fills pi / 4 of its
-  // rectangle: well more is a rectangle, less has streaks.
+  // A lamp that appears 20 degrees wide is as near as three of its own widths; a window is seldom below 5. An ellipse fills
+  // pi / 4 of its rectangle: well more is a rectangle, less has streaks.
   constexpr double kWideDeg = 20, kShapedDeg = 5, kElongated = 1.5, kRectangular = 0.87, kCompact = 0.72;
   const auto at = [&](const Pixel& place, const Eigen::Vector3d& towards) {
     const Pixel p = place - s_.balls[k].corner;
@@ -478,7 +478,7 @@ std::optional<Camera> cameraOfExif(const BallShots& shots, double& mm) {
       mm = *focal;
       camera = filmCamera(mm, static_cast<int>(header.width), static_cast<int>(header.height));
     } catch (const InputError&) {
-      return std::nullopt;  // it is said where the photograph is looked at
+      return std::nullopt;  // the search of the photograph reports it
     }
   }
   return camera;

@@ -37,19 +37,19 @@ struct BallShots {
   std::vector<NamedBall> balls;
   std::vector<Shot> shots;  ///< by name
   CameraResponse response;  ///< of all photographs
-  /// Folders beside those of the balls with photographs of the same names: those of another ball that nobody outlined.
+  /// Folders beside those of the balls with photographs of the same names: those of another ball without an outline.
   std::vector<std::string> leftOut;
   std::vector<std::filesystem::path> files() const;
 };
 
-/// The photographs in the folders that the balls name, by the endings of their names; `input` where a ball names none. A folder is looked for as it
-/// stands, and in `input`.
+/// The photographs in the folders that the balls name, by the endings of their names; `input` where a ball names none. A folder
+/// is looked for as named, and in `input`.
 /// @param exclude  a frame SPEC over the shots' ids; "" = none
 /// InputError: a folder is missing, has no photographs or could be two; a ball is named twice; `exclude`.
 BallShots ballShotsIn(const std::filesystem::path& input, const std::vector<NamedBall>& balls, const std::string& exclude);
 
-/// What EXIF data of whole shots say of the camera: the focal length; the principal point is taken in the middle, the lens as ideal. Nothing where a ball was cut
-/// out, where the first shot says nothing, or where the last one says something else.
+/// What EXIF data of whole shots say of the camera: the focal length; the principal point is taken in the middle, the lens as
+/// ideal. Nothing if a ball was cut out, where the first shot says nothing, or if the last one says something else.
 /// @param mm  becomes the focal length on 35 mm film
 std::optional<Camera> cameraOfExif(const BallShots& shots, double& mm);
 
@@ -62,8 +62,8 @@ struct PhotographLamps {
 /// Outlines, highlights and lamps of all shots. A shot that cannot be read or shows no highlight is a lamp without an answer.
 /// @param camera,focalAlone  see BallPhotographs
 /// @param givenSigmaPx  of centre and radius of an outline that is taken as typed
-/// @throw InputError where a ball lies outside of its photographs; Stopped
-/// @return  without any answer where no shot shows a highlight. FrameUnreadable where no shot can be read; what fitBallLamps() says
+/// @throw InputError if a ball lies outside of its photographs; Stopped
+/// @return  no answers if no shot shows a highlight. FrameUnreadable if no shot can be read; failures of fitBallLamps()
 Outcome<PhotographLamps> lampsOfShots(const BallShots& shots, const std::optional<Camera>& camera, bool focalAlone,
                                       const std::optional<double>& ballRadius, Outlines outlines, double givenSigmaPx,
                                       const ProgressFn& progress);

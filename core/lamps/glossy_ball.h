@@ -12,8 +12,8 @@ namespace glint {
 /// Whether highlights are so wide that the middle of one is not its mirror point: a rough ball, no mirror.
 bool showsLobes(const std::vector<LampObservation>& seen, const BallOutline& ball);
 
-/// Lamps of one rough ball, again by its lobe: the photographs become a scene with a sphere, and every lamp goes through the reflectance model as in
-/// lampsOfScene(). A lamp takes the new direction where the model explains its highlight without a doubt and agrees with the mirrored ray; else it stays.
+/// Refines the lamps of one rough ball by its lobe: fits every lamp in a scene with a sphere, as lampsOfScene()
+/// does. A lamp takes the new direction if the model explains its highlight without doubt and agrees with the mirrored ray.
 /// @param shots   with one ball. @param width,height  of its photographs
 /// @param camera  see BallPhotographs; none: a camera so far away that its rays are parallel
 /// @param lamps   of fitBallLamps(), in the order of the shots

@@ -17,8 +17,8 @@ struct DroppedSighting {
   std::optional<std::size_t> ball;  ///< index; none in a scene
   Pixel place{0, 0};                ///< px, measured
   std::string reason;               ///< in words
-  std::optional<Eigen::Vector3d> direction =
-      {};  ///< unit, towards the lamp if this reflection is the lamp's after all; nothing where it cannot be
+  /// Unit, towards the lamp if this reflection is the lamp's after all; nothing if it cannot be.
+  std::optional<Eigen::Vector3d> direction = {};
 };
 
 /// How large a reflection makes its lamp appear from the ball.
@@ -27,8 +27,8 @@ struct LampExtent {
   double filled = 0;                 ///< share of that: pi / 4 of an ellipse, 1 of a window
 };
 
-/// How the directions to one lamp from the two balls that are farthest apart differ, degrees: along the line between the balls a near
-/// lamp makes a difference, across it only errors do.
+/// How the directions to one lamp from the two balls that are farthest apart differ, degrees: along the line between the balls a
+/// near lamp makes a difference, across it only errors do.
 struct Parallax {
   std::size_t from = 0, to = 0;  ///< indices of the balls
   double alongDeg = 0, acrossDeg = 0;
@@ -42,11 +42,11 @@ struct LampSighting {
   Eigen::Vector2d residualPx = Eigen::Vector2d::Zero();   ///< of the fit: seen less predicted
   bool clipped = false;
   std::optional<LampExtent> extent;  ///< nothing without a contour on the ball
-  /// From the other balls alone, outlines refined without this lamp: predicted less seen, px, and the directions' difference.
+  /// Predicted less seen from the other balls alone, outlines refined without this lamp, px; and the directions' difference.
   std::optional<Eigen::Vector2d> leftOutPx;
 };
 
-/// Where a lamp is, or why that is not known. Directions are unit vectors from `from`; world frame (photographs of balls: the camera's).
+/// Where a lamp is, or why that is unknown. Directions are unit vectors from `from`; world frame (of balls: the camera's).
 struct LampAnswer {
   std::string id;
   std::vector<std::string> frames;            ///< ids
@@ -60,7 +60,7 @@ struct LampAnswer {
   double residualPx = 0;                ///< root mean square over the highlights; 0 where nothing is redundant
   double degreesOfFreedom = 0;          ///< behind the residual; 0 where nothing is redundant or nothing is known of it
   int highlights = 0;                   ///< used
-  /// Photographs of balls: the share of what is known of all outlines that this photograph's highlights bring; the edges bring the rest to 1.
+  /// Photographs of balls: the share that this photograph's highlights add to all outlines; the edges add the rest, up to 1.
   std::optional<double> outlineShare;
   std::vector<DroppedSighting> dropped;
   std::vector<LampSighting> sightings;  ///< photographs of balls only

@@ -29,7 +29,7 @@ WeightedPeak weightedPeak(const LampObservation& seen, const Pixel& ideal);
 /// Start and least squares of one lamp, outlines as they are. The failure stays with the lamp.
 void fitAlone(const LampProblem& problem, LampInFit& lamp);
 
-/// The same lamp at infinity, to the least sum of squares. Nothing where that does not settle.
+/// The same lamp at infinity, to the least sum of squares. Nothing if that does not converge.
 std::optional<LampUnknowns> distantFrom(const LampProblem& problem, const LampUnknowns& lamp);
 
 /// What the redundant equations of one lamp leave: their sum of squares, over the noise promised, and their number.

@@ -225,7 +225,7 @@ BallLamps BallLampFit::answer() {
   return result;
 }
 
-/// Of each ball's highlights. Leverage: that of the lamp's own unknowns is what the redundant equations leave out, that of the outlines E C E^T.
+/// Residuals by ball. Leverage: the redundant equations leave out the lamp's own unknowns; the outlines' is E C E^T.
 void BallLampFit::addBallResiduals(BallLamps& result) const {
   std::size_t equation = 0;
   for (std::size_t i = 0; i < lamps_.size(); ++i) {
@@ -248,7 +248,7 @@ void BallLampFit::addBallResiduals(BallLamps& result) const {
     if (ball.highlights > 0) ball.highlightResidualPx = std::sqrt(ball.highlightResidualPx / ball.highlights);
 }
 
-/// trace(C E^T E) over the number of unknowns: with I = C (I + sum E^T E), the shares of all photographs and that of the edges, trace(C), add up to 1.
+/// trace(C E^T E) over the number of unknowns: as I = C (I + sum E^T E), all photographs and the edges, trace(C), add up to 1.
 double BallLampFit::outlineShareOf(const LampProblem::Eliminated& e) const {
   if (!refine_) return 0;
   return (ofOutlines_ * e.outlinesRest.transpose() * e.outlinesRest).trace() / static_cast<double>(ofOutlines_.rows());

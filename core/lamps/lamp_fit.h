@@ -11,7 +11,7 @@
 
 namespace glint {
 
-/// What photographs of mirror balls by one fixed camera show. Places are measured pixels; with a camera that has a lens they are freed of it here.
+/// What photographs of mirror balls by one fixed camera show. Places are measured pixels; the fit takes a camera's lens off.
 struct BallPhotographs {
   std::optional<Camera> camera;       ///< at the origin; none: distant, rays parallel to z
   bool focalAlone = false;            ///< of the camera only the focal length is known, and that roughly: then directions only
@@ -31,27 +31,27 @@ struct FittedBall {
   int edgeDegreesOfFreedom = 0;  ///< of those
   int highlights = 0;            ///< on this ball that were used
   double highlightResidualPx = 0;  ///< their rms: seen less predicted
-  /// What the fit leaves free of their coordinates: the sum over them of 1 less the leverage, so that those of all balls, and of the outlines, add up to
-  /// those of the fit.
+  /// What the fit leaves free of their coordinates: the sum over them of 1 less the leverage, so that those of all balls, and of
+  /// the outlines, add up to those of the fit.
   double highlightDegreesOfFreedom = 0;
 };
 
 struct BallLamps {
-  std::vector<LampAnswer>
-      lamps;  ///< one for each photograph that something was seen in, in the order of `seen`; the id is left to the caller
+  /// One for each photograph that shows something, in the order of `seen`; the caller sets the id.
+  std::vector<LampAnswer> lamps;
   std::vector<FittedBall> balls;
   double noiseFactor = 1;  ///< the residuals over what their covariances promise, at least 1; all covariances contain its square
   int degreesOfFreedom = 0;  ///< of that
 };
 
-/// All lamps and all outlines in one fit: minimises sum |W (u - u(L_i, B_k))|^2 + |z|^2 over the lamps L_i (direction and inverse distance, so that a lamp may
-/// lie at infinity) and the outlines B_k = B_k0 + root(covariance) z_k by Gauss and Newton; a QR for each lamp eliminates its unknowns, so the effort grows in proportion to the lamps.
-/// u(L, B) is the mirror point. One ball alone leaves the distance of a lamp open: it is then taken as distant.
+/// All lamps and outlines in one fit: minimises sum |W (u - u(L_i, B_k))|^2 + |z|^2 over the lamps L_i (direction and inverse
+/// distance, which may be 0) and the outlines B_k = B_k0 + root(covariance) z_k by Gauss-Newton; a QR per lamp eliminates its
+/// unknowns, so that the effort grows linearly with lamps. u(L, B) is the mirror point. With one ball, lamps count as distant.
 ///
-/// A peak that contradicts the others is dropped where three balls or more tell which one it is; of two balls another bright place that was
-/// seen on one of them may agree, else the lamp has no answer. A distance is given where its inverse is five standard deviations from 0.
-/// @param refineOutlines  false: outlines stay, their uncertainty counts all the same
-/// @return  TooFewPoints without balls or highlights; what ballParameters() says. Lamps fail one by one: PeakOffSurface, NotConverged.
+/// Drops a peak that contradicts the others if three or more balls tell which one; with two balls another bright place seen on
+/// one of them may agree, else the lamp has no answer. A distance is given if its inverse is five standard deviations from 0.
+/// @param refineOutlines  false: outlines stay, but their uncertainty counts
+/// @return  TooFewPoints without balls or highlights; failures of ballParameters(). Single lamps: PeakOffSurface, NotConverged.
 Outcome<BallLamps> fitBallLamps(const BallPhotographs& photographs, bool refineOutlines = true);
 
 }  // namespace glint

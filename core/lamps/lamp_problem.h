@@ -18,7 +18,7 @@ struct WeightedPeak {
   Eigen::Matrix2d root = Eigen::Matrix2d::Identity();  ///< W: W^T W is the inverse of the peak's covariance
 };
 
-/// A lamp and its peaks. Unknowns: two of the direction in its tangent plane and, where it is free, the inverse distance times the problem's scale.
+/// A lamp and its peaks. Unknowns: two of the direction in its tangent plane and, if free, the inverse distance times the scale.
 struct LampUnknowns {
   AimedLamp lamp;
   bool distanceFree = false;
@@ -42,25 +42,25 @@ class LampProblem {
   const Eigen::Matrix3d& rootOf(std::size_t ball) const { return roots_[ball]; }
   MirrorBall ball(std::size_t k) const { return ballOf(view_, parametersOf(k)); }
 
-  /// Seen less predicted, px, whitened; two rows a peak. Nothing where a ball does not show the lamp.
+  /// Seen less predicted, px, whitened; two rows a peak. Nothing if a ball does not show the lamp.
   std::optional<Eigen::VectorXd> residuals(const LampUnknowns& lamp) const;
 
-  /// The equations of one lamp, turned so that its own unknowns stand in the first rows alone: [R T | t; 0 E | e] (dl, dz) against the residuals.
+  /// The equations of one lamp, rotated so that the first rows alone hold its unknowns: [R T | t; 0 E | e] (dl, dz) = residuals.
   struct Eliminated {
     Eigen::MatrixXd own, outlinesOwn, outlinesRest;  ///< R, T, E
     Eigen::VectorXd right, rest;                     ///< t, e
     Eigen::MatrixXd redundant;  ///< residuals x redundant equations: e = redundant^T residuals, columns of length 1
   };
   std::optional<Eliminated> eliminated(const LampUnknowns& lamp) const;
-  /// Whether two of the balls that the peaks lie on stand apart. Where cut-outs have no places in the shot, all balls stand in one place.
+  /// Whether two balls with peaks stand apart. If cut-outs have no places in the shot, all balls are in one place.
   bool standApart(const LampUnknowns& lamp) const;
   /// Whether the peaks say anything about the lamp's distance, beyond round-off.
   bool tellsDistance(const LampUnknowns& lamp) const;
 
-  /// Moves the lamps and, if asked, the outlines to the least sum of squares. False where it does not settle.
+  /// Moves the lamps and, if asked, the outlines to the least sum of squares. False if it does not converge.
   bool solve(std::vector<LampUnknowns>& lamps, bool outlinesToo);
 
-  /// Of z: (I + sum E^T E)^-1, and the step that would lead to the least sum of squares, of all lamps but `without`.
+  /// Covariance of z, (I + sum E^T E)^-1, and the step to the least sum of squares, for all lamps but `without`.
   struct OutlineSystem {
     Eigen::MatrixXd covariance;
     Eigen::VectorXd step;

@@ -12,8 +12,8 @@ namespace glint {
 /// @return  NotReached without a position; what Ellipsoid::fromCentreAndShape says of the covariance.
 Outcome<Ellipsoid> positionRegion(const LampAnswer& lamp);
 
-/// The angle about the direction that holds the true one, rad: with two equal coordinates P(angle > t) = exp(-t^2 / sigma^2), sigma the root of the mean
-/// square angle. @return  at most pi; 0 without a spread.
+/// Radius of the cone that holds the true direction, rad: with two equal coordinates P(angle > t) = exp(-t^2 / sigma^2),
+/// sigma the rms angle. @return  at most pi; 0 without a spread.
 double directionRegion(const LampAnswer& lamp);
 
 }  // namespace glint

@@ -17,7 +17,7 @@
 namespace glint {
 namespace {
 
-constexpr double kRingFrom = 1.6, kRingTo = 2.6;  // of the contour's size: beyond the lobe's skirt, and still its surroundings
+constexpr double kRingFrom = 1.6, kRingTo = 2.6;  // of the contour's size: beyond the lobe's flank, and still its surroundings
 constexpr std::size_t kLeastInside = 6, kLeastRing = 20;  // px: fewer have no mean and no spread
 constexpr double kLeastShown = 0.5;  // of the contour: the rest lies outside of the image or of what may be used
 constexpr double kCorrelated = 3;    // a spread over this is the deviation of a mean: texture has no independent pixels
@@ -34,7 +34,7 @@ Polyline scaled(const Polyline& line, const Pixel& about, double factor) {
   return result;
 }
 
-/// A contour in measured pixels; none where the lens does not show all of it.
+/// A contour in measured pixels; none if the lens does not show all of it.
 std::optional<Polyline> onImage(Polyline line, const Camera& camera) {
   for (Pixel& p : line.points) {
     p = camera.distorted(p);
@@ -198,7 +198,7 @@ FrameAnswer lookAt(const Inspection& r, const std::vector<const ModelResult::Fit
   return result;
 }
 
-/// Of each lamp: median contrast where frames state that it is on.
+/// Each lamp's median contrast in frames that state that it is on.
 std::map<std::string, double> expectedContrasts(const std::vector<FrameAnswer>& frames) {
   std::map<std::string, std::vector<double>> seen;
   for (const FrameAnswer& f : frames)

@@ -14,7 +14,7 @@ namespace glint {
 enum class LampIs { On, Off, CannotBeSeen, Unsure };
 const char* wordOf(LampIs state);
 
-/// One lamp in one frame. Radiances are linear, as of the frame.
+/// One lamp in one frame. Radiances are linear, in the frame's unit.
 struct LampInFrame {
   int frame = 0;
   std::string light;
@@ -24,8 +24,8 @@ struct LampInFrame {
   double expected = 0;         ///< the contrast of this lamp where frames state that it is on: median
   double noise = 0;            ///< standard deviation of the contrast where the lamp is off
   std::optional<Pixel> place;  ///< middle of the predicted contour, ideal pixels
-  std::optional<bool> stated;  ///< what the scene says; nothing where the frame names no lamp
-  std::string reason;          ///< in words; "" where the state needs none
+  std::optional<bool> stated;  ///< what the scene says; nothing if the frame names no lamp
+  std::string reason;          ///< in words; "" if the state needs none
 };
 
 /// A highlight that no lamp explains.
@@ -41,11 +41,11 @@ struct LampsOn {
   std::vector<std::string> warnings;
 };
 
-/// Which lamps are on in each frame: the highlight of each lamp is predicted with the limit-angle model, on or off, and its place is looked at. The
-/// contrast there is held against two hypotheses, none (standard deviation: the surroundings' spread over three, because texture is correlated, and
-/// a twentieth of the expected contrast) and the expected one (give or take 40 %, for lobes change with the view), of equal prior probability;
-/// below 0.95 the answer is Unsure. Where the highlights of two lamps fall together and something is bright, both are Unsure. A detected highlight of
-/// at least 0.3 of the weakest expected contrast that lies in no prediction is unexpected.
+/// Which lamps are on in each frame. Predicts the highlight of each lamp, on or off, with the limit-angle model, and measures the
+/// contrast there against two equally probable hypotheses: none (standard deviation: a third of the surroundings' spread, because
+/// texture is correlated, and a twentieth of the expected contrast), and the expected one (+-40 %, for lobes change with the
+/// view). Below 0.95 the answer is Unsure. If the highlights of two lamps coincide and something is bright, both are Unsure. A
+/// detected highlight of at least 0.3 of the weakest expected contrast that lies in no prediction is unexpected.
 /// @param inspection  of inspect() with that model, trained on frames that name their lamps
 /// @return  no lamps where none was fitted; `warnings` has the reasons. Throws Stopped.
 LampsOn lampsOnIn(const Inspection& inspection, const ProgressFn& progress = {});

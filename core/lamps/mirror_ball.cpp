@@ -43,10 +43,10 @@ std::vector<EdgePoint> edgesOf(const RefinedOutline& outline) {
   return edges;
 }
 
-/// Normal equations of the cone through the points. Three well separated numbers of an image: the square of the condition does no harm.
+/// Normal equations of the cone through the points. The three unknowns are well separated: a squared condition does no harm.
 struct OutlineEquations {
-  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero(),
-                  circle = Eigen::Matrix3d::Zero();  ///< the second one of centre and radius of a circle
+  /// `circle` is that of centre and radius of a circle.
+  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero(), circle = Eigen::Matrix3d::Zero();
   Eigen::Vector3d right = Eigen::Vector3d::Zero();
 };
 OutlineEquations outlineEquations(const BallProjection& view, const Eigen::Vector3d& at, const std::vector<EdgePoint>& edges) {
@@ -115,7 +115,7 @@ Outcome<BallParameters> ballParameters(const BallProjection& view, const Refined
 
 std::vector<Pixel> outlinePixels(const BallProjection& view, const Eigen::Vector3d& parameters, int points) {
   const MirrorBall ball = ballOf(view, parameters);
-  // Of the rays that touch, the points on the ball: a circle square to the way to its centre.
+  // The points where rays touch the ball: a circle square to the way to its centre.
   const double distance = ball.centre.norm();
   Eigen::Vector3d middle = ball.centre, u = Eigen::Vector3d::UnitX(), v = Eigen::Vector3d::UnitY();
   double radius = ball.radius;

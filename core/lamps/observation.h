@@ -8,8 +8,8 @@
 #include "core/base/image.h"
 #include "core/base/outcome.h"
 
-// What photographs of mirror balls say about lamps. Pixels are Glint's: (0, 0) is the centre of the first pixel, y points down; where a photograph
-// is a cut-out of a shot, all places are those of the shot.
+// What photographs of mirror balls say about lamps. Pixels are Glint's: (0, 0) is the centre of the first pixel, y points down;
+// where a photograph is a cut-out of a shot, all places are those of the shot.
 namespace glint {
 
 /// The outline of a ball in a photograph, as a circle. Under perspective it is an ellipse: `ball_outline.h` has both.

@@ -27,7 +27,7 @@ constexpr double kContraryAngle = 6;     // degrees: no off-specular shift or bl
 constexpr double kContrarySpread = 5;    // standard deviations of the other views' angles
 constexpr double kMadToSigma = 1.4826;   // of normal noise
 constexpr std::size_t kMostPairs = 300;  // of rays that are tried as the lamp: all of 25 views
-constexpr double kKnownInverse = 5;      // standard deviations of the inverse distance, as of ball lamps
+constexpr double kKnownInverse = 5;      // standard deviations of the inverse distance; ball lamps have the same
 constexpr int kMostLeftOut = 8;          // parts of the views that are left out in turn: a spread of eight is known to a quarter
 constexpr int kLeastLeftOut = 4;         // parts; fewer tell no spread
 constexpr double kViewErrorPx = 0.2;     // of one view among too few to tell: a good pose, surface and lobe leave that much
@@ -109,7 +109,7 @@ Eigen::Vector3d middleOf(const std::vector<TrainingView>& views) {
   return sum / static_cast<double>(views.size());
 }
 
-/// Direction and inverse distance of a light as seen from a point, with the covariance of (two tangent coordinates, inverse distance).
+/// Direction and inverse distance of a light from a point, with the covariance of (two tangent coordinates, inverse distance).
 struct SeenLight {
   Eigen::Vector3d direction;
   double inverse = 0;
@@ -131,9 +131,9 @@ SeenLight seenFrom(const Eigen::Vector3d& from, const Light& light, const Eigen:
   return seen;
 }
 
-/// Covariance of (two tangent coordinates, inverse distance) by leaving parts of the views out in turn: (k - 1) / k times the sum of squares about
-/// the mean (Efron, The Jackknife, the Bootstrap and Other Resampling Plans, 1982, 3.1). It holds what whole views have wrong, which no residual within a
-/// view shows: poses, bumps, a lobe that does not quite fit. Zero where fewer than four parts have an answer.
+/// Covariance of (two tangent coordinates, inverse distance) by leaving out parts of the views in turn: (k - 1) / k times the sum
+/// of squares about the mean (Efron, The Jackknife, 1982, 3.1). It holds the errors of whole views, which no residual within a
+/// view shows: poses, bumps, a lobe that does not quite fit. Zero if fewer than four parts have an answer.
 /// @param without  the light of the views that are true
 Eigen::Matrix3d leftOutCovariance(const Eigen::Vector3d& from, const SeenLight& seen, std::size_t views,
                                   const std::function<std::optional<Light>(const std::vector<bool>&)>& without) {
@@ -232,7 +232,7 @@ class SceneLamp {
     a_.remarks = fit->remarks;
     a_.degreesOfFreedom = fit->uncertainty->degreesOfFreedom;
     const auto near = std::make_shared<const ModelFit>(*fit);
-    // Contours instead of pixels: what views have wrong moves both, and a fit takes a twentieth of the time.
+    // Contours instead of pixels: errors of views move both, and a fit takes a twentieth of the time.
     Settings ofContours = settings;
     if (settings.text("fit.evidence") != "levels") ofContours.set("fit.evidence", std::string("contours"));
     const auto again = [&](const std::vector<bool>& kept) -> std::optional<Light> {
@@ -255,7 +255,7 @@ class SceneLamp {
     if (estimate_->uncertainty)
       return place(estimate_->light, estimate_->uncertainty->root.topRows(4), estimate_->residualPx, again);
     if (!estimate_->covariance || estimate_->light.atInfinity()) return false;
-    // Of a position as of homogeneous coordinates with w = 1: d(l / w) = dl.
+    // A position has homogeneous coordinates with w = 1, so that d(l / w) = dl.
     Eigen::MatrixXd root = Eigen::MatrixXd::Zero(4, 3);
     root.topRows<3>() = estimate_->covariance->llt().matrixL();
     return place(estimate_->light, root * estimate_->light.homogeneous().w(), estimate_->residualPx, again);
@@ -278,7 +278,7 @@ class SceneLamp {
     return most;
   }
 
-  /// Of (two tangent coordinates, inverse distance) where each view is off by kViewErrorPx on its own: what a few views cannot show themselves.
+  /// Covariance (as above) if each view is off by kViewErrorPx on its own: what a few views cannot show themselves.
   Eigen::Matrix3d assumedCovariance(const SeenLight& seen) const {
     Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
     for (const TrainingView& v : views_) {

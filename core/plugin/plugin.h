@@ -16,7 +16,7 @@
 ///     glint.add(std::make_unique<FlatMirror>());
 ///   })
 ///
-/// and links Glint::core. Programs load it with --plugin FILE, or from the folders of GLINT_PLUGIN_PATH. A plugin is part of the program: it
+/// and links Glint::core. Programs load it by --plugin FILE, or from GLINT_PLUGIN_PATH's folders. It is part of the program: it
 /// can do what the user can do, and a fault in it ends the program. docs/cpp.md is the walkthrough, plugins/example an example.
 namespace glint {
 
@@ -34,8 +34,8 @@ class PluginRegistry {
   virtual void add(std::unique_ptr<const CaptureReader> reader) = 0;
 };
 
-/// What a plugin exports as the C symbol `glint_plugin`: data, so that it is checked before any function of the plugin is called (but for
-/// its constructors of global objects, which the loader runs).
+/// What a plugin exports as the C symbol `glint_plugin`: data, so that it is checked before any function of the plugin is called
+/// (but for its constructors of global objects, which the loader runs).
 struct PluginDeclaration {
   std::uint32_t magic;     ///< kPluginMagic
   std::int32_t interface;  ///< GLINT_INTERFACE_VERSION of the headers that it was compiled with; checked before the rest is read
@@ -45,7 +45,7 @@ struct PluginDeclaration {
   const char* version;     ///< its own
   const char* about;       ///< one line for a person
   void (*add)(PluginRegistry&);
-  void (*addLayers)(viz::LayerRegistry&);  ///< null where it draws nothing; a program without pictures does not call it
+  void (*addLayers)(viz::LayerRegistry&);  ///< null if it draws nothing; a program without pictures does not call it
 };
 
 inline constexpr std::uint32_t kPluginMagic = 0x676c6e74;  // "glnt"

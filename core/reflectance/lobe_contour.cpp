@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "core/geometry/distortion.h"
-#include "core/highlight/clipped_skirt.h"
+#include "core/highlight/clipped_flank.h"
 #include "core/reflectance/radiance_field.h"
 
 namespace glint {
@@ -231,7 +231,7 @@ Outcome<std::vector<Highlight>> contourWithLobe(const LinearPixels& pixels, cons
       h.clipped = anyClipped(pixels, measured);
     } else if (h.clipped) {
       // It was contoured at `level` of the clip value, or of the peak that its slope continues.
-      const double taken = h.skirt && h.skirt->outsideCore ? h.skirt->contourValue / options.level : clipLevel;
+      const double taken = h.flank && h.flank->outsideCore ? h.flank->contourValue / options.level : clipLevel;
       h.trueLevel = options.level * std::min(1.0, taken / *reference);
     }
     if (h.clipped) {

@@ -10,12 +10,12 @@
 
 namespace glint {
 
-/// The bands of a model's matched highlights in held-out frames (all frames where every surface has its own model), each highlight counted
-/// alike. Nothing without predict.band.
+/// The bands of a model's matched highlights in held-out frames (all frames where every surface has its own model), each
+/// highlight counted alike. Nothing without predict.band.
 std::optional<BandScore> bandSummary(const Inspection& inspection, const ModelResult& result);
 
-/// What to say beside the bands of a model: how wide they are, how many vertices they hold, and the remarks of its fits, each with the light where
-/// there are several fits. Empty without predict.band.
+/// Remarks on the bands of a model: how wide they are, how many vertices they hold, and the remarks of its fits, each
+/// with the light where there are several fits. Empty without predict.band.
 std::vector<std::string> bandLines(const Inspection& inspection, const ModelResult& result);
 
 }  // namespace glint

@@ -27,7 +27,7 @@ std::string text(const SettingValue& value) {
   return shortest(std::get<double>(value));
 }
 
-/// Whether a file lies where the command would not look without permission. The inspector remembers permissions, a command does not.
+/// Whether a file lies where the command needs permission to look. The inspector remembers permissions, a command does not.
 bool namesFilesOutside(const Scene& scene) {
   if (scene.allowOutsidePaths) return true;
   std::vector<std::filesystem::path> named{std::filesystem::absolute(scene.file).parent_path()};
@@ -55,7 +55,7 @@ std::string shellWord(const std::string& text) {
 Outcome<std::string> commandOf(const Scene& scene, const InspectionRequest& q) {
   if (!q.whatIf.none()) return Failure{Reason::NotSupported, "a what-if has no flag; save a session and use it as INPUT"};
   const InspectionRequest usual;
-  // The command is pasted into a shell that stands in another folder.
+  // The command is pasted into a shell in another folder.
   const auto absolute = [](const std::filesystem::path& path) {
     return std::filesystem::absolute(path).lexically_normal().string();
   };

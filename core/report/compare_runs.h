@@ -48,7 +48,7 @@ struct RunComparison {
 
 /// What changed between two runs: input files by their hashes, request, settings, what-if, and, of the models that both have,
 /// results and the error of every frame.
-/// @param sessionA, sessionB  of the runs, with the hashes of their files (`sessionOf`); their stored results are not looked at.
+/// @param sessionA, sessionB  of the runs, with the hashes of their files (`sessionOf`); ignores their stored results.
 RunComparison compareRuns(const Session& sessionA, const Inspection& a, const Session& sessionB, const Inspection& b);
 
 /// A plain-text report. @param all  also what is equal.

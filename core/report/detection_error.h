@@ -8,8 +8,8 @@
 
 namespace glint {
 
-/// How far the contours that the frames' own pixels gave lie from the truth that `--truth` names: whoever trusts an error against own
-/// detection must know this one.
+/// Distance of the contours detected in the frames' own pixels from the truth of `--truth`: whether to trust an error against
+/// own detection depends on it.
 struct DetectionError {
   Statistic contourErrorPct, contourErrorPx;  ///< over highlights that overlap a true one, all frames
   int frames = 0;                             ///< with truth

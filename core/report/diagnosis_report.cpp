@@ -94,7 +94,7 @@ Ordered modelJson(const Inspection& inspection, const ModelDiagnosis& d) {
 
 std::string placeText(const Diagnosis& d) { return d.now.leftOut ? "left-out training frames" : "held-out frames"; }
 
-/// The highlight that stands most against a model; "" = none does clearly.
+/// The highlight that contradicts a model most; "" = none does clearly.
 std::string worstHighlight(const Inspection& inspection, const ModelDiagnosis& d) {
   const auto worst = std::max_element(d.evidence.begin(), d.evidence.end(), [](auto& a, auto& b) { return a.weight < b.weight; });
   if (worst == d.evidence.end() || worst->weight < 1 || worst->against.empty()) return "";

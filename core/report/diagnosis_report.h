@@ -11,7 +11,7 @@ namespace glint {
 /// docs/formats.md, "diagnose --json".
 /// @param input  as given
 std::string diagnosisJson(const Inspection& inspection, const Diagnosis& diagnosis, const std::string& input);
-/// For a person: the verdict, the remedies as flags, and below what they stand on: for each model that is not good one cause; --json has all.
+/// For a person: the verdict, the remedies as flags, and their reasons, one cause per model that is not good; --json has all.
 std::string diagnosisText(const Inspection& inspection, const Diagnosis& diagnosis);
 /// ReportContext::advice.
 std::vector<std::string> adviceOf(const Diagnosis& diagnosis);

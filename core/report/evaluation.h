@@ -26,8 +26,8 @@ struct Evaluation {
   std::optional<Failure> failure;  ///< why no model answered; of a request without models: why no training view could be used
 };
 
-/// What `glint evaluate` does, for every program that evaluates: inspects the scene with the request's models, or chooses one by the training
-/// frames and inspects with that. InputError as inspect(); Stopped.
+/// What `glint evaluate` does, for every program that evaluates: inspects the scene with the request's models, or chooses one by
+/// the training frames and inspects with that. InputError as inspect(); Stopped.
 /// @param report    what is known already: input, program, the reason of the level
 /// @param previous  see inspect()
 Evaluation evaluate(std::shared_ptr<const Scene> scene, InspectionRequest request, ReportContext report,
@@ -36,7 +36,7 @@ Evaluation evaluate(std::shared_ptr<const Scene> scene, InspectionRequest reques
 
 /// "frame ID: reason" of every training frame without a usable highlight.
 std::vector<std::string> unusedTrainingFrames(const Inspection& inspection);
-/// Why no training view could be used at all, with the first reason; nothing where one could.
+/// Why no training view could be used at all, with the first reason; nothing if one could.
 std::optional<Failure> noUsableView(const Inspection& inspection);
 
 }  // namespace glint

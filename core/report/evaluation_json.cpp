@@ -143,7 +143,7 @@ Json fitJson(const Inspection& inspection, const ModelResult::Fit& entry) {
   }
   const bool isSolved = quadric && !quadric->singularValues.empty();
   j["gap_ratio"] = isSolved ? numberOrNull(quadric->gapRatio) : Json(nullptr);
-  // Largest over smallest: of the linear system where there is one, else of the rays that fix the light (whose ratio is of squares).
+  // Largest over smallest of the linear system, if any, else of the rays that fix the light (whose ratio is of squares).
   if (isSolved)
     j["condition"] = numberOrNull(f.condition);
   else
@@ -163,7 +163,7 @@ Json fitJson(const Inspection& inspection, const ModelResult::Fit& entry) {
   return j;
 }
 
-/// Every metric of a row, null where it has none: each row of `frames` has the same keys.
+/// Every metric of a row, null if it has none: each row of `frames` has the same keys.
 void metricsJson(const FrameComparison::Row* row, const FrameComparison& c, Json& j) {
   const bool measured = row && row->metrics;
   const ContourMetrics m = measured ? *row->metrics : ContourMetrics{};
@@ -187,7 +187,7 @@ void metricsJson(const FrameComparison::Row* row, const FrameComparison& c, Json
   j["time_us"] = numberOrNull(c.prediction.timeUs);
 }
 
-/// Appends one row per highlight of a comparison, or one that says why there is none.
+/// Appends one row per highlight of a comparison, or one that says why no highlight was compared.
 void addRows(const Inspection& inspection, const ModelResult& result, const FrameComparison& c, Json& out) {
   const auto base = [&](int highlight) {
     Json j;

@@ -29,7 +29,7 @@ std::string counted(int n, const std::string& what) { return std::to_string(n) +
 std::string percent(double v) { return formatted("%.3g %%", v); }
 std::string sentence(const std::string& text) { return text.empty() || text.back() == '.' ? text : text + "."; }
 
-/// Held-out frames in which a model missed highlights, or predicted some that are not there.
+/// Held-out frames in which a model missed highlights, or predicted some that do not exist.
 std::vector<int> framesWith(const Inspection& inspection, const std::string& model, int FrameScore::*count) {
   std::vector<int> frames;
   const std::vector<FrameScore> scores = frameScores(inspection.models.at(model), int(inspection.scene->frames.size()));
@@ -92,7 +92,7 @@ void addWarnings(const Inspection& inspection, const std::string& best, std::vec
   }
 }
 
-/// What the numbers stand on: the frames and what is taken for the truth.
+/// What the numbers rest on: the frames and what is taken for the truth.
 void addDoubtsOfTheRun(const Inspection& inspection, std::vector<std::string>& doubts) {
   const HeldOutFrames heldOut = heldOutFrames(inspection);
   if (inspection.train.perSurface)

@@ -12,10 +12,10 @@ namespace glint {
 /// What an evaluation says, in sentences for a person who does not read its tables.
 struct EvaluationWords {
   std::string best;  ///< the model that they are about: the chosen one, else bestModel(); "" = none answered
-  std::vector<std::string>
-      inShort;  ///< the advice of a diagnosis, how good it is, what it misses and invents, the next best, who gives no answer and why
-  std::vector<std::string>
-      doubts;  ///< why all that may be wrong: what it is scored against, how few frames, remarks of the best model's fits
+  /// A diagnosis' advice, how good it is, what it misses and invents, the next best, models without answer and why.
+  std::vector<std::string> inShort;
+  /// Reasons for doubt: what it is scored against, how few frames, remarks of the best model's fits.
+  std::vector<std::string> doubts;
 };
 EvaluationWords evaluationWords(const Inspection& inspection, const ReportContext& context);
 

@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kPlotWidth = 920, kPlotHeight = 320, kFrameWidth = 290;  // px of the page
 
-/// The part of a frame around its observed contours; the whole frame where there are none.
+/// The part of a frame around its observed contours; the whole frame without contours.
 draw::Crop aroundObserved(const draw::FrameOverlay& overlay, const Camera& camera) {
   Eigen::AlignedBox2d observed;
   for (const draw::OverlayLine& line : overlay.lines)

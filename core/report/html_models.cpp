@@ -100,7 +100,7 @@ std::string remarks(const Inspection& inspection, const ModelResult& result) {
   for (const ModelResult::Fit& fit : result.fits) {
     const std::string of = result.fits.size() > 1 ? textOf(fit.key()) + ": " : "";
     if (fit.failure()) html += "<li class=\"refused\">" + escaped(of + "no fit: " + fit.failure()->message()) + "</li>\n";
-    if (fit.fit && !fit.fit->poor.empty() && result.fits.size() > 1)  // of one fit it stands above
+    if (fit.fit && !fit.fit->poor.empty() && result.fits.size() > 1)  // a single fit has it above
       html += "<li class=\"refused\">" + escaped(of + poorWarning(fit.fit->poor)) + "</li>\n";
     if (fit.fit)
       for (const std::string& remark : fit.fit->remarks) html += "<li>" + escaped(of + remark) + "</li>\n";

@@ -11,7 +11,7 @@
 
 namespace glint::html {
 
-/// A square in the colour of a model, which stands before its name.
+/// A square in the colour of a model, before its name.
 std::string swatch(const std::string& model);
 
 /// Observed and predicted contours of a frame over its photograph, around what is observed, with errors below.

@@ -93,7 +93,7 @@ std::string lightOfCategory(const std::string& category) {
 
 std::string shownIn(const Inspection& inspection, const Frame& frame) {
   const std::filesystem::path file = frame.image.empty() ? frame.radiance : frame.image;
-  std::error_code ignored;  // what cannot be asked about is not there
+  std::error_code ignored;  // unreadable counts as missing
   if (file.empty() || frame.ofVideo || inspection.request.whatIf.synthesise || !std::filesystem::exists(file, ignored)) return {};
   return file.lexically_relative(inspection.scene->folder).generic_string();
 }

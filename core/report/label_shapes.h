@@ -24,8 +24,8 @@ struct LabelShape {
 
 /// The labels of one model.
 struct LabelSet {
-  std::vector<std::string>
-      lights;  ///< with a fit, whether a frame shows them or not: categories do not depend on the frames chosen
+  /// With a fit, whether a frame shows them or not: categories do not depend on the frames chosen.
+  std::vector<std::string> lights;
   std::vector<LabelShape> shapes;      ///< by frame, light and highlight
   std::map<int, std::string> reasons;  ///< of frames without a shape
 };
@@ -35,15 +35,15 @@ LabelSet labelsOf(const Inspection& inspection, const std::string& model, const 
 
 /// "highlight lamp": what a light's labels are called.
 std::string categoryOf(const std::string& light);
-/// The light of such a name; the name itself where it is no such.
+/// The light of such a name; any other name as it is.
 std::string lightOfCategory(const std::string& category);
 
-/// The file that shows a frame's highlights, relative to the scene; "" where there is none: the scene names no picture, the file is
+/// The file that shows a frame's highlights, relative to the scene; "" without one: the scene names no picture, the file is
 /// not there, or the highlights are synthesised and the photograph shows others.
 std::string shownIn(const Inspection& inspection, const Frame& frame);
 
-/// The share of a contour, by length, along which the surface ends, or hides what lies behind it: there the points just inside and
-/// just outside of the contour are not neighbours on the surface.
+/// The share of a contour, by length, along which the surface ends, or hides what lies behind it: there the points just inside
+/// and just outside of the contour are not neighbours on the surface.
 /// @param contour  closed, ideal pixels
 double edgeShareOf(const Polyline& contour, const Camera& camera, const Surface& surface);
 

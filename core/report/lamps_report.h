@@ -26,11 +26,11 @@ struct LampsReport {
   std::vector<std::string> warnings;  ///< in words
 };
 
-/// One line for each frame of a scene in which exactly one lamp is on that has an answer, direction from the middle of the object. The others become a warning.
+/// One line per frame with exactly one lamp on and an answer, its direction from the object's middle. Warns of the others.
 /// @param lamps  of lampsOfScene()
 std::vector<LampLine> lampLinesOf(const Scene& scene, const std::vector<LampAnswer>& lamps, std::vector<std::string>& warnings);
 
-/// Why a lamp has no answer, or no position; "" where it has one.
+/// Why a lamp has no answer, or no position; "" if it has one.
 std::string reasonOf(const LampAnswer& lamp);
 /// docs/formats.md, "lights --json". Numbers that are not finite become null.
 std::string lampsJson(const LampsReport& report);
@@ -38,8 +38,8 @@ std::string lampsJson(const LampsReport& report);
 extern const char* const kLampsCsvHeader;
 /// One row per lamp, with a header row.
 std::string lampsCsv(const LampsReport& report);
-/// A list of light positions as Relight and other RTI programs read it: the count, then for each photograph its name without blanks (each becomes '_')
-/// and the unit vector, x right, y up, z towards the camera.
+/// A list of light positions as Relight and other RTI programs read it: the count, then for each photograph its name without
+/// blanks (each becomes '_') and the unit vector, x right, y up, z towards the camera.
 std::string lampsLp(const LampsReport& report);
 /// A plain-text table for people.
 std::string lampsTable(const LampsReport& report);

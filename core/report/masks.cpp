@@ -45,7 +45,7 @@ std::string folderName(const std::string& id) {
   return name.empty() || name.find_first_not_of('.') == std::string::npos ? "light" : name;
 }
 
-/// Different lights get different folders, also where only a replaced letter tells them apart.
+/// Different lights get different folders, even if only a replaced letter tells them apart.
 std::map<std::string, std::string> lightFolders(const std::set<std::string>& lights) {
   std::map<std::string, std::string> folders;
   std::set<std::string> taken;

@@ -60,7 +60,7 @@ void requireCorners(const BallShots& shots) {
                                      shots.balls[j].corner.x(), shots.balls[j].corner.y()));
 }
 
-/// What EXIF data of photographs tell viewers to do; "" where all are shown as they are stored.
+/// What EXIF data of photographs tell viewers to do; "" if all are shown as they are stored.
 std::string turnedByViewers(const BallShots& shots) {
   int turned = 0, first = 1;
   const std::vector<std::filesystem::path> files = shots.files();
@@ -69,7 +69,7 @@ std::string turnedByViewers(const BallShots& shots) {
       const int orientation = exifOrientation(readFile(file, Limit::ImageMegabytes));
       if (orientation != 1 && turned++ == 0) first = orientation;
     } catch (const InputError&) {
-      continue;  // it is said where the photograph is looked at
+      continue;  // the search of the photograph reports it
     }
   }
   if (turned == 0) return "";

@@ -12,7 +12,7 @@
 #include "core/report/lamps_report.h"
 #include "core/scene/outputs.h"
 
-// What `glint lights` and the inspector do to measure lamps: one way for both, so that both say the same.
+// How `glint lights` and the inspector measure lamps: one way, so that both agree.
 namespace glint {
 
 /// What the lamps of a scene need of inspect(): evidence and views of all frames that count, and no model.
@@ -32,7 +32,7 @@ struct BallQuestion {
   std::optional<Camera> camera;      ///< none: what EXIF data say, else a distant one
   std::optional<double> ballRadius;  ///< m, of every ball
   Outlines outlines = Outlines::Fitted;
-  double outlineSigmaPx = 1;  ///< what a person who draws a circle gets right
+  double outlineSigmaPx = 1;  ///< the accuracy of a circle that a person draws
 };
 
 /// "fitted", "edges", "given", as `--outlines` takes them; std::invalid_argument for another text.
@@ -44,12 +44,12 @@ const char* toText(Outlines outlines);
 /// @return  what lampsOfShots() says; throws what it throws
 Outcome<LampsReport> lampsReportOf(const BallQuestion& question, const BallShots& shots, const ProgressFn& progress = {});
 
-/// Why there is no lamp at all; nothing where one has an answer.
+/// Why there is no lamp at all; nothing if one has an answer.
 std::optional<Failure> nothingMeasured(const LampsReport& report);
 
-/// What a file of lamps is to be, by its ending: .json, .csv or .lp. InputError (file, `place`) for another one.
+/// The kind of a file of lamps, by its ending: .json, .csv or .lp. InputError (file, `place`) for another one.
 OutputKind lampsKind(const std::string& file, const std::string& place);
-/// What is written there.
+/// The text of that file.
 std::string lampsText(const LampsReport& report, const std::string& file);
 
 /// As `--camera` takes it, to the last bit. @pre of cameraOfNumbers()

@@ -18,10 +18,10 @@ struct ReportContext {
   std::optional<Selection> selection;  ///< what the automatic choice tried
   std::string levelReason;             ///< why this contour level, where the program chose it; "" = it was given
   std::string program;                 ///< "glint 0.4.0"; "" = not said
-  std::vector<std::string> advice;     ///< of a diagnosis: its verdict, then its remedies, in words; empty = nobody asked
+  std::vector<std::string> advice;     ///< of a diagnosis: its verdict, then its remedies, in words; empty = not asked for
 };
 
-/// The answered model with the smallest held-out error (ModelSummary::wrongPct), among those whose fit is not poor where one is not.
+/// The answered model with the smallest held-out error (ModelSummary::wrongPct), if possible with a fit that is not poor.
 struct BestModel {
   std::string model;  ///< "" = none answered
   std::string why;    ///< one sentence; "" = none answered

@@ -101,7 +101,7 @@ std::string withoutMarkup(const std::string& json) {
   return out;
 }
 
-/// As a policy names a script or style that may run.
+/// The name that a policy gives to a script or style that may run.
 std::string hashSource(std::string_view text) {
   Sha256 hash;
   hash.add(text);

@@ -19,10 +19,10 @@ struct ShareChoice {
 /// Most frames of a page that does not name its frames.
 inline constexpr int kMostSharedFrames = 300;
 
-/// One HTML file that needs no network: the scene in 3D, each photograph with its contours, the errors of `evaluationJson` (without times, so
-/// that equal data give equal bytes), of a lesson its steps. Everything that comes from files is data: JSON in which no mark-up can stand. The
-/// page's policy forbids every load.
-/// @param report  as of `evaluationJson`
+/// One HTML file that needs no network: the scene in 3D, each photograph with its contours, the errors of `evaluationJson`
+/// (without times, so that equal data give equal bytes), and the steps of a lesson. Everything that comes from files is data:
+/// JSON without mark-up. The page's policy forbids every load.
+/// @param report  what `evaluationJson` takes
 /// @return the whole file. std::invalid_argument for a frame that does not exist. Stopped.
 std::string sharePage(const Inspection& inspection, const ReportContext& report, const ShareChoice& choice = {},
                       const ProgressFn& progress = {});

@@ -10,7 +10,7 @@ namespace {
 
 using json_dom::Json;
 
-/// The member of an object that may lack it; "" where it does.
+/// The member of an object that may lack it; "" if it does.
 std::string textAt(const Json& object, const char* member, const std::string& key) {
   return object.contains(member) ? object.at(member).value(key, "") : "";
 }
@@ -27,7 +27,7 @@ Json stepJson(const Json& lesson, const Json& text) {
           {"remark", plain ? "" : remark}};
 }
 
-/// The typeset form of an equation, an SVG document whose title is the plain form; "" where there is none.
+/// The typeset form of an equation, an SVG document whose title is the plain form; "" without one.
 std::string_view pictureOf(const std::string& plain) {
   const std::size_t title = kEquationPictures.find("<title>" + html::escaped(plain) + "</title>");
   if (title == std::string_view::npos) return {};

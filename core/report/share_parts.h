@@ -34,8 +34,8 @@ class Rounding {
 /// All digits; "null" where it is not finite.
 std::string exactly(double value);
 
-/// At most `most` triangles that look alike: vertices within one cell of a grid become one, with the mean of their places and normals. A mesh
-/// that is small enough stays as it is. Triangles of vertices that do not exist or are not finite are left out.
+/// At most `most` triangles that look alike: vertices within one cell of a grid become one, with the mean of their places and
+/// normals. A mesh that is small enough stays as it is. Triangles of vertices that do not exist or are not finite are left out.
 TriangleMesh simplified(const TriangleMesh& mesh, std::size_t most);
 /// Positions in 16 bits an axis over the mesh's box, normals in 8 bits, indices in 32: base64, little-endian.
 /// @param of  triangles before it was simplified
@@ -45,12 +45,12 @@ std::string packed(const TriangleMesh& mesh, std::size_t of);
 struct SharedSurfaces {
   std::string json;          ///< an array
   std::vector<int> ofFrame;  ///< by place in `frames`
-  Eigen::AlignedBox3d box;   ///< of all of them; empty where there is none
+  Eigen::AlignedBox3d box;   ///< of all of them; empty without any
   std::vector<double> size;  ///< diagonal of each
 };
 SharedSurfaces surfacesOf(const Inspection& inspection, const std::vector<int>& frames, const ProgressFn& progress);
 
-/// The photographs as JPEG in a data URL, made smaller until all of them together stay within a page's share. "" where there is none.
+/// The photographs as JPEG in a data URL, made smaller until all of them together stay within a page's share. "" without one.
 std::vector<std::string> photographsOf(const Inspection& inspection, const std::vector<int>& frames, const ProgressFn& progress);
 
 /// Cameras, evidence and predictions of the frames: an array.
@@ -59,10 +59,10 @@ std::string framesJson(const Inspection& inspection, const std::vector<int>& fra
 /// Estimated lights with whose they are, and true ones.
 std::string lightsJson(const Inspection& inspection);
 std::string trueLightsJson(const Inspection& inspection);
-/// Title, what there is to see, steps with their texts and layers, questions with answers, the typeset equations of all these (SVG), and the
-/// names of their symbols: "null" where there is no such lesson.
+/// Title, what there is to see, steps with their texts and layers, questions with answers, the typeset equations of all these
+/// (SVG), and the names of their symbols: "null" where there is no such lesson.
 std::string lessonJson(const std::string& id);
-/// `evaluationJson` without what was measured by a clock.
+/// `evaluationJson` without times.
 std::string untimed(const std::string& evaluation);
 
 /// Files of resources/share and resources/explain, and three.js, as they were when the program was built.

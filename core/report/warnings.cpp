@@ -15,8 +15,8 @@ bool counts(const Inspection& inspection, const FrameEvidence& e) {
   return e.frame >= 0 && (inspection.isTraining(e.frame) || inspection.isHeldOut(e.frame));
 }
 
-/// The warning about clipped highlights with their frames; "" where there are none. Clipping takes the peak away to which the contour's level
-/// refers.
+/// The warning about clipped highlights with their frames; "" without any. Clipping takes the peak away to which the contour's
+/// level refers.
 std::string clippedWarning(const Inspection& inspection) {
   std::vector<std::string> training, others;
   bool known = true;  // a lobe says what was cut off
@@ -34,11 +34,11 @@ std::string clippedWarning(const Inspection& inspection) {
                        : ": the peak is unknown, so a contour lies at a smaller fraction of it than the stated level");
 }
 
-/// The warning about frames whose colours do not tell what is specular (detect.background = colours), with the reasons; "" where there are none.
-std::string notPartedWarning(const Inspection& inspection) {
+/// The warning about frames whose colours do not tell what is specular (detect.background = colours), with reasons; or "".
+std::string notSeparatedWarning(const Inspection& inspection) {
   std::map<std::string, std::vector<std::string>> frames;
   for (const FrameEvidence& e : inspection.evidence)
-    if (counts(inspection, e) && !e.notParted.empty()) frames[e.notParted].push_back(frameName(*inspection.scene, e.frame));
+    if (counts(inspection, e) && !e.notSeparated.empty()) frames[e.notSeparated].push_back(frameName(*inspection.scene, e.frame));
   std::string text;
   for (const auto& [reason, which] : frames) text += (text.empty() ? "" : "; ") + framesText(which) + " (" + reason + ")";
   return text.empty() ? "" : "colours do not tell what is specular, and the smooth background is used, in " + text;
@@ -55,7 +55,7 @@ std::string poorWarning(const std::string& reason) { return "poor: " + reason; }
 
 std::vector<std::string> warningsOf(const Inspection& inspection) {
   std::vector<std::string> warnings;
-  for (std::string warning : {clippedWarning(inspection), notPartedWarning(inspection)})
+  for (std::string warning : {clippedWarning(inspection), notSeparatedWarning(inspection)})
     if (!warning.empty()) warnings.push_back(std::move(warning));
   for (const std::string& name : inspection.request.models) {
     const auto model = inspection.models.find(name);

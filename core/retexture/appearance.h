@@ -20,7 +20,7 @@ namespace glint {
 /// A contour as a star around a place inside: rho of a pixel is its distance from there over the contour's in the same direction.
 class ContourStar {
  public:
-  /// NotReached where no place inside is found: a contour without area.
+  /// NotReached if no place inside is found: a contour without area.
   /// @param around  the brightest pixel; where it lies outside of the contour, the centroid is taken
   /// @param gaps    segments of the contour (from vertex, to vertex) that bridge directions without an answer
   static Outcome<ContourStar> of(const Polyline& contour, const Pixel& around, const std::vector<std::pair<int, int>>& gaps = {});
@@ -54,15 +54,15 @@ struct HighlightAppearance {
 const char* nameOf(HighlightAppearance::Kind kind);
 
 /// @param fit  that serves a frame, with its key.
-/// NotSupported where no training frame of the light has a photograph (a picture of codes, not radiance alone); the reason why the last view
-/// failed where none could be used.
+/// NotSupported if no training frame of the light has a photograph (a picture of codes, not radiance alone); the reason why
+/// the last view failed where none could be used.
 Outcome<HighlightAppearance> learnAppearance(const Inspection& inspection, const ModelFit& fit, const FitKey& key);
 
-/// Appearances that were learned before, for pictures one after another: learning reads the photographs of all training frames. Those of the
-/// newest inputs alone are kept. For one caller at a time.
+/// Appearances that were learned before, for pictures one after another: learning reads the photographs of all training frames.
+/// Those of the newest inputs alone are kept. For one caller at a time.
 class LearnedAppearances {
  public:
-  /// learnAppearance(), or what it said before of the same scene, model and inputs of the fits.
+  /// learnAppearance(), or its earlier answer for the same scene, model and inputs of the fits.
   Outcome<HighlightAppearance> of(const Inspection& inspection, const std::string& model, const ModelResult::Fit& fit);
 
  private:
@@ -71,8 +71,8 @@ class LearnedAppearances {
   std::map<std::pair<std::string, FitKey>, Outcome<HighlightAppearance>> known_;
 };
 
-/// alpha of a visible point (normal towards the camera) over the limit angle, where the model's contour is 1; nothing where the light is
-/// behind the surface.
+/// alpha of a visible point (normal towards the camera) over the limit angle, where the model's contour is 1; nothing if the
+/// light is behind the surface.
 std::optional<double> angleRho(const LimitAngleFit& fit, const Light& light, const SurfacePoint& point,
                                const Eigen::Vector3d& eye);
 

@@ -11,8 +11,8 @@
 
 namespace glint {
 
-/// Calls work(i, ideal) for each measured pixel of a camera: i its place in an image of the camera's size, row by row, ideal the pixel without
-/// distortion. Pixels that the lens model cannot undistort are passed over. Rows run in several threads (core/base/parallel.h, what it throws).
+/// Calls work(i, ideal) for each measured pixel of a camera, row by row: i its place in the camera's image, ideal the pixel
+/// without distortion. Skips pixels that the lens cannot undistort. Rows run in several threads (core/base/parallel.h).
 void forEachPixel(const Camera& camera, const std::function<void(std::size_t i, const Pixel& ideal)>& work,
                   const ProgressFn& progress, const std::string& stage);
 

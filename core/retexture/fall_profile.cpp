@@ -41,7 +41,7 @@ std::vector<double> fallingFit(const std::vector<double>& values, const std::vec
 
 double middleOf(std::size_t step) { return (double(step) + 0.5) * kStep; }
 
-/// log value = a - k rho^2 by weighted least squares over the steps given; nothing where it does not fall.
+/// log value = a - k rho^2 by weighted least squares over the steps given; nothing if it does not fall.
 struct GaussianCore {
   double logPeak, k;
 };

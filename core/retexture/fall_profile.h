@@ -7,9 +7,9 @@
 
 namespace glint {
 
-/// How the radiance of a highlight falls from its brightest place, learned from pixels: f(rho), 1 at rho = 0, never rising, 0 from kEnd on.
-/// rho is 1 on the highlight's contour: alpha over the limit angle, or the distance from the brightest place over that of the contour in
-/// the same direction.
+/// How the radiance of a highlight falls from its brightest place, learned from pixels: f(rho), 1 at rho = 0, never rising, 0
+/// from kEnd on. rho is 1 on the highlight's contour: alpha over the limit angle, or the distance from the brightest place over
+/// that of the contour in the same direction.
 class FallProfile {
  public:
   static constexpr double kEnd = 4;  ///< rho: the background of a highlight is told from pixels no farther than this

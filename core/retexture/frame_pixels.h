@@ -10,7 +10,7 @@ namespace glint {
 /// A frame's photograph in linear light, as retexturing needs it.
 struct FramePixels {
   Image linear;              ///< 3 channels, 1 = the largest code
-  std::vector<char> glossy;  ///< per pixel: on the glossy object as the frame's mask has it; 1 where there is none
+  std::vector<char> glossy;  ///< per pixel: on the glossy object as the frame's mask has it; 1 without a mask
   std::vector<char> usable;  ///< per pixel: glossy, finite, clipped in no channel
 };
 

@@ -11,8 +11,8 @@ namespace glint {
 /// What a model predicts that the highlights of a frame add to its picture.
 struct PredictedRadiance {
   Image radiance;  ///< 3 channels, linear light (1 = the largest code), at the camera's measured pixels
-  std::vector<char>
-      extrapolated;  ///< per pixel: where neither prediction nor training pixels reach: gaps of the contour, clipped cores
+  /// Per pixel: neither prediction nor training pixels reach it: gaps of the contour, clipped cores.
+  std::vector<char> extrapolated;
   std::vector<Polyline> contours;  ///< predicted, ideal pixels
   std::vector<double> coverage;    ///< of each contour, share of its directions that were predicted
   struct OfLight {
@@ -25,8 +25,8 @@ struct PredictedRadiance {
 
 /// @param model  one that the inspection computed. @param light  id; "" = every light that was predicted in this frame.
 /// @param known  what was learned before; null = learns anew.
-/// The prediction's failure where the model predicts no highlight of these lights in the frame; learnAppearance()'s; NotSupported where no such
-/// light was looked at; NoSurface. std::invalid_argument for a frame or model that does not exist. Stopped.
+/// The prediction's failure where the model predicts no highlight of these lights in the frame; learnAppearance()'s; NotSupported
+/// where no such light was looked at; NoSurface. std::invalid_argument for a frame or model that does not exist. Stopped.
 Outcome<PredictedRadiance> predictedRadiance(const Inspection& inspection, int frame, const std::string& model,
                                              const std::string& light = "", const ProgressFn& progress = {},
                                              LearnedAppearances* known = nullptr);

@@ -101,7 +101,7 @@ double observedBeyond(const Canvas& canvas, const cv::Mat& mask) {
   return most;
 }
 
-/// The shade as a divisor per pixel: 1 everywhere where there is none.
+/// The shade as a divisor per pixel; 1 everywhere without shade.
 std::vector<float> divisorOf(const Canvas& canvas) {
   std::vector<float> divisor(canvas.pixels->glossy.size(), 1.f);
   if (!canvas.lambert || !*canvas.lambert) return divisor;
@@ -221,7 +221,7 @@ std::vector<Eigen::Vector2f> coordinatesIn(const Canvas& canvas, const TextureCo
   return uv;
 }
 
-/// Size of a pixel in textures, from its right and lower neighbours; whole turns between them are none.
+/// Size of a pixel in textures, from its right and lower neighbours; whole turns between them do not count.
 double footprintAt(const std::vector<Eigen::Vector2f>& uv, std::size_t i, int x, int y, const Camera& camera) {
   double most = 0;
   const auto towards = [&](std::size_t j) {

@@ -34,8 +34,8 @@ struct RetextureRequest {
   Image picture = {};  ///< linear, 3 channels: background (of the frame's size) or texture
   TextureMapping mapping = TextureMapping::Natural;
   double repeat = 1;  ///< textures across the surface, > 0
-  std::optional<double>
-      albedo;  ///< of the surface as it was, (0, 1]: a texture's values are then albedos; else its mean takes the place of it
+  /// Albedo of the surface as it was, (0, 1]: a texture's values are then albedos. Without it, the texture's mean replaces it.
+  std::optional<double> albedo;
   ShadingSource shading = ShadingSource::Auto;
   double marginPx = 4;  ///< Removed, Frame: beyond where the highlight can be seen, >= 0
 };
@@ -58,16 +58,16 @@ struct Retextured {
 /// The predicted highlight of a frame over another picture of it (retexturing), or the frame without it.
 ///
 ///   Background  I = B + H        in linear light per channel, H of predictedRadiance()
-///   Texture     I = T shade / A + H   on the surface, T the texture's albedo, A the mean of the texture (or `albedo`); the frame elsewhere
-///   Removed     I filled inside of the mask from around it (Telea's method); where a light is known, I over the Lambert shading is filled, so
+///   Texture     I = T shade / A + H   on the surface, T the texture's albedo, A its mean (or `albedo`); the frame elsewhere
+///   Removed     I filled inside of the mask from around it (Telea's method); with a known light, I over the Lambert shading, so
 ///               that shading goes on underneath
 /// The mask: where H changes a code by kVisibleCodes or more, and the predicted contour, both dilated by marginPx.
 /// The frame's own mask, where there is one, bounds what is changed.
 ///
 /// @param known  as predictedRadiance().
 /// @param frame  of the inspection, which computed `request.model` for it.
-/// Failures of predictedRadiance(); FrameUnreadable and NotSupported of a frame whose photograph is needed (Texture, Removed) and missing;
-/// NoSurface for a texture without a surface; NoHighlight where the mask leaves nothing to fill from.
+/// Failures of predictedRadiance(); FrameUnreadable and NotSupported of a frame whose photograph is needed (Texture, Removed) and
+/// missing; NoSurface for a texture without a surface; NoHighlight if the mask leaves nothing to fill from.
 /// std::invalid_argument for a picture of another size. Stopped.
 /// @see Telea, An image inpainting technique based on the fast marching method, Journal of Graphics Tools 2004.
 Outcome<Retextured> retexture(const Inspection& inspection, int frame, const RetextureRequest& request,

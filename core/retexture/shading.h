@@ -19,8 +19,8 @@ struct ShadedFrame {
   const std::vector<char>& usable;  ///< per pixel: unclipped, on the glossy object
 };
 
-/// How a matt surface of one albedo would look in a frame: shade(u) = a + sum over lights b_l max(0, N.L) / r^2 (0 in shadow), mean of the channels,
-/// a and b_l >= 0 fitted to the frame. The albedo is part of a and b: lighting alone does not tell it.
+/// How a matt surface of one albedo would look in a frame: shade(u) = a + sum over lights b_l max(0, N.L) / r^2 (0 in shadow),
+/// mean of the channels, a and b_l >= 0 fitted to the frame. The albedo is part of a and b: lighting alone does not tell it.
 struct LambertShading {
   Image shade;                  ///< one channel, linear; 0 off the surface
   std::vector<char> onSurface;  ///< per pixel
@@ -30,7 +30,7 @@ struct LambertShading {
 };
 
 /// @param lights  estimated ones, at least one.
-/// NoSurface where no pixel shows the surface; TooFewPoints where too few are left beside highlights; NotFinite. Stopped.
+/// NoSurface if no pixel shows the surface; TooFewPoints if too few are left beside highlights; NotFinite. Stopped.
 Outcome<LambertShading> fitLambert(const Surface& surface, const Camera& camera, const std::vector<Light>& lights,
                                    const ShadedFrame& frame, const ProgressFn& progress = {});
 

@@ -24,7 +24,7 @@ Eigen::Vector2d onSphere(const Eigen::Vector3d& direction) {
   return {turnOf(direction.y(), direction.x()), 0.5 - polar / M_PI};
 }
 
-/// In the surface's own coordinates; empty where it has none.
+/// The map in the surface's own coordinates; empty without such coordinates.
 std::pair<MapPoint, std::string> naturalMap(const AnalyticSpec& s) {
   const Eigen::Isometry3d local = s.worldFromSurface.inverse();
   if (s.type == "plane")
@@ -59,7 +59,7 @@ std::pair<MapPoint, std::string> naturalMap(const AnalyticSpec& s) {
   return {};
 }
 
-/// The two world coordinates across the largest component of the normal, each side with the image's right and top as seen from outside.
+/// The two world coordinates across the normal's largest component; each side has the image's right and top as seen from outside.
 Eigen::Vector2d onBox(const SurfacePoint& p, const Eigen::Vector3d& origin, double side) {
   const Eigen::Vector3d q = (p.position - origin) / side;
   Eigen::Index axis = 0;

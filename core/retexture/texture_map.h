@@ -11,7 +11,7 @@
 
 namespace glint {
 
-/// How a texture lies on a surface. u to the right and v down the image, both in textures: [0, 1) is the first one, then it repeats.
+/// How a texture lies on a surface. u points right and v down the image, in textures: [0, 1) is the first one, then it repeats.
 enum class TextureMapping {
   Natural,    ///< the surface's own coordinates where it has them (below), else Box
   Planar,     ///< world x and y
@@ -23,10 +23,10 @@ inline const std::vector<std::string> kTextureMappings{"natural", "planar", "sph
 TextureMapping textureMappingNamed(const std::string& name);
 
 /// Texture coordinates of a surface point. Natural:
-///   plane      local x, y in metres;                sheet  arc length and local y, over its length and width where given, else in metres
+///   plane      local x, y in metres;                sheet  arc length and local y, over length and width or in metres
 ///   sphere, ellipsoid  longitude / 2 pi and latitude / pi (of the sphere that the semi-axes stretch), axis = local z
 ///   cylinder   angle / 2 pi and local y over the girth;     torus  the two angles / 2 pi
-/// Planar and Box: one texture across the largest side of the bounding box; of depth maps, whose box follows the frame, and of surfaces without
+/// Planar and Box: one texture across the bounding box's largest side; for depth maps, whose box varies, and surfaces without
 /// bounds, one per metre.
 class TextureCoordinates {
  public:

@@ -23,7 +23,7 @@ struct RetextureWish {
   double repeat = 1, albedo = 0, marginPx = 4;  ///< albedo 0: the texture's mean takes the place of it
 };
 
-/// InputError where not exactly one of texture, background and removal is asked for, or a number is out of its range.
+/// InputError if not exactly one of texture, background and removal is asked for, or a number is out of its range.
 void requireAnswerable(const RetextureWish& wish);
 
 /// A frame of which one model was asked.
@@ -36,8 +36,8 @@ struct RetexturedFrame {
 /// inspectOneFrame() and retexture() as wished.
 /// @param request   of the session: models, training frames, settings
 /// @param previous  an inspection of the same scene, whose stages are taken over; null = none
-/// Failures of both, the detail with model and frame. InputError: a model, light, mapping, shading or file that is not there or not
-/// right; std::invalid_argument: a picture of another size; Stopped.
+/// Failures of both, the detail with model and frame. InputError: a model, light, mapping, shading or file that is missing or
+/// not right; std::invalid_argument: a picture of another size; Stopped.
 RetexturedFrame retextureAsWished(std::shared_ptr<const Scene> scene, InspectionRequest request, int frame,
                                   const RetextureWish& wish, const ProgressFn& progress = {},
                                   const Inspection* previous = nullptr);

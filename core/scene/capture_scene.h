@@ -10,7 +10,7 @@ namespace glint {
 /// where names repeat). InputError where no surface, or more than one, is named or found, or a choice does not fit the capture.
 ///
 /// The surface is `choices.surfaceFile`, else the mesh that the capture names, else the only mesh in its folder (`mesh.*` before
-/// others; a PLY without faces is none), else the frames' own depth maps.
+/// others; a PLY without faces does not count), else the frames' own depth maps.
 Scene sceneOfCapture(const Capture& capture, const ReadOptions& options);
 
 /// What a capture is read with.

@@ -46,7 +46,7 @@ struct Frame {
   double depthScale = 0;                ///< metres per stored unit; 0 = not given (then depth must be float)
   Camera camera;
   CameraResponse response;  ///< of `image`
-  /// Of `depth`, where a camera of its own took it; its camFromWorld is from the frame's camera, not from the world. Without it depth is as of `camera`.
+  /// The camera that took `depth`, if not `camera`; its camFromWorld starts at the frame's camera, not at the world.
   std::optional<Camera> depthCamera;
   std::string surface;                ///< id in Scene::surfaces; "" = this frame's own depth map
   std::vector<std::string> lightsOn;  ///< empty = not stated

@@ -78,7 +78,7 @@ struct SurfaceCache::Impl {
     statistics.mostDepthMaps = std::max(statistics.mostDepthMaps, statistics.depthMaps);
   }
 
-  /// The depth of a frame with that of the nearest other frames averaged in; a frame whose depth cannot be read is no other frame.
+  /// The depth of a frame with that of the nearest other frames averaged in; frames whose depth cannot be read do not count.
   Image fusedWithOthers(const Frame& frame, const Image& depth, const DepthMapOptions& options) const {
     std::vector<std::pair<double, const Frame*>> near;
     for (const Frame& other : frames)

@@ -11,7 +11,7 @@
 namespace glint {
 namespace {
 
-/// Of a line as the photograph measures it: places that the lens shows nowhere are left out.
+/// A line as the photograph measures it, without places that the lens shows nowhere.
 Polyline measured(const Polyline& ideal, const Camera& camera) {
   Polyline line{{}, ideal.closed};
   for (const Pixel& p : ideal.points)
@@ -46,8 +46,8 @@ bool leavesImage(const Polyline& line, const Camera& camera) {
   return std::any_of(line.points.begin(), line.points.end(), [&](const Pixel& p) { return !isInPhotograph(camera, p); });
 }
 
-/// Standard deviation of what an observed contour has of its own, px: what remains of its distances from the predicted one once the smooth
-/// shapes are taken out by which a whole view may be off. No prediction can know it.
+/// Standard deviation of what an observed contour has of its own, px: what remains of its distances from the predicted one once
+/// the smooth shapes are taken out by which a whole view may be off. No prediction can know it.
 double noiseOf(const std::vector<ContourFoot>& feet) {
   std::vector<Pixel> normals;
   std::vector<double> arcs;
@@ -97,7 +97,7 @@ std::vector<Polyline> addSpurious(const FrameEvidence& evidence, const Camera& c
   for (std::size_t p = 0; p < predicted.size(); ++p) {
     if (!used[p] && isIgnored(evidence, c.light, predicted[p])) continue;
     compared.push_back(predicted[p]);
-    if (used[p] || clippedToImage(c.prediction.highlights()[p].contour, camera).points.empty()) continue;  // nobody could see it
+    if (used[p] || clippedToImage(c.prediction.highlights()[p].contour, camera).points.empty()) continue;  // it could not be seen
     FrameComparison::Row row;
     row.predicted = static_cast<int>(p);
     c.rows.push_back(row);

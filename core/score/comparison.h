@@ -13,7 +13,7 @@
 
 namespace glint {
 
-/// How a predicted contour's band does against the observed one; along the surface's own edge there is none, and nothing counts.
+/// How a predicted contour's band does against the observed one; the surface's own edge has no band and does not count.
 struct BandScore {
   double sigmaPx = 0;   ///< mean over the vertices
   double coverage = 0;  ///< share of the observed points within 1.96 sigma, with the observed contour's own noise beside it

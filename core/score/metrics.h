@@ -14,8 +14,8 @@ namespace glint {
 struct ContourMetrics {
   double contourErrorPx = 0;   ///< symmetric mean distance over arc length; gaps are not bridged
   double contourErrorPct = 0;  ///< of the equivalent diameter of the observed region
-  double ellipseErrorPct =
-      0;  ///< the same between the ellipse of the observed contour and the predicted ellipse; NaN without one
+  /// The same between the ellipse of the observed contour and the predicted ellipse; NaN without one.
+  double ellipseErrorPct = 0;
   double hausdorffPx = 0;
   double iou = 0;             ///< of the filled contours
   double centreOffsetPx = 0;  ///< between area centroids

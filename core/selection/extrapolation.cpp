@@ -168,7 +168,7 @@ Outlook lookAhead(const HighlightModel& model, std::map<std::string, Fold>& whol
         const std::size_t shown = std::min(leftOut.size(), kFoldsShown);
         for (std::size_t f = 0; f < shown; ++f) {
           const double d = differencePct(outlook.predictions[i], predict(*leftOut[f * leftOut.size() / shown]));
-          if (std::isfinite(d)) squares += d * d;  // none where both see no highlight: they agree
+          if (std::isfinite(d)) squares += d * d;  // none if both see no highlight: they agree
         }
         const std::size_t n = whole.at(view.light).others.size();
         const double jackknife = std::sqrt(double(n - 1) * squares / double(shown));

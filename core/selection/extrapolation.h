@@ -40,7 +40,7 @@ inline constexpr int kFewViews = 4;
 /// What one model predicts in the views to predict.
 struct Outlook {
   std::map<std::string, Outcome<ModelFit>> fits;             ///< by light, to all training views
-  std::vector<std::vector<PredictedHighlight>> predictions;  ///< one entry per view, of these fits; empty where there is none
+  std::vector<std::vector<PredictedHighlight>> predictions;  ///< one entry per view, of these fits; empty without one
   /// By view, % of the diameter: the jackknife's standard error of the prediction, sqrt(n - 1) times the root mean square
   /// distance between the contours of the left-out fits and that of the fit to all n views. With fewer than kFewViews views, or
   /// where most left-out fits failed, the mean absolute distance that the model's own band (HighlightModel::bandSigmaPx) expects,

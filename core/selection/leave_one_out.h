@@ -28,7 +28,7 @@ struct Fold {
   Outcome<std::shared_ptr<const Surface>> surfaceOf(int frame, const HighlightModel& model) const;
 };
 
-/// What a model said about one left-out view.
+/// A model's answer for one left-out view.
 struct Answer {
   std::optional<double> errorPct;
   std::optional<Failure> failure;
@@ -38,7 +38,7 @@ struct Answer {
   double coverage = 0;          ///< of the one that was compared
   double variation = 0;         ///< the largest of all; NaN when nothing was walked on a patch
   bool boundToSurface = false;  ///< an ellipsoid of the highlight as it was seen, without the walk that takes the surface out
-  /// As it counts in the ranking.
+  /// The error as it counts in the ranking.
   double countedPct() const { return errorPct ? *errorPct : kNoPredictionPct; }
 };
 
@@ -47,8 +47,8 @@ struct Answer {
 enum class LeaveOut { Frame, Place };
 /// One per left-out view: at most kMostLeftOut, evenly spread. Valid as long as the inspection.
 std::vector<Fold> foldsOf(const Inspection& inspection, LeaveOut together);
-/// Fits the model to the fold's other views. Fills what is missing in the fold. The model's and the light's failures; NotConverged for a poor fit
-/// where those do not serve.
+/// Fits the model to the fold's other views. Fills what is missing in the fold. The model's and the light's failures;
+/// NotConverged for a poor fit where those do not serve.
 Outcome<ModelFit> fitFold(Fold& fold, const HighlightModel& model, const Settings& settings, PoorFits poor = PoorFits::Refuse,
                           const ProgressFn& progress = {});
 /// Fits the model to the other views, predicts the left-out one and compares. Fills what is missing in the fold.
@@ -56,19 +56,19 @@ Answer leaveOut(Fold& fold, const HighlightModel& model, const Settings& setting
                 const ProgressFn& progress = {});
 /// Poor fits serve to judge a model where one of its own fits is poor.
 PoorFits poorFitsFor(const ModelResult& result);
-/// The last step of that alone, from a fit that is there.
+/// The last step of leaveOut() alone, from an existing fit.
 Answer predictLeft(const Fold& fold, const HighlightModel& model, const ModelFit& fit, const Settings& settings);
 
-/// What is known when a model is tried: its views need not all be tried once it cannot become the best any more.
+/// What is known when a model is tried: once it can no longer become the best, its other views need not be tried.
 struct RankingSoFar {
   std::vector<char> possible;  ///< by fold: some model answered it
-  /// Smallest ranked error of an eligible model, over the possible folds, with what another may be worse by.
+  /// Smallest ranked error of an eligible model, over the possible folds, with the tolerance of others.
   double best = std::numeric_limits<double>::infinity();
 };
 /// Leaves out every fold in turn, as long as the model can become the best. @param answers  gets one per fold
 Candidate tryModel(const Inspection& inspection, const HighlightModel& model, std::vector<Fold>& folds,
                    std::vector<Answer>& answers, const RankingSoFar& known, PoorFits poor, const ProgressFn& progress);
-/// Mean over the views that any model answers; NaN when there are none.
+/// Mean over the views that any model answers; NaN without any.
 double rankedPct(const std::vector<Answer>& answers, const std::vector<char>& possible);
 /// How much worse one model is than another, view by view.
 struct ExcessError {
@@ -79,7 +79,7 @@ ExcessError excessOf(const std::vector<Answer>& a, const std::vector<Answer>& b,
 /// The largest curvatureVariation of the highlights; NaN when none was walked on a patch.
 double variationOf(const Prediction& prediction);
 
-/// Whether local quadrics serve the model that was chosen. None when it does not walk or walks on them already.
+/// Whether local quadrics serve the model that was chosen. None if it does not walk or walks on them already.
 /// @param exact    one answer per fold, of exact walks.
 /// @param mostPct  the error that the rule would still take.
 std::optional<PatchChoice> choosePatches(const Inspection& inspection, const HighlightModel& model,

@@ -69,7 +69,7 @@ class Search {
   void expect(std::size_t m);
   void choose(std::size_t m, double mostPct);
   std::string whereText() const;
-  /// What the choice stands on once all models were tried.
+  /// The reasons for the choice once all models were tried.
   struct Decision {
     std::size_t best = 0;                ///< least ranked error, and the surface does not contradict it
     std::vector<std::size_t> plausible;  ///< as good in leave-one-out, from simple to rich
@@ -350,7 +350,7 @@ Selection Search::run() {
     if (!tried_[m].eligible || c.answered < c.views || !(c.meanPct <= kNegligiblePct) ||
         model->traits().surface != ModelTraits::Assumes::Plane)
       continue;
-    // On a plane such a model is exact; where its predictions are reproduced as well, nothing can be better by what contours resolve.
+    // On a plane such a model is exact; if its predictions are reproduced as well, contours can resolve nothing better.
     checkAssumption(m, shapeUnder(m));
     if (!tried_[m].confirmed) continue;
     if (!views_.empty()) compareOutlooks({m});

@@ -9,8 +9,8 @@
 
 namespace glint {
 
-/// SHA-256 of what a scene names, by the path relative to its folder: the same on machines that keep the folder in different places. "" for
-/// what cannot be read. Reads every file. Stopped.
+/// SHA-256 of what a scene names, by the path relative to its folder: the same on machines that keep the folder in different
+/// places. "" for what cannot be read. Reads every file. Stopped.
 inline std::vector<std::pair<std::string, std::string>> inputDigests(const Scene& scene, const ProgressFn& progress) {
   std::vector<std::pair<std::string, std::string>> digests;
   for (SessionFile& file : hashInputs(scene, InspectionRequest{}, progress)) {

@@ -5,8 +5,8 @@
 
 namespace glint {
 
-/// How far two values of one key result are apart: relative to the larger one, plus a least size, so that a zero may be one that came out
-/// as round-off: 1 px or 1 % for distances between contours and peaks, 1e-3 for the rest. 0 for two NaN, infinite for one.
+/// Distance of two values of one key result, relative to the larger one plus a least size, so that a zero may be one that came
+/// out as round-off: 1 px or 1 % for distances between contours and peaks, 1e-3 for the rest. 0 for two NaN, infinite for one.
 /// @param keyResult  its name, as in KeyResults ("dual.contour_error_px.mean")
 double keyResultDifference(const std::string& keyResult, double was, double is);
 

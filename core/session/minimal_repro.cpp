@@ -74,7 +74,7 @@ Fault answer(const Inspection& inspection, const Fault& fault, const std::vector
       fault.model);
 }
 
-/// A copy of a file in a folder of the new scene; "" where there is none. Two frames of one file share the copy.
+/// A copy of a file in a folder of the new scene; "" without a file. Two frames of one file share the copy.
 fs::path copied(const fs::path& file, const fs::path& folder, std::map<fs::path, fs::path>& done) {
   if (file.empty()) return {};
   if (const auto found = done.find(file); found != done.end()) return found->second;

@@ -10,7 +10,7 @@
 
 namespace glint {
 
-/// What is wrong with one model's answer for one light in one frame: its error, or why there is none.
+/// What is wrong with one model's answer for one light in one frame: its error, or why it is missing.
 struct Fault {
   int frame = -1;
   std::string model, light;
@@ -31,7 +31,7 @@ struct FaultTolerance {
 bool sameFault(const Fault& was, const Fault& now, const FaultTolerance& tolerance);
 
 /// What an inspection says of a model in a frame. @param light  "" = the one with the largest error there, else the first that
-/// failed. NotSupported when the model was not computed or predicts nothing for this frame.
+/// failed. NotSupported if the model was not computed or predicts nothing for this frame.
 Outcome<Fault> faultOf(const Inspection& inspection, int frame, const std::string& model, const std::string& light);
 
 struct MinimalRepro {
@@ -42,7 +42,7 @@ struct MinimalRepro {
 };
 /// The smallest set of training frames (no single one can be left out; see `minimalSubset`) whose fit still shows the fault.
 /// Views, with the what-if and the noise, are those of the inspection; light, canonical contours and the model are computed
-/// again. A fault frame that trains itself is always kept. NotSupported as faultOf; NotReached when the fault does not show even
+/// again. A fault frame that trains itself is always kept. NotSupported as faultOf; NotReached if the fault does not show even
 /// with all of them, computed this way. Stopped.
 Outcome<MinimalRepro> minimalRepro(const Inspection& inspection, const Fault& fault, const FaultTolerance& tolerance,
                                    const ProgressFn& progress = {});

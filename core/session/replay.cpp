@@ -65,7 +65,7 @@ void addDetection(KeyResults& results, const Inspection& inspection) {
   addStatistic(results, "detect.peak_from_origin_px", statisticOf(std::move(peaks)));
 }
 
-/// In the order in which they are computed. Each uses those before it.
+/// Stages in the order of computation. Each uses those before it.
 enum class ResultStage { Detection, Light, Fit, Prediction };
 
 ResultStage stageOf(const std::string& keyResult) {
@@ -86,8 +86,8 @@ std::string wordsFor(ResultStage stage, bool detectionKnown) {
   return "";
 }
 
-/// Errors are distances between curves: 1e-9 of an error of 0.005 px would be less than the round-off of the coordinates that it is a
-/// difference of (up to thousands of pixels, with errors of 1e-13 each after the arithmetic of a whole prediction).
+/// Errors are distances between curves: 1e-9 of an error of 0.005 px would be less than the round-off of the coordinates that it
+/// is a difference of (up to thousands of pixels, with errors of 1e-13 each after the arithmetic of a whole prediction).
 bool isDistance(const std::string& keyResult) {
   return keyResult.find(".contour_error_") != std::string::npos || keyResult.find(".peak_offset_px") != std::string::npos;
 }

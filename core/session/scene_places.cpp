@@ -13,11 +13,11 @@ namespace fs = std::filesystem;
 
 namespace {
 void requireFolder(const std::string& folder, const std::string& given) {
-  std::error_code ignored;  // what cannot be asked about is not there
+  std::error_code ignored;  // unreadable counts as missing
   if (!fs::is_directory(folder, ignored)) throw InputError("", given, "this folder does not exist");
 }
 
-/// As the scene file writes them.
+/// The meshes' paths as the scene file writes them.
 std::set<std::string> meshNames(const Scene& scene) {
   std::set<std::string> names;
   for (const auto& [id, source] : scene.surfaces) {

@@ -10,8 +10,8 @@
 
 namespace glint {
 
-/// How an input is read, and where the files of a scene are that are not where it says; the same for every program that reads one. Failures name
-/// the options of the command line.
+/// How an input is read, and where the files of a scene are that are not where it says; the same for every program that reads
+/// one. Failures name the options of the command line.
 struct ScenePlaces {
   bool allowOutside = false;
   std::vector<std::string> photographs;  ///< folders
@@ -26,7 +26,7 @@ struct ScenePlaces {
   Scene read(const std::string& input) const;
   OpenedSession openSession(const std::string& file) const;
   Replay replay(Session session, const ProgressFn& progress) const;
-  /// A session whose request is taken over, without its scene. OutsidePath as `openSession` where the request names a truth folder.
+  /// A session whose request is used without its scene. OutsidePath as `openSession` if the request names a truth folder.
   Session readRequestOf(const std::string& file, bool withItsTruth) const;
 
  private:

@@ -36,8 +36,8 @@ void migrateFrom1(const JsonNode& request, Settings& settings) {
 /// by hand that leaves settings out means today's defaults.
 bool writtenByProgram(const JsonNode& settings) { return settings.find("detect.clip") && settings.find("fit.solver"); }
 
-/// A program before the fit to pixels took the smooth background, fitted contours and refused no poor fit. One before the test by motion took texture
-/// for highlights.
+/// A program before the fit to pixels took the smooth background, fitted contours and refused no poor fit. One before the test by
+/// motion took texture for highlights.
 void migrateFromBeforePixels(const JsonNode& request, Settings& settings) {
   const std::optional<JsonNode> stored = request.find("settings");
   if (!stored || !writtenByProgram(*stored)) return;
@@ -47,7 +47,7 @@ void migrateFromBeforePixels(const JsonNode& request, Settings& settings) {
   if (!stored->find("fit.most_residual")) settings.set("fit.most_residual", 10.0);  // no fit was refused for what it left
 }
 
-/// Before the fit had its own directions and walk tolerance, it took those of the prediction. A setting that stands at its
+/// Before the fit had its own directions and walk tolerance, it took those of the prediction. A setting with its
 /// default stays at it.
 void giveFitItsWalks(Settings& settings) {
   for (const auto& [of, from] :

@@ -73,7 +73,7 @@ struct Session {
   SessionView view;
   std::string notes;
   std::optional<Tradeoff> tradeoff;   ///< measured speed against accuracy; a replay does not look at it
-  KeyResults keyResults;              ///< empty when the session was saved without results
+  KeyResults keyResults;              ///< empty if the session was saved without results
   std::string digest;                 ///< of all results, "" without results; equal on the same machine and build only
   std::vector<std::string> warnings;  ///< unknown keys, one line each (not written)
   std::string unknownJson;            ///< unknown top-level keys, kept for writing back; "" = none
@@ -83,12 +83,12 @@ struct Session {
 Session readSession(const std::filesystem::path& file);
 /// The same from text that is kept elsewhere (in a picture): paths start at the folder of `file`.
 Session parseSession(const std::string& json, const std::filesystem::path& file);
-/// Atomically; paths relative to the session's folder. InputError when it cannot be written.
+/// Atomically; paths relative to the session's folder. InputError if it cannot be written.
 void writeSession(const Session& session, const std::filesystem::path& file);
-/// What `writeSession` writes there.
+/// The text that `writeSession` writes.
 std::string sessionText(const Session& session, const std::filesystem::path& file);
 
-/// The scene of a session is not where the session says: the one failure that a person can mend by pointing at it.
+/// The scene of a session is not where the session says: the one failure that a person can repair by pointing at it.
 class MissingScene : public InputError {
  public:
   MissingScene(const std::filesystem::path& session, std::filesystem::path scene);
@@ -101,11 +101,11 @@ class MissingScene : public InputError {
 struct OpenedSession {
   Session session;
   std::shared_ptr<const Scene> scene;
-  std::string
-      warning;  ///< what was given instead is another file than the session was made with; plugins that it was saved with and are not loaded; "" = neither
+  std::string warning;  ///< another file was given than the session was made with, or its plugins are not loaded; "" = neither
 };
-/// Reads a session and its scene. InputError, also where a model of the request is from a plugin that is not loaded; MissingScene, MissingMesh, OutsidePath. Does not check the files' contents: see `changedFiles`.
-/// @param instead  where inputs are now that are not where the session says. The session then names them.
+/// Reads a session and its scene; `changedFiles` checks the files' contents. InputError, also for a model of a plugin that is not
+/// loaded; MissingScene, MissingMesh, OutsidePath.
+/// @param instead  where inputs are now, if elsewhere; the session then names these places.
 OpenedSession openSession(const std::filesystem::path& file, const Relinked& instead = {});
 OpenedSession openSession(Session session, const Relinked& instead = {});
 
@@ -116,11 +116,11 @@ std::string relinkMeshes(Session& session, const Scene& scene);
 /// The session of a finished inspection, with hashes of its inputs, held-out frames, key results and digest; the view and notes
 /// are left empty. Reads every input file once. Stopped.
 Session sessionOf(const Inspection& inspection, const ProgressFn& progress = {});
-/// Of the scene, what it names, and the truth folder of the request.
+/// Hashes of the scene, of the files that it names, and of the request's truth folder.
 std::vector<SessionFile> hashInputs(const Scene& scene, const InspectionRequest& request, const ProgressFn& progress = {});
 
-/// One line "path: changed" or "path: missing" for each input that is not what it was; of a file that the session may not name, a line
-/// that says nothing about it. Stopped.
+/// One line "path: changed" or "path: missing" for each input that is not what it was; of a file that the session may not name, a
+/// line that says nothing about it. Stopped.
 std::vector<std::string> changedFiles(const Session& session, const Relinked& instead = {}, const ProgressFn& progress = {});
 
 /// Summaries of every model, limit angles and light positions; no times.
@@ -134,13 +134,13 @@ struct Replay {
   std::string firstChanged;              ///< the first stage whose results differ, in words; "" = none
   bool digestAgrees = false;
   int compared = 0;  ///< key results
-  double largestDifference =
-      0;  ///< of a key result, relative to its size (and to 1e-3 where that is smaller): what 1e-9 is compared with
+  /// Largest one of a key result, relative to its size (at least 1e-3). It is compared with 1e-9.
+  double largestDifference = 0;
 };
 /// Recomputes a session and compares: key results agree when they differ by at most 1e-9 relatively (or 1e-12 absolutely,
 /// the round-off of numbers of order one).
 /// @param instead  of it only the folders that a person named
-/// @throw InputError when the session has no results, or an input changed or is missing (the first is named); OutsidePath; Stopped.
+/// @throw InputError if the session has no results, or (naming the first) an input changed or is missing; OutsidePath; Stopped.
 Replay replay(const Session& session, const Relinked& instead = {}, const ProgressFn& progress = {});
 
 }  // namespace glint

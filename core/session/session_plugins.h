@@ -29,7 +29,7 @@ std::string inWords(const std::vector<SessionPlugin>& plugins);
 /// The same failure, with the plugins that are missing at its end: what they add may be what a reader stumbled over.
 InputError withMissingPlugins(const InputError& failure, const std::vector<SessionPlugin>& missing);
 
-/// Runs `read`, and names the missing plugins where it fails for want of something that a plugin may add. Other failures stay as they are.
+/// Runs `read`. If it lacks something that a plugin may add, names the missing plugins. Other failures stay.
 template <class Read>
 auto namingMissingPlugins(const std::vector<SessionPlugin>& missing, Read&& read) {
   try {

@@ -5,8 +5,8 @@
 
 namespace glint {
 
-/// OutsidePath when the truth folder that the session's request names lies in no folder that the session may name, and the session has
-/// no right to others (`allowOutsidePaths`).
+/// OutsidePath if the truth folder that the session's request names lies in no folder that the session may name, and the
+/// session has no right to others (`allowOutsidePaths`).
 void requirePermittedTruth(const Session& session, const Relinked& instead);
 
 }  // namespace glint

@@ -13,7 +13,7 @@ struct TradeoffBound {
 };
 
 /// Sorts the points by time, marks the front, finds the presets, picks a point and says why in one sentence.
-/// With a bound that no point meets `chosen` stays empty and `reason` names the nearest point.
+/// If no point meets the bound, `chosen` stays empty and `reason` names the nearest point.
 void choosePoint(Tradeoff& tradeoff, const TradeoffBound& bound);
 
 /// The point that a preset's name means: "fast", "balanced", "exact", or "chosen". InputError (place "--preset NAME").

@@ -24,7 +24,7 @@ const std::map<std::string, std::vector<double>>& ladders() {
   return all;
 }
 
-/// They add to what a prediction says, not to its contour, and their work is no part of its time; or they decide what counts as an answer.
+/// They add to a prediction without changing its contour or its measured time, or they decide what counts as an answer.
 const std::set<std::string> kNoKnobs{"fit.most_residual", "predict.band", "input.scale_tolerance", "input.focal_tolerance"};
 
 /// What only this model looks at.

@@ -18,7 +18,7 @@ struct Knob {
 /// The knobs of `params` (method.md section 12), so that a setting which is added later is tried without further work: of the
 /// stages surface, light, fit and predict every choice and switch, the numbers that have a ladder in knobs.cpp, and every other
 /// number of `predict.` at half and twice its value. What changes the problem (detection), how a noisy fit is weighted, or
-/// only what is said about a contour (the uncertainty band) is no knob.
+/// only the description of a contour (the uncertainty band) is no knob.
 std::vector<Knob> knobsOf(const Settings& base, const std::vector<ParamSpec>& params = allParams());
 
 /// The value of a key in `settings`, whatever its type.

@@ -19,7 +19,7 @@ std::vector<char> paretoFront(const std::vector<Cost>& costs);
 
 /// Indices of the presets among `costs`; all of them lie on the front.
 struct Presets {
-  int fast = -1, balanced = -1, exact = -1;  ///< -1 when no cost is finite
+  int fast = -1, balanced = -1, exact = -1;  ///< -1 if no cost is finite
 };
 /// Above this error a predicted contour is a wrong contour: a tenth of the highlight's diameter, an overlap of about 0.7.
 inline constexpr double kUsableErrorPct = 10;
@@ -29,9 +29,9 @@ inline constexpr double kSameErrorPct = 0.005;
 inline constexpr double kSmallestErrorPct = 1e-6;
 /// A nanosecond (us): less cannot be measured.
 inline constexpr double kSmallestUs = 1e-3;
-/// exact: the smallest error, and of those that are the same the fastest. fast: the smallest time among points under kUsableErrorPct (of all when none is).
-/// balanced: the point of the front nearest to (the time of fast, the error of exact) with both axes logarithmic and
-/// scaled by the distance between the two, so that it does not depend on units.
+/// exact: the smallest error, and of those that are the same the fastest. fast: the smallest time among points under
+/// kUsableErrorPct (of all when none is). balanced: the point of the front nearest to (the time of fast, the error of exact) with
+/// both axes logarithmic and scaled by the distance between the two, so that it does not depend on units.
 Presets presetsOf(const std::vector<Cost>& costs);
 
 }  // namespace glint

@@ -24,7 +24,7 @@ struct TradeoffPoint {
   double fitUs = 0;           ///< light, canonical contours and fit of all lights and surfaces, one thread, median of repeats
   double peakMb = 0;          ///< peak resident memory of the process with this setting alone, 2^20 bytes
   bool pareto = false;
-  std::string poor{};  ///< why the model explains its training views badly; "" where it explains them
+  std::string poor{};  ///< why the model explains its training views badly; "" if it explains them
 };
 
 /// A setting that was not measured in full, and why.
@@ -46,7 +46,7 @@ struct Tradeoff {
   std::vector<std::string> knobs;      ///< dotted names of the settings that were varied
   std::vector<TradeoffPoint> points;   ///< fastest first
   std::map<std::string, int> presets;  ///< "fast", "balanced", "exact": indices into points
-  std::optional<int> chosen;           ///< index into points; none when nothing meets the bound
+  std::optional<int> chosen;           ///< index into points; none if nothing meets the bound
   std::string reason;                  ///< one sentence
   std::vector<PrunedPoint> pruned;
   int trials = 0;           ///< settings tried on few frames
@@ -72,15 +72,15 @@ Tradeoff readTradeoff(const JsonNode& node);
 /// What trained, for a person: "first:2, 0000, 0001".
 std::string trainedOn(const Tradeoff& tradeoff);
 
-// One number is the error of a setting wherever settings are compared: rankedErrorPct, `error %`. The mean over the highlights that were found,
-// which `evaluate` prints, stands beside it under its own name.
+// One number is the error of a setting wherever settings are compared: rankedErrorPct, `error %`. The mean over the highlights
+// that were found, which `evaluate` prints, is listed beside it under its own name.
 /// One sentence that says what both are.
 extern const char* const kTradeoffErrors;
 /// "29 of 54": highlights that were found, of those observed.
 std::string foundText(const TradeoffPoint& point);
-/// The presets that mean this point: "fast and balanced"; "" where none does.
+/// The presets that mean this point: "fast and balanced"; "" if none does.
 std::string presetNames(const Tradeoff& tradeoff, int point);
-/// That presets coincide, and why, in one sentence; "" where each has a point of its own.
+/// That presets coincide, and why, in one sentence; "" if each has a point of its own.
 std::string presetNote(const Tradeoff& tradeoff);
 /// A plain-text table of the front and the presets.
 std::string tradeoffTable(const Tradeoff& tradeoff);

@@ -129,7 +129,7 @@ TradeoffBench::TradeoffBench(std::shared_ptr<const Scene> scene, const Inspectio
   }
   few_->scene = part;
   if (!train.perSurface) few_->request.train = trainIds;
-  // Detected anew, and the lobe fitted: what all trials start from. No setting of a model changes the contours that it is scored by.
+  // All trials start from new detection and a fitted lobe. No setting of a model changes the contours that score it.
   few_->evidence = inspect(part, few_->request, progress).evidenceAlone();
 }
 

@@ -20,9 +20,9 @@ class TradeoffBench {
   /// @param request  what stays the same in all trials: training frames, source, noise, truth. Stopped.
   TradeoffBench(std::shared_ptr<const Scene> scene, const InspectionRequest& request, int repeats, const ProgressFn& progress);
 
-  /// On the training frames and a few of the others (with `per-surface`: on a few surfaces).
+  /// Measures on the training frames and a few of the others (with `per-surface`: on a few surfaces).
   Outcome<TrialResult> coarse(const Trial& trial);
-  /// On all frames; gives the numbers that `evaluate` gives with these settings.
+  /// Measures on all frames; gives the numbers that `evaluate` gives with these settings.
   Outcome<TradeoffPoint> full(const Trial& trial);
 
   /// Frames that are timed in a full measurement.

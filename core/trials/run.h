@@ -17,8 +17,8 @@ struct TradeoffOptions {
   TradeoffBound bound;
   int repeats = 5;  ///< of every timed prediction
   SearchOptions search;
-  std::filesystem::path
-      workFile;         ///< interrupted work is resumed from here; the caller removes it once the result is safe; empty = none
+  /// Interrupted work resumes from here; the caller removes it once the result is safe; empty = none.
+  std::filesystem::path workFile;
   std::string program;  ///< version: work of another one is not resumed
 };
 
@@ -26,7 +26,7 @@ class TradeoffBench;
 
 /// The models that a request names, in one order, from simple to rich. InputError for an unknown one.
 std::vector<std::string> namedModels(const std::vector<std::string>& named);
-/// What is known before anything is measured. InputError where no frame is held out: every trial would fail, one after the other.
+/// What is known before anything is measured. InputError if no frame is held out: every trial would fail, one after the other.
 Tradeoff emptyTradeoff(const Scene& scene, const InspectionRequest& request, const TradeoffOptions& options);
 /// How time and memory were measured, in words.
 std::string measurementText(const TradeoffBench& bench, int repeats);

@@ -159,7 +159,7 @@ class Search {
     }
   }
 
-  /// Some trial that clearly dominates this cost; -1 when none does.
+  /// Some trial that clearly dominates this cost; -1 if none does.
   int dominator(const Cost& c) const {
     for (int i = 0; i < static_cast<int>(tried_.size()); ++i)
       if (clearlyDominates(tried_[i].cost(), c, kErrorSlack, kTimeSlack)) return i;

@@ -22,7 +22,7 @@ struct TrialResult {
   double errorPct = 0;      ///< rankedErrorPct
   double us = 0;            ///< per frame
   std::string predictions;  ///< equal for trials that predicted the same contours
-  std::string poor{};       ///< why the model explains its training views badly; "" where it explains them
+  std::string poor{};       ///< why the model explains its training views badly; "" if it explains them
 };
 
 struct SearchOptions {

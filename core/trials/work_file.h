@@ -20,7 +20,7 @@ class WorkFile {
 
   std::optional<Outcome<TrialResult>> coarse(const std::string& id) const;
   std::optional<Outcome<TradeoffPoint>> full(const std::string& id) const;
-  /// Both write the file. InputError when it cannot be written.
+  /// Both write the file. InputError if it cannot be written.
   void add(const std::string& id, const Outcome<TrialResult>& result);
   void add(const std::string& id, const Outcome<TradeoffPoint>& result);
   int size() const { return static_cast<int>(coarse_.size() + full_.size()); }

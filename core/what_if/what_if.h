@@ -31,8 +31,8 @@ struct HighlightChange {
   friend bool operator==(const HighlightChange&, const HighlightChange&) = default;
 };
 
-/// One change by hand to which highlights a frame shows. Highlights are named by a place inside of their contour, so that a change
-/// outlives other settings of detection; where no highlight is there any more it changes nothing. core/inspect/hand_edits.h makes them.
+/// One change by hand to which highlights a frame shows. A place inside of its contour names a highlight, so that a change
+/// outlives other settings of detection; without a highlight there it changes nothing. core/inspect/hand_edits.h makes them.
 struct HighlightEdit {
   enum class Kind {
     Ignore,  ///< places[0]: neither trains nor is scored
@@ -54,8 +54,8 @@ std::size_t placesOf(HighlightEdit::Kind kind);  ///< how many it has
 /// results. Everything on its default = the scene as it was captured.
 struct WhatIf {
   std::map<int, PoseChange> poses;  ///< by frame
-  std::map<std::pair<int, int>, HighlightChange>
-      highlights;                    ///< by frame and index in its evidence, as found; of evidence that is not there: no effect
+  /// By frame and index in its evidence, as found; no effect without that evidence.
+  std::map<std::pair<int, int>, HighlightChange> highlights;
   std::vector<HighlightEdit> edits;  ///< in the order in which they were made; before `highlights`, which may move what they made
   /// By frame and light id: on or off, whatever was captured. What is off makes no highlight there: none trains, none is
   /// predicted, none is scored. On counts where contours are synthesised; no photograph shows a light that was off.
@@ -64,8 +64,8 @@ struct WhatIf {
   /// Observed contours are synthesised from the scene's true lights and analytic surfaces instead of being detected; then light,
   /// surface and material below count, and a moved camera takes its contours with it.
   bool synthesise = false;
-  std::map<std::string, Eigen::Vector3d>
-      lightsBy;  ///< by id of a true light: shift of its position, m (of its unit direction, for one at infinity)
+  /// By id of a true light: shift of its position, m (of its unit direction, for one at infinity).
+  std::map<std::string, Eigen::Vector3d> lightsBy;
   std::map<std::string, double> surfaces;  ///< by surface id: the value of its shape parameter, see `shapeOf`
   Lobe lobe = Lobe::TorranceSparrow;
   double roughness = 0.1;  ///< m of the lobe, > 0
@@ -106,7 +106,7 @@ WhatIf switched(WhatIf whatIf, const Scene& scene, int frame, const std::string&
 std::vector<TrueLight> lightsOn(const Scene& scene, const WhatIf& whatIf, int frame);
 
 /// Distance from which sensible shifts of lights and cameras are derived: the mean distance from the cameras to the point that
-/// they look at together (least squares over the optical axes), m; 1 where there is none.
+/// they look at together (least squares over the optical axes), m; 1 without such a point.
 double workingDistance(const Scene& scene);
 
 /// The scene with the changes to poses, and, where contours are synthesised, to lights, surfaces and evidence: `highlights` of
@@ -129,7 +129,7 @@ Highlight changed(Highlight highlight, const HighlightChange& change);
 std::string synthesisKey(const WhatIf& whatIf);
 std::string posesKey(const WhatIf& whatIf);
 std::string highlightsKey(const WhatIf& whatIf);  ///< edits too
-std::string ignoredKey(const WhatIf& whatIf);     ///< of its edits those that ignore; "" where there is none
+std::string ignoredKey(const WhatIf& whatIf);     ///< its edits that ignore a highlight; "" without any
 std::string lightsOffKey(const WhatIf& whatIf);
 
 }  // namespace glint

@@ -62,7 +62,8 @@ def on_sphere(azimuth_deg, elevation_deg, radius):
 def icosphere(times):
     """Vertices on the unit sphere and triangles; 20 * 4^times of them."""
     g = (1 + 5**0.5) / 2
-    v = [unit(p) for p in [[-1, g, 0], [1, g, 0], [-1, -g, 0], [1, -g, 0], [0, -1, g], [0, 1, g], [0, -1, -g], [0, 1, -g], [g, 0, -1], [g, 0, 1], [-g, 0, -1], [-g, 0, 1]]]
+    v = [unit(p) for p in [[-1, g, 0], [1, g, 0], [-1, -g, 0], [1, -g, 0], [0, -1, g], [0, 1, g], [0, -1, -g], [0, 1, -g],
+                           [g, 0, -1], [g, 0, 1], [-g, 0, -1], [-g, 0, 1]]]
     faces = [(0, 11, 5), (0, 5, 1), (0, 1, 7), (0, 7, 10), (0, 10, 11), (1, 5, 9), (5, 11, 4), (11, 10, 2), (10, 7, 6), (7, 1, 8),
              (3, 9, 4), (3, 4, 2), (3, 2, 6), (3, 6, 8), (3, 8, 9), (4, 9, 5), (2, 4, 11), (6, 2, 10), (8, 6, 7), (9, 8, 1)]
     for _ in range(times):
@@ -121,7 +122,8 @@ class Run:
     scale: float = 1.0  # of the mesh or the analytic surface about the origin
 
     def axes(self):
-        return {"sphere": lambda s: [s["radius"]] * 3, "ellipsoid": lambda s: s["semi_axes"]}.get(self.surface["type"], lambda s: None)(self.surface)
+        return {"sphere": lambda s: [s["radius"]] * 3,
+                "ellipsoid": lambda s: s["semi_axes"]}.get(self.surface["type"], lambda s: None)(self.surface)
 
     def spec(self):
         lamp = self.lamp or {"id": "lamp", "position": on_sphere(80, 62, 2.7)}
@@ -130,8 +132,10 @@ class Run:
         targets = self.targets or [mirror_point(axes, e, middle) if axes else [0, 0, 0] for e in self.eyes]
         return {"glint_scene": 1, "name": "auto", "units": "m",
                 "camera": {"width": 320, "height": 240, "fx": self.focal, "fy": self.focal, "cx": 159.5, "cy": 119.5},
-                "surfaces": {"body": {"analytic": self.surface}}, "lights": [lamp], "contour": "radiance", "level": 0.5, "margin_px": 400,
-                "frames": [{"id": "%04d" % i, "camera_from_world": look_at(e, t)} for i, (e, t) in enumerate(zip(self.eyes, targets))],
+                "surfaces": {"body": {"analytic": self.surface}}, "lights": [lamp], "contour": "radiance", "level": 0.5,
+                "margin_px": 400,
+                "frames": [{"id": "%04d" % i, "camera_from_world": look_at(e, t)}
+                           for i, (e, t) in enumerate(zip(self.eyes, targets))],
                 "render": {"reflectance": self.lobe, "roughness": self.roughness, "bits": 32}}
 
     def make(self, runner):
@@ -151,7 +155,8 @@ class Run:
         if self.pose_deg:
             for frame in scene["frames"]:
                 frame["camera_from_world"] = turned(frame["camera_from_world"], rng, math.radians(self.pose_deg))
-        key = hashlib.sha256((exact + repr((self.name, self.seed, self.pose_deg, self.mesh, self.bumps, self.scale))).encode()).hexdigest()[:16]
+        key = hashlib.sha256((exact + repr((self.name, self.seed, self.pose_deg, self.mesh, self.bumps,
+                                            self.scale))).encode()).hexdigest()[:16]
         folder = runner.scratch / ("auto_" + key)
         folder.mkdir(exist_ok=True)
         if self.mesh:
@@ -182,7 +187,8 @@ class Run:
         length = 0.35 * size
         moved = []
         for p, n in zip(points, normals):
-            h = self.bumps * size * sum(math.sin(2 * math.pi * dot(d, p) / length + f) for d, f in waves) / math.sqrt(len(waves) / 2)
+            h = self.bumps * size * sum(math.sin(2 * math.pi * dot(d, p) / length + f)
+                                        for d, f in waves) / math.sqrt(len(waves) / 2)
             moved.append([self.scale * x for x in add(p, n, h)])
         return moved, faces
 
@@ -212,22 +218,26 @@ def narrow_runs():
         for lobe in ("ggx", "torrance-sparrow"):
             for noise in (0.1, 0.3):
                 for seed in (1, 2):
-                    yield Run(f"{shape} {lobe} {noise} px, seed {seed}", surface, narrow_eyes(seed), "first:6", lobe=lobe, noise_px=noise, seed=seed)
+                    yield Run(f"{shape} {lobe} {noise} px, seed {seed}", surface, narrow_eyes(seed), "first:6", lobe=lobe,
+                              noise_px=noise, seed=seed)
 
 
 def tube_run():
     eyes = [on_sphere(-126 + 92 * i / 15, 68, 1.84) for i in range(16)]
     tube = {"id": "tube", "segment": [[-0.25, 0.35, 2.2], [0.55, 0.35, 2.2]], "radius": 0.015}
-    return Run("tube", {"type": "ellipsoid", "semi_axes": [0.6, 0.35, 0.25]}, eyes, "spread:6", lamp=tube, roughness=0.08, focal=500)
+    return Run("tube", {"type": "ellipsoid", "semi_axes": [0.6, 0.35, 0.25]}, eyes, "spread:6", lamp=tube, roughness=0.08,
+               focal=500)
 
 
 def arc(first, last, count, radius=1.4, elevation=48, wave=8):
-    return [on_sphere(first + (last - first) * i / (count - 1), elevation + wave * math.sin(1.3 * i), radius) for i in range(count)]
+    return [on_sphere(first + (last - first) * i / (count - 1), elevation + wave * math.sin(1.3 * i), radius)
+            for i in range(count)]
 
 
 def above(count, spread=0.35, height=1.5, shift=-0.3):
     """Views from above the origin, for flat and bent sheets."""
-    return [[spread * math.cos(2 * math.pi * i / count), spread * math.sin(2 * math.pi * i / count) + shift, height + 0.15 * math.cos(6 * math.pi * i / count)] for i in range(count)]
+    return [[spread * math.cos(2 * math.pi * i / count), spread * math.sin(2 * math.pi * i / count) + shift,
+             height + 0.15 * math.cos(6 * math.pi * i / count)] for i in range(count)]
 
 
 def varied_runs():
@@ -246,30 +256,37 @@ def varied_runs():
         Run("ellipsoid ggx, 1 px", e, wide, "spread:6", noise_px=1, seed=2),
         Run("ellipsoid ggx, 3 px", e, wide, "spread:6", noise_px=3, seed=3),
         Run("sphere beckmann, 1 px, first 6", s, short, "first:6", lobe="torrance-sparrow", noise_px=1, seed=4),
-        Run("sphere beckmann m 0.2, 0.3 px", s, wide, "spread:6", lobe="torrance-sparrow", roughness=0.2, noise_px=0.3, seed=5, focal=700),
-        Run("big ellipsoid phong, 1 px, first 6", big, wide, "first:6", lobe="phong", roughness=0.15, noise_px=1, seed=6, focal=500),
+        Run("sphere beckmann m 0.2, 0.3 px", s, wide, "spread:6", lobe="torrance-sparrow", roughness=0.2, noise_px=0.3, seed=5,
+            focal=700),
+        Run("big ellipsoid phong, 1 px, first 6", big, wide, "first:6", lobe="phong", roughness=0.15, noise_px=1, seed=6,
+            focal=500),
         Run("cylinder blinn-phong, 1 px", cylinder, train="spread:6", lobe="blinn-phong", noise_px=1, seed=7, **flat),
         Run("plane ggx, 1 px", plane, train="spread:6", noise_px=1, seed=8, roughness=0.06, **flat),
         Run("plane ggx, exact", plane, train="spread:6", seed=8, roughness=0.06, **flat),
-        Run("bent sheet beckmann, 0.3 px", bent, train="spread:6", lobe="torrance-sparrow", roughness=0.08, noise_px=0.3, seed=9, **flat),
+        Run("bent sheet beckmann, 0.3 px", bent, train="spread:6", lobe="torrance-sparrow", roughness=0.08, noise_px=0.3, seed=9,
+            **flat),
         Run("bent sheet ggx, 3 px", bent, train="spread:6", noise_px=3, seed=10, **flat),
         Run("slightly bent sheet ggx, 1 px, first 6", slightly, train="first:6", roughness=0.06, noise_px=1, seed=11, **flat),
         # Poses.
         Run("ellipsoid ggx, poses 0.1 deg", e, wide, "spread:6", pose_deg=0.1, seed=12),
         Run("sphere ggx, poses 0.02 deg, 0.3 px", s, short, "first:6", pose_deg=0.02, noise_px=0.3, seed=13),
-        Run("plane beckmann, poses 0.05 deg", plane, train="spread:6", lobe="torrance-sparrow", roughness=0.06, pose_deg=0.05, seed=14, **flat),
-        Run("big ellipsoid beckmann, poses 0.1 deg, 1 px", big, one_side, "spread:6", lobe="torrance-sparrow", pose_deg=0.1, noise_px=1, seed=15, focal=600),
+        Run("plane beckmann, poses 0.05 deg", plane, train="spread:6", lobe="torrance-sparrow", roughness=0.06, pose_deg=0.05,
+            seed=14, **flat),
+        Run("big ellipsoid beckmann, poses 0.1 deg, 1 px", big, one_side, "spread:6", lobe="torrance-sparrow", pose_deg=0.1,
+            noise_px=1, seed=15, focal=600),
         # Meshes.
         Run("ellipsoid ggx, 320 triangles", e, wide, "spread:6", mesh=320, seed=16),
         Run("ellipsoid beckmann, 5,120 triangles", e, wide, "spread:6", lobe="torrance-sparrow", mesh=5120, seed=17),
         Run("sphere ggx, 1,280 triangles, 0.3 px, first 6", s, short, "first:6", mesh=1280, noise_px=0.3, seed=18),
         Run("sphere ggx, 20,480 triangles", s, wide, "spread:6", mesh=20480, seed=19),
         Run("ellipsoid ggx, bumps 0.02 %", e, wide, "spread:6", mesh=20480, bumps=0.0002, seed=20),
-        Run("big ellipsoid beckmann, bumps 0.2 %, 0.3 px", big, one_side, "spread:6", lobe="torrance-sparrow", mesh=20480, bumps=0.002, noise_px=0.3, seed=21, focal=600),
+        Run("big ellipsoid beckmann, bumps 0.2 %, 0.3 px", big, one_side, "spread:6", lobe="torrance-sparrow", mesh=20480,
+            bumps=0.002, noise_px=0.3, seed=21, focal=600),
         Run("plane ggx, bumps 0.005 %", plane, train="spread:6", roughness=0.06, mesh=12800, bumps=0.00005, seed=22, **flat),
         # Scale.
         Run("ellipsoid ggx, scale + 0.5 %", e, wide, "spread:6", scale=1.005, seed=23),
-        Run("sphere beckmann, scale - 0.5 %, 0.3 px, first 6", s, short, "first:6", lobe="torrance-sparrow", scale=0.995, noise_px=0.3, seed=24),
+        Run("sphere beckmann, scale - 0.5 %, 0.3 px, first 6", s, short, "first:6", lobe="torrance-sparrow", scale=0.995,
+            noise_px=0.3, seed=24),
         # Few views.
         Run("ellipsoid ggx, 2 views", e, wide, "spread:2", noise_px=0.3, seed=25),
         Run("sphere ggx, 2 views, 1 px", s, wide, "spread:2", noise_px=1, seed=26),

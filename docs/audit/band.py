@@ -47,7 +47,8 @@ def poses_off(scene, rng, px=None, degrees=None):
 
 def icosphere(levels):
     t = (1 + math.sqrt(5)) / 2
-    points = [(-1, t, 0), (1, t, 0), (-1, -t, 0), (1, -t, 0), (0, -1, t), (0, 1, t), (0, -1, -t), (0, 1, -t), (t, 0, -1), (t, 0, 1), (-t, 0, -1), (-t, 0, 1)]
+    points = [(-1, t, 0), (1, t, 0), (-1, -t, 0), (1, -t, 0), (0, -1, t), (0, 1, t), (0, -1, -t), (0, 1, -t), (t, 0, -1),
+              (t, 0, 1), (-t, 0, -1), (-t, 0, 1)]
     faces = [(0, 11, 5), (0, 5, 1), (0, 1, 7), (0, 7, 10), (0, 10, 11), (1, 5, 9), (5, 11, 4), (11, 10, 2), (10, 7, 6), (7, 1, 8),
              (3, 9, 4), (3, 4, 2), (3, 2, 6), (3, 6, 8), (3, 8, 9), (4, 9, 5), (2, 4, 11), (6, 2, 10), (8, 6, 7), (9, 8, 1)]
     unit = lambda p: tuple(x / math.sqrt(sum(y * y for y in p)) for x in p)
@@ -78,13 +79,15 @@ def mesh_text(axes, levels, rng=None, bump=0.0, scale=1.0):
     """The ellipsoid as a PLY. bump: standard deviation of smooth bumps as a share of the size (the longest diameter)."""
     points, faces = icosphere(levels)
     size = 2 * max(axes)
-    waves = [([rng.gauss(0, 1) * 2 * math.pi / size for _ in range(3)], rng.uniform(0, 2 * math.pi)) for _ in range(24)] if bump else []
+    waves = [([rng.gauss(0, 1) * 2 * math.pi / size for _ in range(3)], rng.uniform(0, 2 * math.pi))
+             for _ in range(24)] if bump else []
     vertices = []
     for p in points:
         v = [a * x for a, x in zip(axes, p)]
         normal = [x / a for a, x in zip(axes, p)]
         length = math.sqrt(sum(n * n for n in normal))
-        height = bump * size * math.sqrt(2 / len(waves)) * sum(math.sin(sum(k * x for k, x in zip(w, v)) + f) for w, f in waves) if waves else 0
+        height = bump * size * math.sqrt(2 / len(waves)) * sum(math.sin(sum(k * x for k, x in zip(w, v)) + f)
+                                                               for w, f in waves) if waves else 0
         vertices.append([scale * (x + height * n / length) for x, n in zip(v, normal)])
     head = "ply\nformat ascii 1.0\nelement vertex %d\nproperty double x\nproperty double y\nproperty double z\nelement face %d\nproperty list uchar int vertex_indices\nend_header\n"
     return (head % (len(vertices), len(faces)) + "".join("%.17g %.17g %.17g\n" % tuple(v) for v in vertices)
@@ -129,7 +132,8 @@ def case(r, name, seed):
         arguments += ["--set", "fit.lobe=" + ["phong", "blinn-phong", "ggx"][seed % 3]]
     if kind == "images":
         share = float(value) / 255 or None
-        spec = r.spec(base, **{"render.bits": 8, "render.noise": share, "render.diffuse": [0.3, 0.4, 0.6], "render.seed": seed + 1})
+        spec = r.spec(base, **{"render.bits": 8, "render.noise": share, "render.diffuse": [0.3, 0.4, 0.6],
+                               "render.seed": seed + 1})
         return r.synth(spec), ["--train", train, "--source", "image"]
     folder, scene, spec = exact(r, base)
     noise = 0.3
@@ -230,7 +234,8 @@ def coverage(r, name, seeds=SEEDS, most=0.99):
         rms = math.sqrt(sum(d * d for d, _ in pairs) / len(pairs))
         sigma = sum(s for _, s in pairs) / len(pairs)
         holds = holds and 0.85 <= share <= most and refused <= seeds / 10
-        texts.append("%s %.0f %% (sigma %.3g px, error %.3g px%s)" % (model, 100 * share, sigma, rms, ", %d refused" % refused if refused else ""))
+        texts.append("%s %.0f %% (sigma %.3g px, error %.3g px%s)" % (model, 100 * share, sigma, rms,
+                                                                      ", %d refused" % refused if refused else ""))
     return Result("; ".join(texts), holds)
 
 
@@ -241,7 +246,8 @@ for title, name in [("noise of 0.3 px", "noise 0.3"), ("noise of 1 px", "noise 1
                     ("bumps of 0.02 %", "bump 0.02"), ("bumps of 0.2 %", "bump 0.2"),
                     ("scale + 0.5 %, stated", "scale 0.5"), ("a wrong lobe", "lobe 0.1"),
                     ("2 views", "views 2"), ("3 views", "views 3"), ("4 views", "views 4")]:
-    line("1.4", "95 %% bands, %s" % title, "85 to 99 % of the vertices inside, at most a tenth refused")(functools.partial(coverage, name=name))
+    line("1.4", "95 %% bands, %s" % title,
+         "85 to 99 % of the vertices inside, at most a tenth refused")(functools.partial(coverage, name=name))
 
 for title, name in [("pixels of 8 bits", "images 0"), ("pixels of 8 bits, noise of 2 grey levels", "images 2")]:
     line("1.4", "95 %% bands, %s" % title, "at least 85 % of the vertices inside, none refused; six runs")(

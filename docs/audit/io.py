@@ -168,7 +168,8 @@ def mirrored_spec(run):
     scene = json.loads((plain / "scene.json").read_text())
     poses = [f["camera_from_world"] for f in scene["frames"]]
     signs = (-1, 1, 1)
-    spec["path"] = {"cameras": [[[signs[i] * p[i][k] * signs[k] for k in range(3)] + [signs[i] * p[i][3]] for i in range(3)] + [p[3]] for p in poses]}
+    spec["path"] = {"cameras": [[[signs[i] * p[i][k] * signs[k] for k in range(3)] + [signs[i] * p[i][3]] for i in range(3)]
+                                + [p[3]] for p in poses]}
     spec["lights"][0]["position"][0] *= -1
     return run.synth(spec), poses
 
@@ -206,6 +207,7 @@ def focal(run):
 
 @line("1.6", "info: the same scene as it was rendered, and the path-traced sequences", "nothing found")
 def no_false_alarm(run):
-    folders = [changed(run, "not", lambda scene: None), run.shared / "data/cycles/sphere", run.shared / "data/cycles/plane_to_cylinder"]
+    folders = [changed(run, "not", lambda scene: None), run.shared / "data/cycles/sphere",
+               run.shared / "data/cycles/plane_to_cylinder"]
     found = [f for folder in folders if (folder / "scene.json").exists() for f in findings(run, folder)]
     return Result(found[0] if found else "nothing found", not found)

@@ -22,11 +22,13 @@ def lobe_spec(g, lobe, m, diffuse, bits):
 def detection_error(g, spec, *arguments):
     """Mean error of the contours that evaluate uses, against the exact ones."""
     scene = g.synth(spec)
-    e = g.evaluate(scene, "--models", "limit-angle", "--source", "image" if spec["render"]["bits"] != 32 else "radiance", *arguments)
+    e = g.evaluate(scene, "--models", "limit-angle", "--source", "image" if spec["render"]["bits"] != 32 else "radiance",
+                   *arguments)
     if "detection" in e:
         return e["detection"]["contour_error_pct"]["mean"]
     # A build that does not say it: `detect` finds the same contours.
-    found = json.loads(g.glint("detect", scene, "--source", "image" if spec["render"]["bits"] != 32 else "radiance", "--json", "-",
+    found = json.loads(g.glint("detect", scene, "--source", "image" if spec["render"]["bits"] != 32 else "radiance", "--json",
+                               "-",
                                check=True).stdout)
     return detected_against_truth(scene, found)
 
@@ -110,7 +112,8 @@ def shared_row(folder, scene, train, source, bound):
           "coverage at least 0.99")
     def check(g):
         root = g.shared / "data" / "cycles" / folder
-        done = g.glint("evaluate", root / (scene + ".json"), "--truth", root / "contours", "--models", "reflectance", "--train", train,
+        done = g.glint("evaluate", root / (scene + ".json"), "--truth", root / "contours", "--models", "reflectance", "--train",
+                       train,
                        "--source", source, "--json", "-", check=True, timeout=1800)
         e = json.loads(done.stdout)
         m = e["models"]["reflectance"]

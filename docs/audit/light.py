@@ -18,7 +18,8 @@ def given(runner, spec, keep=lambda frame: None, folder=None):
         for key in ("image", "radiance"):
             frame.pop(key, None)
         levels = json.loads((folder / "truth" / (frame["id"] + ".json")).read_text())["levels"]
-        frame["highlights"] = [{"light": frame["lights_on"][0], "level": float(q), "contour": c["points"], "peak": middle(c["points"])}
+        frame["highlights"] = [{"light": frame["lights_on"][0], "level": float(q), "contour": c["points"],
+                                "peak": middle(c["points"])}
                                for q, contours in levels.items() for c in contours]
         keep(frame)
     out = folder.parent / "given"
@@ -66,7 +67,8 @@ def is_behind(folder, evaluation, light, radius):
 def short_tube(runner, length, reach):
     """A tube over a sphere, seen from cameras that hardly move."""
     return runner.synth(runner.spec("light_sphere", **{
-        **SMALL, "lights": [{"id": "lamp", "segment": [[0.2, -1.3, 2.2 - length / 2], [0.2, -1.3 + length, 2.2]], "radius": 0.015}],
+        **SMALL, "lights": [{"id": "lamp", "segment": [[0.2, -1.3, 2.2 - length / 2], [0.2, -1.3 + length, 2.2]],
+                             "radius": 0.015}],
         "path.orbit.from": -1.2, "path.orbit.to": -1.2 + 2.4 * reach, "path.orbit.count": 8}))
 
 
@@ -78,7 +80,8 @@ def behind(runner):
             folder = short_tube(runner, length, reach)
             scene = given(runner, None, folder=folder)
             for seed in (1, 2, 3):
-                done, evaluation = json_of(runner, scene, "--models", "limit-angle", "--set", "light.limit_orders=1", "--noise-px", 0.6,
+                done, evaluation = json_of(runner, scene, "--models", "limit-angle", "--set", "light.limit_orders=1",
+                                           "--noise-px", 0.6,
                                            "--seed", seed)
                 for fit in fits(evaluation, "limit-angle"):
                     if fit["status"] == "ok":
@@ -92,12 +95,14 @@ def true_reason(runner):
     scene = given(runner, None, folder=short_tube(runner, 0.3, 0.2))
     reasons = []
     for seed in (1, 2, 3):
-        _, evaluation = json_of(runner, scene, "--models", "canonical", "--set", "light.limit_orders=1", "--noise-px", 0.6, "--seed", seed)
+        _, evaluation = json_of(runner, scene, "--models", "canonical", "--set", "light.limit_orders=1", "--noise-px", 0.6,
+                                "--seed", seed)
         reasons.append(evaluation["models"]["canonical"]["reason"] or "answers")
     return Result("; ".join(sorted(set(reasons))), all("too few views" not in r or "could not be used" in r for r in reasons))
 
 
-@line("1.5", "dual and primal that explain nothing", "refused where more than a tenth of the contour's radius is left; 6 % are an answer")
+@line("1.5", "dual and primal that explain nothing",
+      "refused where more than a tenth of the contour's radius is left; 6 % are an answer")
 def explained(runner):
     # Every second contour is smaller by a share of its radius, the others larger: no limit angle leaves less than about that share of both.
     # The first six frames train, so that both sizes do.
@@ -126,7 +131,8 @@ def tiny_highlight(runner):
     folder = given(runner, runner.spec("light_sphere", **{"path.orbit.count": 12}), tiny)
     done, evaluation = json_of(runner, folder, "--models", "limit-angle")
     fit = fits(evaluation, "limit-angle")[0]
-    return Result(f"{fit['status']}, limit angle {fit['limit_angle_deg']} deg", fit["status"] == "failed" and done.returncode == 3)
+    return Result(f"{fit['status']}, limit angle {fit['limit_angle_deg']} deg",
+                  fit["status"] == "failed" and done.returncode == 3)
 
 
 @line("1.5", "residual_px and condition of limit-angle and reflectance", "a number per training view, and one")
@@ -180,16 +186,19 @@ def skew(runner):
     return Result(f"{percent(errors[1])}, without skew {percent(errors[0])}", errors[1] <= 1.2 * errors[0] + 1e-3)
 
 
-@line("1.7", "extended light at infinity", "limit-angle with the extent has at most half the error of one limit angle, four seeds of 0.3 px noise at 96 x 72")
+@line("1.7", "extended light at infinity",
+      "limit-angle with the extent has at most half the error of one limit angle, four seeds of 0.3 px noise at 96 x 72")
 def infinity(runner):
     far = 1e7
     folder = given(runner, runner.spec("light_ellipsoid", **{**SMALL, "lights": [
-        {"id": "lamp", "radius": 0.001 * far, "segment": [[0.42 * far, -0.35 * far, 0.87 * far], [0.56 * far, -0.54 * far, 0.63 * far]]}]}))
+        {"id": "lamp", "radius": 0.001 * far,
+         "segment": [[0.42 * far, -0.35 * far, 0.87 * far], [0.56 * far, -0.54 * far, 0.63 * far]]}]}))
     worst, errors = 0, []
     for seed in (1, 2, 3, 4):  # one of them settles at infinity itself
         found = []
         for orders in (0, 1):
-            _, evaluation = json_of(runner, folder, "--models", "limit-angle", "--train", "spread:6", "--set", f"light.limit_orders={orders}",
+            _, evaluation = json_of(runner, folder, "--models", "limit-angle", "--train", "spread:6", "--set",
+                                    f"light.limit_orders={orders}",
                                     "--noise-px", 0.3, "--seed", seed)
             m = evaluation["models"]["limit-angle"]
             found.append(m["summary"]["contour_error_pct"]["mean"] if m["status"] == "ok" else math.inf)
@@ -244,7 +253,8 @@ def counted(runner):
 def no_images(runner):
     folder = given(runner, runner.spec("light_sphere"))
     picture = folder / "frame.png"
-    done = runner.glint("render", folder, "--view", "frame", "--frame", "7", "--models", "limit-angle", "--size", "640x480", "-o", picture)
+    done = runner.glint("render", folder, "--view", "frame", "--frame", "7", "--models", "limit-angle", "--size", "640x480",
+                        "-o", picture)
     if done.returncode:
         return Result(done.stderr.strip(), False)
     import zlib
@@ -257,7 +267,8 @@ def no_images(runner):
     width, height, channels = int.from_bytes(header[:4], "big"), int.from_bytes(header[4:8], "big"), 3 if header[9] == 2 else 4
     raw, previous, red = zlib.decompress(parts), bytearray(width * channels), 0
     for y in range(height):
-        kind, row = raw[y * (width * channels + 1)], bytearray(raw[y * (width * channels + 1) + 1:(y + 1) * (width * channels + 1)])
+        kind, row = raw[y * (width * channels + 1)], bytearray(raw[y * (width * channels + 1)
+                                                                   + 1:(y + 1) * (width * channels + 1)])
         for x in range(len(row)):
             a, b, c = row[x - channels] if x >= channels else 0, previous[x], previous[x - channels] if x >= channels else 0
             p = a + b - c

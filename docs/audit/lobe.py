@@ -105,7 +105,8 @@ def long_lamp(runner):
 
 
 def levels(runner, camera):
-    spec = runner.spec("lobe_ellipsoid", **{"render.reflectance": "ggx", "render.roughness": 0.1, "path.orbit.count": 16, **camera})
+    spec = runner.spec("lobe_ellipsoid",
+                       **{"render.reflectance": "ggx", "render.roughness": 0.1, "path.orbit.count": 16, **camera})
     scene = exact_scene(runner, spec, (0.5, 0.3, 0.7))
     known = runner.glint("settings").stdout
     several = ("--set", "fit.evidence=levels") if "fit.evidence" in known else ()

@@ -72,7 +72,9 @@ for bump in (0.02, 0.2):
         functools.partial(bumps, bump=bump, train="first:6", noise=0, share=0.9))
 line("2.6", "refined normals, bumps of 0.2 %, 0.3 px noise, spread:6", "mean error at most half of that without")(
     functools.partial(bumps, bump=0.2, train="spread:6", noise=0.3, share=0.5))
-line("2.6", "refined normals, exact shapes", "within 0.01 percentage points of the error without")(functools.partial(nothing_wrong, bump=None, noise=0))
-line("2.6", "refined normals, meshes without bumps", "within 0.01 percentage points of the error without")(functools.partial(nothing_wrong, bump=0, noise=0))
+line("2.6", "refined normals, exact shapes",
+     "within 0.01 percentage points of the error without")(functools.partial(nothing_wrong, bump=None, noise=0))
+line("2.6", "refined normals, meshes without bumps",
+     "within 0.01 percentage points of the error without")(functools.partial(nothing_wrong, bump=0, noise=0))
 line("2.6", "refined normals, meshes without bumps, 0.3 px noise", "within 0.01 percentage points of the error without")(
     functools.partial(nothing_wrong, bump=0, noise=0.3))

@@ -29,12 +29,12 @@ class Actions : public QObject {
   QAction* add(const QString& id, QMenu* menu, const QString& title, std::function<void()> run) {
     return add(id, menu, title, std::move(run), Look());
   }
-  /// The same for one that can be on or off; `run` gets the new state. Who adds it keeps its check mark true.
+  /// The same for one that can be on or off; `run` gets the new state. The caller keeps its check mark current.
   QAction* addToggle(const QString& id, QMenu* menu, const QString& title, std::function<void(bool)> run, const Look& look);
   /// Takes an action that exists already (undo, the toggle of a dock) into the list, at the end of a menu.
   QAction* adopt(const QString& id, QMenu* menu, QAction* action, const Look& look);
 
-  QAction* find(const QString& id) const;  ///< null when there is none
+  QAction* find(const QString& id) const;  ///< null for an unknown id
   QList<QAction*> all() const { return actions_; }
   static QString id(const QAction* action);
   /// "View › Layout › Debug": where the menus have it.

@@ -39,7 +39,7 @@ class Complaint : public QLabel {
     resize(width, heightForWidth(width));
     QPoint at = box->mapTo(window(), QPoint(0, box->height() + 2));
     if (at.y() + height() > window()->height()) at.setY(box->mapTo(window(), QPoint(0, 0)).y() - height() - 2);
-    // Inside of the window also where the box has been scrolled out of it.
+    // Inside of the window even if the box has been scrolled out of it.
     move(std::clamp(at.x(), 0, std::max(0, window()->width() - width)),
          std::clamp(at.y(), 0, std::max(0, window()->height() - height())));
     show();

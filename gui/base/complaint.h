@@ -7,8 +7,8 @@ class QWidget;
 
 namespace glint::gui {
 
-/// Says below a box what is wrong with what was typed there. It goes when something is typed there again, or after some seconds; a
-/// window shows one at a time, a QLabel named "complaint".
+/// Shows below a box what is wrong with the typed text. It goes when the user types there again, or after some seconds;
+/// a window shows one at a time, a QLabel named "complaint".
 void complain(QWidget* box, const QString& words);
 
 }  // namespace glint::gui

@@ -13,13 +13,13 @@
 
 namespace glint::gui {
 
-/// Whose pictures: those of a scene's files, or those that a what-if renders in their place.
+/// The source of pictures: a scene's files, or a what-if that renders them.
 struct FramePictures {
   std::shared_ptr<const Scene> scene;
   std::shared_ptr<const Inspection> synthesis{};  ///< null: the scene's files
   QString key{};                                  ///< pictureKey(); "" for files
 
-  /// From now on those that belong to results on the same scene; null: as captured. False when that changes nothing.
+  /// From now on those that belong to results on the same scene; null: as captured. False if that changes nothing.
   bool follow(std::shared_ptr<const Inspection> inspection);
   bool contain(int frame) const { return scene && frame >= 0 && frame < int(scene->frames.size()); }
   const Frame& frame(int index) const { return scene->frames[std::size_t(index)]; }
@@ -30,8 +30,8 @@ struct FramePictures {
 /// photographOf return and throw.
 Outcome<Image> decodeFrame(const FramePictures& of, int frame, FrameSource source, int every, const ProgressFn& going);
 
-/// The whole frames that were decoded for the screen last, shared by all that show them. A frame that is looked at stays as long
-/// as there is room for it; one that only something small was made of stays while little else is there. Those of a scene that is
+/// The whole frames that were decoded for the screen last, shared by all that show them. A frame on screen stays as long
+/// as there is room for it; one decoded for something small stays only while there is plenty. Those of a scene that is
 /// gone, and those of another what-if on the same scene, make room first. Thread-safe.
 class DecodedFrames {
  public:
@@ -40,10 +40,10 @@ class DecodedFrames {
 
   /// @param mostBytes  of all images that are kept.
   explicit DecodedFrames(int mostBytes, Decode decode = decodeFrame);
-  Held find(const FramePictures& pictures, int frame, FrameSource source);  ///< null where it is not there
-  /// For a view: waits for nobody. @return, throws  as decodeFrame.
+  Held find(const FramePictures& pictures, int frame, FrameSource source);  ///< null if it is missing
+  /// Serves a view: does not wait. @return, throws  as decodeFrame.
   Outcome<Held> whole(const FramePictures& pictures, int frame, FrameSource source, const ProgressFn& going = {});
-  /// For a thumbnail, a texture, a value: a file that is being read for a view is waited for. What a what-if renders comes at
+  /// Serves a thumbnail, a texture, a value: waits for a file that is being read for a view. What a what-if renders comes at
   /// every n-th pixel unless the whole is there, and is not kept.
   Outcome<Held> part(const FramePictures& pictures, int frame, FrameSource source, int every);
   int bytes() const {

@@ -12,7 +12,7 @@ namespace glint::gui {
 /// Asked again before its turn, an owner draws once, with what it asked for last. One that is deleted loses its turn.
 void drawInTurn(QObject* owner, std::function<void()> draw);
 
-/// Somebody waits for a turn.
+/// A view waits for a turn.
 bool drawingsWait();
 
 }  // namespace glint::gui

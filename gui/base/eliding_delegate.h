@@ -18,8 +18,8 @@ class ElidingDelegate : public QStyledItemDelegate {
   bool isCut(const QStyleOptionViewItem& option, const QModelIndex& index) const;
 };
 
-/// For trees of sentences: a row is as high as its text, wrapped at the width that the tree has for it. Qt's own delegate asks for one
-/// line, whatever setWordWrap() says, and cuts it.
+/// For trees of sentences: a row is as high as its text, wrapped at the width that the tree has for it. Qt's own delegate asks
+/// for one line, whatever setWordWrap() says, and cuts it.
 class WrappingDelegate : public QStyledItemDelegate {
   Q_OBJECT
  public:

@@ -30,7 +30,7 @@ QString nameIn(const QString& tip) {
   return text.section(end, 0, 0).trimmed();
 }
 
-/// What has no words of its own is called by its tip, also when that changes. A name that somebody gave it stays.
+/// What has no words of its own is called by its tip, even when that changes. A given name stays.
 void nameByTip(QWidget* widget) {
   const auto* button = qobject_cast<const QAbstractButton*>(widget);
   const bool wordless = button ? button->text().isEmpty() : holdsAValue(widget) && !qobject_cast<const QAbstractSpinBox*>(widget);
@@ -67,7 +67,7 @@ class InputRules : public QObject {
 
  private:
   static void polish(QObject* watched) {
-    // The label of tool tips gets its texts from plainTip and setRichTip. It is known by its class: it is polished before it has a name.
+    // plainTip and setRichTip write the tool tips' label. Its class tells it, because it is polished before it has a name.
     if (auto* label = qobject_cast<QLabel*>(watched);
         label && label->textFormat() == Qt::AutoText && !label->inherits("QTipLabel"))
       label->setTextFormat(Qt::PlainText);

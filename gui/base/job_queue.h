@@ -28,7 +28,7 @@ class JobEnd {
  public:
   bool stopped = false;    ///< its work threw Stopped, or it was stopped before it began
   bool overtaken = false;  ///< meanwhile something newer was asked for
-  /// What its work threw, as one line; "" = nothing. Where nobody asks for it, unexpected() tells it: no failure gets lost.
+  /// What its work threw, as one line; "" = nothing. If nothing asks for it, unexpected() reports it: no failure gets lost.
   const QString& failure() const { return asked_ = true, failure_; }
 
  private:
@@ -44,13 +44,13 @@ struct JobResult : JobEnd {
 };
 
 enum class Asks {
-  AsWell,   ///< beside what was asked for before
-  Newest,   ///< in place of it: what waits is dropped, what runs can ask whether it was overtaken
+  AsWell,   ///< in addition to earlier jobs
+  Newest,   ///< replaces earlier jobs: waiting ones are dropped, running ones can ask whether they were overtaken
   Instead,  ///< and what runs is stopped
   Lasting   ///< as AsWell, and nothing that is asked for later overtakes or stops it
 };
 
-/// What a job knows, on its thread, of who asked for it.
+/// What a job knows, on its thread, of its requester.
 class JobToken {
  public:
   bool stopped() const { return job_->stopped; }
@@ -105,24 +105,24 @@ class JobQueue : public QObject, private QRunnable {
     post(
         result, std::move(fill), [result, done = std::move(done)]() mutable { done(*result); }, asks);
   }
-  /// Nothing that was asked for is of use any more: what waits is dropped, what runs is overtaken.
+  /// No job is needed any longer: drops waiting ones, overtakes running ones.
   void drop() { overtake(false), tellBusy(); }
-  /// What was asked for ends soon, and as stopped.
+  /// All jobs end soon, as stopped.
   void stop() {
     for (const auto& job : jobs_) job->stopped = true;
   }
-  /// Until everything that was asked for has run; what it tells comes later, as always.
+  /// Waits until all jobs have run; their ends are reported later, as always.
   void wait() {
     std::unique_lock<std::mutex> lock(mutex_);
     rested_.wait(lock, [this] { return !running_; });
   }
-  /// Drops what waits, stops what runs and waits for it.
+  /// Drops waiting jobs, stops running ones and waits for them.
   void close() { overtake(true, true), wait(); }
   /// Jobs are waiting or running, or the end of the last one is being told.
   bool busy() const { return !jobs_.empty(); }
 
  signals:
-  void busyChanged(bool busy);  ///< true when a job is asked for; false when the end of the last one has been told
+  void busyChanged(bool busy);  ///< true when a job is asked for; false if the end of the last one has been told
 
  private:
   using Job = JobToken::Job;
@@ -135,15 +135,15 @@ class JobQueue : public QObject, private QRunnable {
   }
 
   const Rank rank_;
-  std::vector<std::shared_ptr<Job>> jobs_;  ///< asked for, and their end not told; owner's thread only
+  std::vector<std::shared_ptr<Job>> jobs_;  ///< asked for, their end not yet reported; owner's thread only
   bool toldBusy_ = false;
-  std::mutex mutex_;  ///< of what follows
+  std::mutex mutex_;  ///< guards the members below
   std::condition_variable rested_;
   std::deque<std::shared_ptr<Job>> waiting_;
   bool running_ = false;
 };
 
-/// Failures of jobs that no panel has a place for, for the window to tell: each cause once, not once for each frame.
+/// Failures of jobs without a place in a panel, for the window to report: each cause once, not once per frame.
 class Unexpected : public QObject {
   Q_OBJECT
  public:

@@ -37,7 +37,7 @@ class LatestJob {
         },
         Asks::Newest);
   }
-  /// Nothing of what was asked for is of use any more.
+  /// No job is needed any longer.
   void drop() { queue_.drop(), awaited_ = false; }
   bool busy() const { return queue_.busy(); }
   /// An answer will be delivered: the newest job runs and was not dropped. (A dropped one may still be busy.)

@@ -8,9 +8,9 @@
 
 namespace glint::gui {
 
-/// A spin box for one number: writes it as short as it is ("1e-10", not 0.0000000001) and with a point in every locale, reads what
-/// numberFromText reads, and changes its value only when typing is finished. Where what was typed cannot be taken, it says why, below
-/// the box, and keeps its value. It shows about five digits, so that the unit stays in sight, and all of them while it
+/// A spin box for one number: writes it as short as it is ("1e-10", not 0.0000000001) and with a point in every locale, reads
+/// what numberFromText reads, and changes its value only when typing is finished. If the typed text is wrong, it says
+/// why, below the box, and keeps its value. It shows about five digits, so that the unit stays in sight, and all of them while it
 /// is edited and in its tool tip; what is shown shortened stays exact unless it is changed.
 class NumberBox : public QDoubleSpinBox {
   Q_OBJECT
@@ -39,7 +39,7 @@ class NumberBox : public QDoubleSpinBox {
   bool whole_ = false;  ///< takes whole numbers only
 };
 
-/// For a number box that is of no setting.
+/// The range of a number box that belongs to no setting.
 ParamSpec numberRange(double min, double max, double step);
 ParamSpec wholeRange(int min, int max);
 

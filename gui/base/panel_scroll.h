@@ -16,7 +16,7 @@ class PanelScroll : public QScrollArea {
   PanelScroll(QWidget* content, QSize least, Height height = Height::Fills);
   QSize minimumSizeHint() const override;
   QSize sizeHint() const override;
-  /// Of what hugs its content: no higher than this, px; the rest scrolls.
+  /// Limits the height of a panel that hugs its content, px; the rest scrolls.
   void setMost(int height);
 
  protected:

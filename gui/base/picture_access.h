@@ -9,21 +9,21 @@ class QWidget;
 
 namespace glint::gui {
 
-/// Things in a picture that can be chosen one by one, such as the frames of a strip. All are asked only when a screen reader wants to know.
+/// Things in a picture that can be chosen one by one, such as the frames of a strip. Only screen readers ask for them.
 struct PictureParts {
   std::function<int()> count;
   std::function<QString(int part)> name;
-  std::function<QRect(int part)> place;  ///< in the widget's coordinates; empty where it is out of sight
+  std::function<QRect(int part)> place;  ///< in the widget's coordinates; empty if it is out of sight
   std::function<int()> selected;         ///< -1 = none
   std::function<void(int part)> choose;
 };
 
-/// A painted widget tells screen readers what it is and what it shows in words, which would otherwise hear of an empty area.
+/// Makes a painted widget tell screen readers what it is and shows, in words; else they report an empty area.
 /// @param name   what it is, unless the widget has an accessible name of its own
-/// @param words  what it shows by now; asked for when somebody listens, never else
+/// @param words  what it shows by now; asked for only while a screen reader listens
 void describePicture(QWidget* picture, const QString& name, std::function<QString()> words, PictureParts parts = {});
 
-/// Another part of the picture is selected: said where somebody listens and the picture has the keyboard.
+/// Another part of the picture is selected: said if a screen reader listens and the picture has the keyboard.
 void announceSelection(QWidget* picture);
 
 }  // namespace glint::gui

@@ -9,8 +9,8 @@ class QPainter;
 
 namespace glint::gui {
 
-/// Paints charts and overlays with a QPainter, on screen or into SVG and PDF. Lines are cut at their box here: Qt's vector formats
-/// know no clipping. Texts have the font of the QPainter. Pen, brush and font of the QPainter change.
+/// Paints charts and overlays with a QPainter, on screen or into SVG and PDF. Lines are cut at their box here: Qt's vector
+/// formats know no clipping. Texts have the font of the QPainter. Pen, brush and font of the QPainter change.
 class QtPainter : public draw::Painter {
  public:
   explicit QtPainter(QPainter& painter);

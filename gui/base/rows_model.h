@@ -9,7 +9,7 @@
 
 namespace glint::gui {
 
-/// A plain table for reading: rows of texts, each with what it is sorted by.
+/// A plain table for reading: rows of texts, each with its sort key.
 class RowsModel : public QAbstractTableModel {
   Q_OBJECT
  public:
@@ -18,7 +18,7 @@ class RowsModel : public QAbstractTableModel {
     QVariant sort = {};  ///< invalid = by the text
     QColor colour = {};  ///< invalid = the usual one
     QString tip = {};
-    bool number = false;  ///< stands on the right
+    bool number = false;  ///< aligned right
   };
   struct Row {
     std::vector<Cell> cells;

@@ -6,7 +6,7 @@
 
 namespace glint::gui {
 
-/// "updating…", or "out of date" once nothing runs any more, over a corner of a panel whose numbers are of an older request.
+/// "updating…", or "out of date" once nothing runs, over a corner of a panel whose numbers belong to an older request.
 /// Appears after a moment, so that results that come sooner leave no flicker, and takes no clicks.
 class StaleBadge : public QLabel {
   Q_OBJECT

@@ -11,8 +11,8 @@
 
 namespace glint::gui {
 
-/// For people: control characters, marks that turn the direction of writing, and bytes that are not UTF-8 are shown escaped, whoever
-/// wrote the text. Line ends and tabs stay.
+/// Text for people: control characters, marks that turn the direction of writing, and bytes that are not UTF-8 are shown escaped,
+/// whatever its origin. Line ends and tabs stay.
 QString toQString(const std::string& s);
 /// The same for a name: line ends and tabs are shown escaped, too, so that it stays one line.
 QString nameText(const std::string& name);
@@ -21,9 +21,9 @@ QString lightText(const std::string& id);
 QString lightTitle(const std::string& id);
 /// A path or another text that comes as QString, for people: as nameText.
 QString shownText(const QString& text);
-/// For what reads it back: paths, keys, what goes to the clipboard. Not for labels.
+/// Use it for what is read back: paths, keys, the clipboard. Not for labels.
 inline QString exactQString(const std::string& s) { return QString::fromUtf8(s.data(), int(s.size())); }
-/// As the text of a menu's entry, a tab or a button, where a single & would underline the letter after it.
+/// The text of a menu's entry, a tab or a button, where a single & would underline the letter after it.
 QString menuText(QString text);
 QString joined(const std::vector<std::string>& words);
 

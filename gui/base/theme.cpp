@@ -13,7 +13,7 @@
 #include "core/draw/contrast.h"
 #include "gui/base/clear_style.h"
 
-// The icons are compiled into a static library: without this call the linker leaves them out. Must stand outside of namespaces.
+// The icons are compiled into a static library: without this call the linker leaves them out. Must be outside of namespaces.
 static void initIcons() { Q_INIT_RESOURCE(icons); }
 
 namespace glint::gui {
@@ -127,7 +127,7 @@ void keepTheme(Theme theme) {
   QSettings().setValue(QLatin1String(kThemeKey), QLatin1String(theme == Theme::Light ? kLight : kDark));
 }
 QIcon icon(const QString& name) { return QIcon(new SvgIconEngine(name)); }
-/// White stands on it, where a row or a box is selected.
+/// White text is on it, where a row or a box is selected.
 QColor accentColour() { return toQColor(draw::readableOn({1, 1, 1}, draw::kActiveView)); }
 QColor focusColour() { return theTheme == Theme::Dark ? QColor(0x8c, 0xc4, 0xff) : QColor(0x0b, 0x57, 0xa4); }
 QColor warningColour() { return theTheme == Theme::Dark ? QColor(0xe0, 0xa8, 0x30) : QColor(0x8f, 0x5e, 0x00); }

@@ -16,7 +16,7 @@ enum class Theme { Light, Dark };
 /// Sets style, palette and style sheet of the whole program; icons made afterwards match.
 void applyTheme(QApplication& app, Theme theme);
 Theme currentTheme();
-/// The one that the user chose last, in this program or an earlier run; dark where nobody chose.
+/// The user's last choice, in this run or an earlier one; dark without a choice.
 Theme keptTheme();
 void keepTheme(Theme theme);
 /// One of resources/icons in the theme's text colour, with a faded disabled state. Sharp at every device pixel ratio.

@@ -5,9 +5,9 @@
 
 namespace glint::gui {
 
-/// Gives the keys of undo and redo to the window where the field with the keyboard's focus has nothing of its own to take back:
-/// Qt's fields swallow them always, so that a value that has just been typed could not be undone. What is being typed and not
-/// entered yet is still the field's. Lives as long as its parent; of the whole application.
+/// Gives the keys of undo and redo to the window if the field with the keyboard's focus has nothing to undo itself:
+/// Qt's fields always swallow them, so that an entered value could not be undone. Text that is being typed and not
+/// entered yet remains the field's. Lives as long as its parent; of the whole application.
 class UndoKeys : public QObject {
   Q_OBJECT
  public:

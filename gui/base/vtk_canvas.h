@@ -31,7 +31,7 @@ class VtkCanvas : public QWidget {
   vtkGenericOpenGLRenderWindow* renderWindow() const { return window_; }
   /// It has an OpenGL context; not before it was first shown, and nowhere without OpenGL.
   bool ready() const { return adapter_ != nullptr; }
-  /// Draws at once, also before the first turn; for who needs the picture or its coordinates now.
+  /// Draws at once, also before the first turn; if the picture or its coordinates are needed now.
   void renderNow();
 
  protected:
@@ -40,7 +40,7 @@ class VtkCanvas : public QWidget {
   void resizeEvent(QResizeEvent* event) override;
 
  private:
-  bool prepare();  ///< false where OpenGL is missing
+  bool prepare();  ///< false if OpenGL is missing
   void fitWindow();
   void drawNext();
   bool upToDate() const;  ///< the last picture has the widget's size

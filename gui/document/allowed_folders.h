@@ -9,10 +9,10 @@
 
 namespace glint::gui {
 
-// What a person allowed a session or scene to name outside of its own folders. It is kept with the program's settings, never in the file:
-// a file from others cannot give itself rights.
+// What a person allowed a session or scene to name outside of its own folders. It is kept with the program's settings, never in
+// the file: a file from others cannot give itself rights.
 
-/// Folders that `file` may name; empty where nobody was asked.
+/// Folders that `file` may name; empty if the user was not asked.
 QStringList allowedFolders(const QString& file);
 /// Remembers a yes. The oldest of several hundred is forgotten.
 void allowFolder(const QString& file, const QString& folder);

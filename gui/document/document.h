@@ -26,13 +26,13 @@ struct ViewState {
   InspectionRequest request;
   draw::Selection selection;
   std::map<std::string, bool> layers;  ///< scene layers by their name, frame overlays as "frame/NAME"
-  std::map<std::string, std::string>
-      options;  ///< how views show things, as "VIEW/NAME": "frame/gamma", "scene/colour-by"; absent = default
+  /// How views show things, as "VIEW/NAME": "frame/gamma", "scene/colour-by"; absent = default.
+  std::map<std::string, std::string> options;
 };
 
 /// What is on screen: the undoable state, the scene that it belongs to and the newest results.
 /// Widgets read it, listen to its signals and change it through the actions below; each action is one step of
-/// undo, and steps of one gesture (a slider drag, scrubbing) merge; playing leaves none. An action that changes nothing leaves no step.
+/// undo, and steps of one gesture (a slider drag, scrubbing) merge; playing and actions without a change leave no step.
 class Document : public QObject {
   Q_OBJECT
  public:
@@ -56,8 +56,8 @@ class Document : public QObject {
   /// A number that no gesture had before.
   int newGesture() { return ++gesture_; }
 
-  /// What every view shows: the newest results, or the pinned ones while those are flipped to; null before the first. They may belong to
-  /// an older request: see stale().
+  /// What every view shows: the newest results, or the pinned ones while those are flipped to; null before the first. They may
+  /// belong to an older request: see stale().
   std::shared_ptr<const Inspection> inspection() const { return pinnedShown_ ? pinned_ : inspection_; }
   /// The newest results, whatever is shown: what files are written from.
   std::shared_ptr<const Inspection> computed() const { return inspection_; }
@@ -69,7 +69,7 @@ class Document : public QObject {
   RowsPtr pinnedRows() const { return rowsOf(pinned_); }
   /// Views show the pinned results. A change of the request ends that.
   bool pinnedShown() const { return pinnedShown_; }
-  /// Pins the newest results; false while there are none.
+  /// Pins the newest results; false before any exist.
   bool pin();
   void unpin();
   void showPinned(bool shown);
@@ -108,7 +108,7 @@ class Document : public QObject {
 
   /// Replaces everything; the undo history starts anew. A training specification that does not fit the scene throws InputError.
   void open(const Opened& opened);
-  /// Path of the session file, "" while there is none.
+  /// Path of the session file, "" without a file.
   const QString& sessionFile() const { return sessionFile_; }
   const QString& inputFile() const { return inputFile_; }
   Opened toSave() const;
@@ -135,7 +135,7 @@ class Document : public QObject {
   /// @param mergeKey  equal texts that are not empty merge into one step.
   void setWhatIf(const glint::WhatIf& whatIf, const QString& text, const QString& mergeKey = {});
   void setRole(int frame, FrameRole role);
-  /// Of a selection that was changed, not made: a spurious highlight stays selected only as long as its frame, model and light do.
+  /// For a selection that was changed, not made: a spurious highlight stays selected only while its frame, model and light do.
   void select(draw::Selection selection, int gesture = 0);
   /// As it is: what was clicked names its spurious highlight itself.
   void selectExactly(const draw::Selection& selection, int gesture = 0);
@@ -153,14 +153,14 @@ class Document : public QObject {
 
  signals:
   void sceneOpened();  ///< another scene
-  /// Results are stale until the next setInspection; not stale where those of this request were still kept: inspectionChanged() follows.
+  /// Results are stale until the next setInspection, unless those of this request were kept: then inspectionChanged() follows.
   void requestChanged();
   void selectionChanged();
   void layersChanged();
   void optionsChanged();  ///< ViewState::options
   void inspectionChanged();
-  void
-  pinnedChanged();  ///< other results are pinned, or none, or views flipped to them or back; inspectionChanged() follows a flip
+  /// Other results are pinned, or none, or views flipped to them or back; inspectionChanged() follows a flip.
+  void pinnedChanged();
   void brushedChanged();
   void frameInspectionChanged();  ///< results for the selected frame came first; inspectionChanged() follows later
   void staleChanged(bool stale);
@@ -196,7 +196,7 @@ class Document : public QObject {
   std::shared_ptr<const Influence> influence_;
   InspectionRequest influenceFor_;
   bool stale_ = false;
-  bool unsaved_ = false;  ///< opened as it is stored nowhere: recovered, or with its scene in another place
+  bool unsaved_ = false;  ///< opened in a state that no file holds: recovered, or with its scene moved
   int gesture_ = 0;
   QUndoStack undo_;
 };

@@ -46,7 +46,7 @@ struct Opened {
 /// Everything that the desktop program asks of `core`. `coreEngine()` is the real one; tests replace single
 /// functions to make a run long, to count runs or to fail. All of them may be called from a worker thread.
 struct Engine {
-  /// InputError (file, place, reason) when the input cannot be used; MissingScene for a session whose scene is not there,
+  /// InputError (file, place, reason) if the input cannot be used; MissingScene for a session whose scene is missing,
   /// MissingMesh for a scene whose mesh is not.
   /// @param instead  where these are now.
   std::function<Opened(const std::string& path, const Relinked& instead)> open;
@@ -74,7 +74,7 @@ struct Engine {
       tradeoff;
   /// As glint::measureInfluence: throws Stopped.
   std::function<Influence(const Inspection&, const ProgressFn&)> influence;
-  /// The convention report, with the check of cameras by their highlights; may be empty: then there is none. Throws Stopped and
+  /// The convention report, with the check of cameras by their highlights; empty without any findings. Throws Stopped and
   /// InputError.
   std::function<ConventionReport(const Scene&, const ProgressFn&)> check;
   /// What `glint lights` finds in a scene; may be empty: then nothing is found. Throws Stopped and InputError.
@@ -86,7 +86,7 @@ struct Engine {
   std::function<Outcome<LampsReport>(const BallQuestion&, const ProgressFn&)> ballLamps;
   /// As glint::parseTrainSpec: InputError for a specification that does not parse.
   std::function<TrainSpec(const std::string&, const Scene&)> parseTrain;
-  /// Writes a session file atomically; InputError when it cannot be written, Stopped. It hashes every input file, so it takes
+  /// Writes a session file atomically; InputError if it cannot be written, Stopped. It hashes every input file, so it takes
   /// its time. @param results may be null.
   std::function<void(const Opened&, const Inspection* results, const std::string& path, const ProgressFn&)> save;
   /// Writes what is needed to go on after a crash, quickly: no hashes, no results. `open` reads it as `Opened::unsaved`.

@@ -9,9 +9,9 @@
 namespace glint::gui {
 
 /// A PNG with the session inside (text under the key "glint-session"), so that opening the picture opens what it shows. The
-/// session's paths are relative to the picture's folder. Atomic. InputError when it cannot be written.
+/// session's paths are relative to the picture's folder. Atomic. InputError if it cannot be written.
 void writeFigure(const QImage& picture, const Opened& state, const Engine& engine, const QString& file);
-/// The session inside a picture; "" when it holds none.
+/// The session inside a picture; "" if it holds none.
 QString sessionInFigure(const QString& picture);
 
 }  // namespace glint::gui

@@ -66,7 +66,7 @@ bool isOfInput(const Document& document, const QString& file) {
   const std::vector<fs::path> inputs = filesOfInput(document);
   const fs::path wanted = file.toStdString();
   return std::any_of(inputs.begin(), inputs.end(), [&](const fs::path& input) {
-    std::error_code ignored;  // what is not there is no input
+    std::error_code ignored;  // what is missing is no input
     return fs::equivalent(input, wanted, ignored);
   });
 }

@@ -11,9 +11,9 @@
 
 namespace glint::gui {
 
-/// The last finished results of the open scene, by the whole request that they answer: undo, redo and a setting that is flipped back
-/// show them at once. Files that change on disk do not count until the scene is opened again, as in a run, which takes over what
-/// an earlier run has read.
+/// The last finished results of the open scene, by the whole request that they answer: undo, redo and a setting that is flipped
+/// back show them at once. Files that change on disk do not count until the scene is opened again, as in a run, which takes over
+/// what an earlier run has read.
 class RecentResults {
  public:
   /// Those on screen, those before and after a step to either side of them, and room for one detour. They share what the change
@@ -23,7 +23,7 @@ class RecentResults {
   using Leads = std::function<bool(const InspectionRequest&)>;
   /// @param leads  whether a step of undo or redo leads to a request: positions that a slider only passed go first.
   void keep(std::shared_ptr<const Inspection> results, const InspectionRequest& computedFor, const Leads& leads);
-  /// Null where none are kept.
+  /// Null if none are kept.
   std::shared_ptr<const Inspection> find(const InspectionRequest& request);
   void clear() { kept_.clear(); }
 

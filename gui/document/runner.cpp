@@ -65,7 +65,7 @@ void Runner::open(const std::string& path, const Relinked& instead) {
     end(result);
     if (!result.failure().isEmpty()) emit openFailed();
   };
-  jobs_.start(work, done, Asks::Instead);  // results of the scene on screen are of no use any more; a save is
+  jobs_.start(work, done, Asks::Instead);  // results of the scene on screen are no longer needed; a save is
 }
 
 void Runner::inspect(std::shared_ptr<const Scene> scene, const InspectionRequest& request, InspectionPtr previous, int frame) {
@@ -149,7 +149,7 @@ void Runner::compute(About about, Work work, void (Runner::*tell)(const std::sha
   jobs_.start(
       [about, work = std::move(work)](const JobToken& token) mutable {
         const auto result = std::make_shared<const Result>(work(token, about));
-        if (token.stopped()) throw Stopped{};  // after its last report: nobody waits for it any more
+        if (token.stopped()) throw Stopped{};  // after its last report: nothing waits for it any longer
         return result;
       },
       [this, about, tell](const JobResult<std::shared_ptr<const Result>>& result) {

@@ -66,8 +66,8 @@ class Runner : public QObject {
 
   /// @param instead  where inputs are now that are not where the session or scene says.
   void open(const std::string& path, const Relinked& instead = {});
-  /// Answers with finished(), and before it, where the engine can, with frameFinished(): twice where the first look at quick models is worth
-  /// a step.
+  /// Answers with finished(), and before it, where the engine can, with frameFinished(): twice where the first look at quick
+  /// models is worth a step.
   /// @param previous  earlier results on the same scene, so that unchanged stages are not repeated; may be null.
   /// @param frame  what the user looks at: computed first; -1 = none.
   void inspect(std::shared_ptr<const Scene> scene, const InspectionRequest& request, InspectionPtr previous, int frame = -1);
@@ -81,7 +81,7 @@ class Runner : public QObject {
   /// What every training frame does; answers with influenceMeasured().
   void influence(InspectionPtr inspection);
   void cancel() { jobs_.stop(); }
-  /// Nothing that was asked for is of use any more, except saving: results are there already.
+  /// No request is needed any longer, except saving: results exist already.
   void drop() { jobs_.drop(); }
   bool busy() const { return jobs_.busy(); }
 
@@ -96,7 +96,7 @@ class Runner : public QObject {
   void measured(const glint::gui::TradeoffPtr& tradeoff, const glint::gui::OpenedPtr& computedFor);
   void influenceMeasured(const glint::gui::InfluencePtr& influence, const glint::gui::InspectionPtr& inspection);
   void failed(const QString& oneLine);
-  /// An inspection has come to its end: each stage with its time; or the stage in which it ended early. Before finished() or failed().
+  /// An inspection ended: each stage with its time, or the stage in which it ended early. Comes before finished() or failed().
   void timed(const QString& oneLine);
   /// With failed() after it: opening can be tried again with the place of what is missing.
   void inputMissing(const glint::gui::MissingPtr& missing);

@@ -24,7 +24,7 @@ namespace {
 const char* const kSceneView = "scene";
 constexpr int kDefaultTraining = 6;  // InspectionRequest::train
 
-/// The session that a path means; empty when it means a scene.
+/// The session that a path means; empty if it means a scene.
 fs::path sessionAt(const fs::path& path) {
   std::error_code ignored;  // what cannot be read is reported by the reader, with its reason
   if (!fs::is_directory(path, ignored)) return path.extension() == ".glint" ? path : fs::path();
@@ -38,7 +38,7 @@ fs::path sessionAt(const fs::path& path) {
 viz::ViewPoint viewPointOf(const SessionCamera& c) { return {c.position, c.focalPoint, c.up, c.viewAngleDeg, c.parallel}; }
 SessionCamera cameraOf(const viz::ViewPoint& v) { return {v.position, v.focalPoint, v.up, v.viewAngleDeg, v.parallel}; }
 
-/// The frame to show first: a training frame shows how well a model fits, a held-out one what it predicts. 0 where all frames train.
+/// The frame to show first: a training frame shows how well a model fits, a held-out one what it predicts. 0 if all frames train.
 int firstHeldOut(const Scene& scene, const InspectionRequest& request) {
   const std::vector<int> train = parseTrainSpec(request.train, scene).frames;
   for (int i = 0; i < int(scene.frames.size()); ++i)

@@ -9,8 +9,8 @@
 namespace glint::gui {
 
 /// Opens a session (by its ending .glint, or the only one in a folder without a scene), an autosave, or any other input. What an
-/// autosave says about where it is saved is believed only in this program's own folder (recoveryFolder); anywhere else it is a session
-/// of its own, with a warning. A figure's session has no file to be saved to.
+/// autosave says about where it is saved is believed only in this program's own folder (recoveryFolder); anywhere else it is a
+/// session of its own, with a warning. A figure's session has no file to be saved to.
 /// InputError; MissingScene and MissingMesh, to be asked again with where these are. A mesh that is given must be readable.
 Opened openInput(const std::string& path, const Relinked& instead = {});
 /// What the window shows, as a session keeps it.

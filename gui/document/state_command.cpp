@@ -8,7 +8,7 @@
 namespace glint::gui {
 
 namespace {
-/// What the history shows, and what stands in a menu after "Undo".
+/// The text in the history, and in a menu after "Undo".
 QString twoTexts(const QString& text) { return text + QLatin1Char('\n') + menuText(text); }
 }  // namespace
 

@@ -13,9 +13,9 @@ class QLabel;
 
 namespace glint::gui {
 
-/// Primal and dual side by side, of what is selected: the planes that touch a model's cones, and their dual points. A plane under the
-/// pointer lights its point and the other way round; the arrow keys go from plane to plane and from view to view; dragging turns both.
-/// What is clicked in the 3D views, and a training frame that is selected, lights its plane here.
+/// Primal and dual side by side, of what is selected: the planes that touch a model's cones, and their dual points. A plane under
+/// the pointer lights its point and the other way round; the arrow keys go from plane to plane and from view to view; dragging
+/// turns both. What is clicked in the 3D views, and a training frame that is selected, lights its plane here.
 class DualityWindow : public QDialog {
   Q_OBJECT
  public:
@@ -49,7 +49,7 @@ class DualityWindow : public QDialog {
 
   Document& document_;
   std::optional<Duality> duality_;
-  QString why_;  ///< there is none
+  QString why_;  ///< the picture is missing
   viz::DualityPlane lit_;
   int frame_ = -1;  ///< selected when it was last filled
   double turn_ = 0, tilt_ = 0;

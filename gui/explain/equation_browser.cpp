@@ -26,7 +26,7 @@ namespace glint::gui {
 
 namespace {
 constexpr double kLarger = 1.3;  // a serif of the same size as the text beside it looks smaller
-constexpr int kIndent = 24;      // px that the paragraphs with equations stand in at most, both margins together
+constexpr int kIndent = 24;      // most px by which paragraphs with equations are indented, both margins together
 
 const QString& scheme() {
   static const QString name = QStringLiteral("equation:");
@@ -197,7 +197,7 @@ void EquationBrowser::changeEvent(QEvent* e) {
   if (e->type() == QEvent::PaletteChange) paintEquations();
 }
 
-/// Equations in their plain form, which stands behind each picture.
+/// Equations in their plain form, which is behind each picture.
 QMimeData* EquationBrowser::createMimeDataFromSelection() const {
   auto* data = new QMimeData;
   data->setText(textCursor().selection().toPlainText().remove(QChar::ObjectReplacementCharacter));

@@ -9,7 +9,7 @@ namespace glint::gui {
 struct Equation;
 
 /// A page of text with typeset equations, see equationHtml(): as large as its text, never wider than the page, in its ink. The
-/// symbol under the pointer, that of a number or of a term (links "symbol:ID", "glossary:WORD") lights up wherever it stands.
+/// symbol under the pointer, that of a number or of a term (links "symbol:ID", "glossary:WORD") lights up wherever it is.
 class EquationBrowser : public QTextBrowser {
   Q_OBJECT
  public:
@@ -20,12 +20,12 @@ class EquationBrowser : public QTextBrowser {
   void setLit(const QSet<QString>& symbols);
   /// Symbols of the page's equations that the 3D view shows by a layer, or a part of it.
   QSet<QString> shownBy(const QString& layer, const QString& part) const;
-  /// Where a symbol of the page's equations stands first, in the viewport; empty = nowhere.
+  /// The first place of a symbol of the page's equations, in the viewport; empty = nowhere.
   QRectF placeOf(const QString& symbol) const;
 
  signals:
   void pageShown();
-  void symbolPointed(const QString& symbol);  ///< "" = none any more
+  void symbolPointed(const QString& symbol);  ///< "" = no longer any
 
  protected:
   bool viewportEvent(QEvent* e) override;

@@ -44,12 +44,12 @@ constexpr double kEquationEm = 20;  ///< EM of docs/make_equations.py
 /// Read once from the program's resources.
 const QList<EquationSymbol>& equationSymbols();
 const QList<Equation>& equations();
-/// Null for one that is not there.
+/// Null for one that is missing.
 const Equation* equationById(const QString& id);
 const EquationSymbol* symbolById(const QString& id);
 
-/// An equation's picture in HTML for an EquationBrowser, and its plain form, too small to be seen, for who searches, copies or
-/// listens. What has no picture stands in plain form. `base` is the colour of the page.
+/// An equation's picture in HTML for an EquationBrowser, and its plain form, too small to be seen, for searching, copying and
+/// screen readers. What has no picture is in plain form. `base` is the colour of the page.
 QString equationHtml(const QString& plain, const QColor& base);
 /// HTML in which the plain forms of equations have become that.
 QString withEquations(QString html, const QColor& base);

@@ -47,10 +47,10 @@ QString lessonLink(const Lesson& lesson) {
 
 QString ExplainPage::html() const { return withGlossary(step < 0 ? overview() : stepPage(), palette.color(QPalette::Text)); }
 
-/// With the equations of a lesson's texts.
+/// The text with the equations of a lesson typeset.
 QString ExplainPage::typeset(const QString& html) const { return withEquations(html, palette.color(QPalette::Base)); }
 
-/// The symbol of a row leads to its place in the step's equation: the one that stands there, where several have such a number.
+/// The symbol of a row leads to its place in the step's equation: the one there, if several have such a number.
 QString ExplainPage::numbersTable(const std::vector<ExplainNumber>& numbers) const {
   if (numbers.empty()) return {};
   const ExplainText& text = explainTexts().steps[step];

@@ -20,13 +20,13 @@ struct ExplainPage {
   int step = -1;                             ///< index in explainTexts().steps; -1 = the overview
   const Explanation* explanation = nullptr;  ///< null = not computed yet
   bool asOpened = true;                      ///< nothing was changed since: remarks are about what is on screen
-  QString walkProblem;                       ///< why there is no walk; "" = there is one, or nobody asked
-  QString walkEnds;                          ///< where the walk on screen ends; "" = there is none
+  QString walkProblem;                       ///< why there is no walk; "" = there is one, or it was not asked for
+  QString walkEnds;                          ///< where the walk on screen ends; "" = no walk
   QSet<int> unfolded;                        ///< questions whose answers are shown
   QPalette palette;
 
-  /// Links: "action:ID" runs an action, "unfold:N" shows or hides an answer, "glossary:WORD" and "method:SECTION" are read elsewhere,
-  /// "symbol:ID" is a symbol of the equation.
+  /// Links: "action:ID" runs an action, "unfold:N" shows or hides an answer, "glossary:WORD" and "method:SECTION" are read
+  /// elsewhere, "symbol:ID" is a symbol of the equation.
   QString html() const;
 
  private:

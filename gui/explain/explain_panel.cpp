@@ -189,7 +189,7 @@ void ExplainPanel::openLesson(const QString& id) {
 void ExplainPanel::openDuality() {
   if (!duality_) {
     duality_ = new DualityWindow(document_, window());
-    // The keys of the main window go on working beside it: the palette, the frames, undo. It has none of its own but arrows and Esc.
+    // The keys of the main window go on working beside it: the palette, the frames, undo. It has only arrows and Esc itself.
     for (QAction* action : actions_->all())
       if (!action->shortcuts().contains(QKeySequence(Qt::Key_Escape))) duality_->addAction(action);
   }
@@ -342,7 +342,7 @@ void ExplainPanel::showText() {
   text_->verticalScrollBar()->setValue(at);
 }
 
-/// Where there is none the text says why, and has the room.
+/// Without a walk the text says why, and takes its room.
 void ExplainPanel::showWalk() {
   walkView_->setVisible(step() >= 0 && showsWalk(explainTexts().steps[step()]) && walk_->problem().isEmpty());
   fitSteps();

@@ -30,8 +30,8 @@ class WalkView;
 
 /// The guided way from the photograph to the prediction, on whatever is open: one step at a time, with its equation, its numbers
 /// of the selected highlight, and what breaks here. A step shows its layers alone; leaving gives back those that were shown
-/// before. In a lesson (option "explain/lesson") it begins with what there is to see, goes through the lesson's own steps with its
-/// remarks, and ends with questions, their answers and the next lesson.
+/// before. In a lesson (option "explain/lesson") it begins with what there is to see, goes through the lesson's own steps with
+/// its remarks, and ends with questions, their answers and the next lesson.
 class ExplainPanel : public QWidget {
   Q_OBJECT
  public:
@@ -87,7 +87,7 @@ class ExplainPanel : public QWidget {
   std::string soloBefore_;                    ///< and whether of the selected frame alone
   std::string linesBefore_;                   ///< and which epipolar lines
   bool explaining_ = false;                   ///< a step was shown last
-  bool lookPending_ = false;                  ///< the step on screen was gone to, and what it is about is not computed yet
+  bool lookPending_ = false;                  ///< the step on screen has nothing computed to show yet
   InspectionRequest lessonRequest_;           ///< what was asked for when the scene was opened: lessons speak of that
   QString lookedAt_;                          ///< what the views were sent to last; "" = wherever a session left them
   Actions* actions_ = nullptr;

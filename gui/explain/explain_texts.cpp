@@ -69,7 +69,7 @@ const ExplainTexts& explainTexts() {
 }
 
 QString valuesHtml(const ExplainNumber& n) {
-  const int digits = n.values.size() > 1 ? 4 : 5;  // several stand in one row of a narrow panel
+  const int digits = n.values.size() > 1 ? 4 : 5;  // several are in one row of a narrow panel
   constexpr double kShort = 1e-2;                  // m: below, a single length is in mm
   const double least = std::max(n.least, 0.0);
   const bool single = n.values.size() == 1;

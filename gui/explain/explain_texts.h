@@ -21,11 +21,11 @@ struct ExplainText {
   QString id, title, text, equation, section;
   QStringList layers;             ///< of the scene, that show it
   QStringList frameLayers;        ///< "frame/NAME"
-  QString look;                   ///< what of the scene is to be seen, see ScenePanel::look
+  QString look;                   ///< which part of the scene to show, see ScenePanel::look
   bool solo = false;              ///< of the selected frame alone: what belongs to the others would lie over it
   bool epipolar = false;          ///< with the epipolar lines of two frames side by side, which are no other step's geometry
   QMap<QString, Words> ofModels;  ///< where a model does something else: by its id, "" = as for the others
-  /// @param model  "" = none. Of a model that no step has words for: what the model assumes, where others have words of their own.
+  /// @param model  "" = none. For models that no step has words for: what it assumes, where others have words of their own.
   Words words(const QString& model) const;
   QMap<QString, Shown> shownOfModels;  ///< where the picture of a model has other parts: by its id
   /// What the step shows when that model is explained.
@@ -40,7 +40,7 @@ struct ExplainTexts {
 const ExplainTexts& explainTexts();
 
 /// The values of a number with its unit, as HTML without a break: what is smaller than counts is "0 within rounding", short
-/// lengths are in mm, and no digit stands beyond what counts.
+/// lengths are in mm, and no digit is beyond what counts.
 QString valuesHtml(const ExplainNumber& number);
 
 }  // namespace glint::gui

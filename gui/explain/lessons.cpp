@@ -20,7 +20,7 @@ QStringList strings(const QJsonValue& list) {
   return all;
 }
 
-/// FOLDER/ID/ID.glint; "" when there is none.
+/// FOLDER/ID/ID.glint; "" for an unknown lesson.
 QString sessionIn(const QString& folder, const QString& id) {
   const QFileInfo session(QDir(folder).filePath(id + '/' + id + QStringLiteral(".glint")));
   return session.isFile() ? session.canonicalFilePath() : QString();

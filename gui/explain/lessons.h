@@ -33,8 +33,8 @@ const Lesson* lessonById(const QString& id);
 QString numberedTitle(const Lesson& lesson);
 /// The one after it; null after the last.
 const Lesson* lessonAfter(const Lesson& lesson);
-/// The lesson's session: in $GLINT_LESSONS, beside the program (share/glint/sessions/lessons), or in the source tree that the program was
-/// built in; "" when it is in none of them.
+/// The lesson's session: in $GLINT_LESSONS, beside the program (share/glint/sessions/lessons), or in the source tree that the
+/// program was built in; "" if it is in none of them.
 QString lessonFile(const QString& id);
 /// The same for another session that came with the program, beside the lessons.
 QString sessionFile(const QString& id);

@@ -8,7 +8,7 @@
 
 namespace glint::gui {
 
-/// Of a symbol that is pointed at, and of what it stands for in the 3D view.
+/// Colour of the symbol that the user points at, and of what it stands for in the 3D view.
 inline QColor litColour() { return toQColor(currentTheme() == Theme::Dark ? draw::kLitOnDark : draw::kLitOnLight); }
 
 }  // namespace glint::gui

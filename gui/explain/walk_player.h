@@ -12,20 +12,20 @@
 namespace glint::gui {
 
 /// The walk of the selected direction, and how far it is shown: computed off the interface thread while the layer "walk" is
-/// shown, forwards, or inverse while that step is explained. Where it stands is the option "explain/walk-step"; while it plays
+/// shown, forwards, or inverse while that step is explained. Its place is the option "explain/walk-step"; while it plays
 /// it is nowhere but here, and pausing stores it as one step of undo.
 class WalkPlayer : public QObject {
   Q_OBJECT
  public:
   explicit WalkPlayer(Document& document, QObject* parent = nullptr);
   std::shared_ptr<const viz::WalkStory> story() const { return story_; }  ///< null = none
-  const QString& problem() const { return problem_; }                     ///< why there is none; "" when nobody asked
+  const QString& problem() const { return problem_; }                     ///< why there is no walk; "" if not asked for
   int step() const;
   bool playing() const { return timer_.isActive(); }
   bool busy() const { return job_.busy(); }
 
  public slots:
-  void play();  ///< from the start when the walk stands at its end
+  void play();  ///< from the start when the walk is at its end
   void pause();
   void toggle() { playing() ? pause() : play(); }
   /// @param gesture  as Document::setOption.

@@ -68,7 +68,7 @@ void ExportActions::setViews(ScenePanel& scene, FramePanel& frame) {
 }
 
 void ExportActions::setSnapshot(std::function<Opened()> snapshot) {
-  // What a figure shows is what its session computes, also where that is pinned.
+  // What a figure shows is what its session computes, even if that is pinned.
   snapshot_ = [this, snapshot = std::move(snapshot)] {
     Opened opened = snapshot();
     if (document_.pinnedShown()) opened.request = document_.inspection()->request;
@@ -217,7 +217,7 @@ void ExportActions::writeLabels(const QString& folder) {
   });
 }
 
-/// A command is pasted into a shell that may stand anywhere.
+/// A command is pasted into a shell in any folder.
 std::string ExportActions::sessionPath() const { return QFileInfo(document_.sessionFile()).absoluteFilePath().toStdString(); }
 
 Outcome<std::string> ExportActions::command() const {

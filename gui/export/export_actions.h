@@ -20,14 +20,14 @@ class ReproActions;
 class RetextureBar;
 class ScenePanel;
 
-/// What leaves the program: figures with the session inside, reports, labels, the command line of what is on screen, a diagnostic
+/// Exports: figures with the session inside, reports, labels, the command line of what is on screen, a diagnostic
 /// report. The `write…` functions do the work and throw InputError; the actions ask for a file and run them off the interface
 /// thread.
 class ExportActions : public QObject {
   Q_OBJECT
  public:
   ExportActions(const Engine& engine, Document& document, QWidget* window);
-  /// Whose pictures leave the program. Before addActions.
+  /// The views whose pictures are exported. Call before addActions.
   void setViews(ScenePanel& scene, FramePanel& frame);
   void addActions(Actions& actions, QMenu* menu);
   /// The state to put into figures.

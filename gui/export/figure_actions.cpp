@@ -174,7 +174,7 @@ QImage FigureActions::sceneFigure(const FigureLook& look) const {
     const std::unique_ptr<viz::SceneView> view = views.viewCount() > 1 ? views.copyOf(at) : views.copyOfActive();
     view->setDarkBackground(look.dark);
     view->setLegendVisible(views.hasLegend(at), at == 0);
-    if (views.wiping() && views.hasLegend(1)) {  // the legend of each side stands in its own part
+    if (views.wiping() && views.hasLegend(1)) {  // the legend of each side is in its own part
       const std::array<double, 4> v = views.placeOf(at);
       view->renderer()->SetViewport(v[0], v[1], v[2], v[3]);
       view->setPartOfWindow(true);

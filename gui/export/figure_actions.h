@@ -41,7 +41,7 @@ class FigureActions : public QObject {
   /// The frames with the caption below.
   void paintFigure(QPainter& painter, const FigureLook& look) const;
   void paintFrames(QPainter& painter, const FigureLook& look) const;
-  /// What the epipolar lines of two frames are and miss by, above the pictures. Its height, px; 0 without lines.
+  /// The key of the epipolar lines of two frames, with their misses, above the pictures. Its height, px; 0 without lines.
   double paintKey(QPainter& painter, const FigureLook& look) const;
   void write(const QString& file, std::function<void()> work);
 
@@ -59,10 +59,10 @@ class FigureActions : public QObject {
 QString suggestedFile(const Document& document, const QString& what, const QString& ending);
 /// Why nothing is written of what is on screen while Document::shownStale().
 QString notUpToDate();
-/// Something was exported as `file`.
+/// Remembers that `file` was exported.
 void rememberExport(const Document& document, const QString& file);
-/// Asks for a file to write; the chosen filter's ending is added where the name has none. Files of the input are refused, and asked again.
-/// "" = given up.
+/// Asks for a file to write; the chosen filter's ending is added where the name has none. Files of the input are refused, and
+/// asked again. "" = given up.
 QString askForFile(QWidget* window, const Document& document, const QString& title, const QString& suggestion,
                    const QString& filters);
 

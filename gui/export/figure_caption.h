@@ -14,7 +14,7 @@ class QPainter;
 
 namespace glint::gui {
 
-/// Of a figure; not valid where that is transparent.
+/// The background of a figure; not valid if it is transparent.
 QColor backgroundOf(const FigureLook& look);
 /// Height of a caption's letters, px: those of a caption on paper at the figure's resolution, and legible on a screen.
 double captionPx(const FigureLook& look);
@@ -23,13 +23,13 @@ QString proposedCaption(const Document& document, const QString& what);
 /// An SVG picture of Qt's with its title and its caption as description. Qt's own ones are not escaped.
 QByteArray withTitle(const QByteArray& svg, const QString& title, const QString& caption);
 
-/// The caption of a figure, which stands in the lower part of the size that was asked for.
+/// The caption of a figure, in the lower part of the size that was asked for.
 class FigureCaption {
  public:
   explicit FigureCaption(const FigureLook& look);
-  /// The look of what stands above: without caption, and lower by it.
+  /// The look of the figure above: without caption, and lower by its height.
   FigureLook above() const;
-  /// Paints the caption, below what stands above.
+  /// Paints the caption below the figure.
   void paint(QPainter& painter) const;
   /// The whole picture. @param figure  of the size of above()
   QImage under(const QImage& figure) const;

@@ -191,7 +191,7 @@ void FigureDialog::followHeight() {
   showPrinted();
 }
 
-/// What is transparent stands on a page that the program does not see.
+/// A transparent figure lies on a page that the program does not know.
 void FigureDialog::followBackground() {
   const bool page = transparent_->isChecked();
   colours_->setItemText(0, page ? tr("For a dark page") : tr("Dark"));

@@ -21,11 +21,12 @@ struct FigureLook {
   bool transparent = false;
   bool dark = true;      ///< bright lines and texts, for a dark background or page
   int dpi = 96;          ///< px per inch of paper
-  QString caption = {};  ///< stands below the figure, within `size`; "" = none
+  QString caption = {};  ///< below the figure, within `size`; "" = none
 };
 
-/// Asks for the size, in px or in mm at a resolution, and the background of a picture or plot. Remembers the last answer of each kind, a typed size in the shape of what
-/// is shown now. Colours are at first those for a light page, whatever the window's are: figures are mostly printed.
+/// Asks for the size (px, or mm at a resolution) and the background of a picture or plot. Remembers the last answer of each kind,
+/// with a typed size in the shape of what is shown now. Colours start for a light page, whatever the window's are: figures are
+/// mostly printed.
 class FigureDialog : public QDialog {
   Q_OBJECT
  public:
@@ -33,9 +34,9 @@ class FigureDialog : public QDialog {
   /// @param onScreen  device px of what is shown.
   FigureDialog(const QString& title, const QString& kind, const QSize& onScreen, QWidget* parent);
   FigureLook look() const;
-  /// For what cannot have a transparent background.
+  /// Serves pictures that cannot have a transparent background.
   void setOpaque();
-  /// A caption for who wants one; the field stays empty.
+  /// Offers a caption; the field stays empty.
   void proposeCaption(const QString& caption);
   void accept() override;
 

@@ -15,7 +15,7 @@ class FolderRow : public QWidget {
   /// @param suggested  a path; where it is taken, the next number is appended.
   explicit FolderRow(const QString& suggested, QWidget* parent = nullptr);
   QString folder() const;
-  /// Why nothing can be written there; empty where it can.
+  /// Why nothing can be written there; empty if it can.
   QString problem() const;
 
  signals:

@@ -13,7 +13,7 @@ class QWidget;
 namespace glint::gui {
 
 /// Work of seconds or minutes that leaves the interface free: one at a time, with a small window that names it, shows what
-/// remains and stops it. Where it goes, what runs is stopped and waited for.
+/// remains and stops it. Its destructor stops the running job and waits for it.
 class LongJob : public QObject {
   Q_OBJECT
  public:

@@ -18,7 +18,7 @@ class NumberBox;
 class FolderRow;
 class LongJob;
 
-/// Says which fault is meant and asks how near the smaller one has to come, and for the folder to write.
+/// Names the fault, asks how near the smaller one must come to it, and for the folder to write.
 class ReproDialog : public QDialog {
   Q_OBJECT
  public:
@@ -38,8 +38,8 @@ class ReproActions : public QObject {
  public:
   ReproActions(Document& document, LongJob& job, QWidget* window);
   void addActions(Actions& actions, QMenu* menu);
-  /// Of the selected frame, the selected (else the plotted) model and the selected light (else the worst); written() or problem()
-  /// tells how it ended.
+  /// The fault of the selected frame, the selected (else plotted) model and the selected light (else the worst); written() or
+  /// problem() tells how it ended.
   Outcome<Fault> fault() const;
   void write(const Fault& fault, const FaultTolerance& tolerance, const QString& folder);
 

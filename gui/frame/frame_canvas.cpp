@@ -343,7 +343,7 @@ void FrameCanvas::drawPhotograph(QPainter& painter) const {
   const QRectF target(widgetFromPixel({visible.x() - 0.5, visible.y() - 0.5}), QSizeF(visible.size()) * zoom_);
   painter.setRenderHint(QPainter::SmoothPixmapTransform, zoom_ * devicePixelRatioF() < 1.999);
   if (figure_) {
-    // Large pixels stay squares also where the reader of the file would smooth them.
+    // Large pixels stay squares even if the reader of the file would smooth them.
     const int enlarge = zoom_ < 2 ? 1 : std::clamp(kFigurePhotographPx / std::max(visible.width(), visible.height()), 1, 16);
     const QImage part = photograph_.copy(visible);
     painter.drawImage(target, enlarge == 1 ? part : part.scaled(part.size() * enlarge));

@@ -37,8 +37,8 @@ class FrameCanvas : public QWidget {
   void setPicture(const FramePicture& picture);  ///< keeps the view where the size stays the same
   void setPhotograph(const QImage& photograph);  ///< a picture without numbers
   void setMessage(const QString& message);       ///< instead of a photograph
-  /// From a column on another picture of the same frame is drawn in the photograph's place, or all of it where there is no photograph; the line
-  /// between them can be dragged. One without pixels ends it. @param left, right  what is there, in chips beside the line
+  /// Draws another picture of the frame in the photograph's place, from a column on; all of it without a photograph. The user can
+  /// drag the line between them. A picture without pixels ends it. @param left, right  texts of the chips beside the line
   void setCompared(const FramePicture& other, int from, const QString& left, const QString& right);
   bool comparing() const { return !other_.shown.isNull(); }
   /// What is drawn is another frame's photograph until the next picture or message: where that takes a moment, it is drawn faint,
@@ -87,13 +87,13 @@ class FrameCanvas : public QWidget {
   void onePixelPerPixel();
 
  signals:
-  void probed(const QString& text);  ///< "" when the mouse leaves the photograph
+  void probed(const QString& text);  ///< "" if the mouse leaves the photograph
   void hovered(double x, double y);  ///< photograph pixel under the mouse, after probed()
   void clicked(double x, double y);  ///< photograph pixel
   void zoomChanged(double zoom);
   void viewMoved();  ///< the user zoomed or panned
-  void dividerMoved(double share,
-                    bool begins);  ///< the line between photograph and compared picture is dragged; share of the width
+  /// The user drags the line between photograph and compared picture; share of the width.
+  void dividerMoved(double share, bool begins);
 
  protected:
   void paintEvent(QPaintEvent*) override;

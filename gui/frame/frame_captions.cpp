@@ -42,7 +42,7 @@ FrameCaptions frameCaptions(const Document& document, const draw::FrameOverlay& 
     }
     QStringList said;
     if (const QString reason = toQString(c.score.reason); !reason.isEmpty()) {
-      // A sentence would wrap in its narrow column and push the next models out of sight: it stands below them.
+      // A sentence would wrap in its narrow column and push the next models out of sight: it is below them.
       said << reason.section(QStringLiteral(": "), 0, 0);
       const QString line = (toQString(c.model) + QStringLiteral(": ") + reason).toHtmlEscaped();
       if (c.score.matched > 0)

@@ -11,8 +11,8 @@ namespace glint::gui {
 
 inline constexpr char kModelLayer[] = "frame/model/";  ///< and the model: the layer of its lines
 
-/// What stands below the photograph, as rich text: notes, a table with one row per model ("show:MODEL" and "select:MODEL" are its links),
-/// and the reasons of failures.
+/// The text below the photograph, as rich text: notes, a table with one row per model ("show:MODEL" and "select:MODEL" are its
+/// links), and the reasons of failures.
 struct FrameCaptions {
   QString html;          ///< "" for none
   bool failure = false;  ///< it holds the reason of one

@@ -45,7 +45,7 @@ class FramePanel : public QWidget {
   FrameCanvas* canvas() const { return canvas_; }
   HighlightEdits* edits() const { return edits_; }
   FrameCanvas* secondCanvas() const { return second_; }
-  const PairBar& pair() const { return *pair_; }  ///< what stands beside the selected frame
+  const PairBar& pair() const { return *pair_; }  ///< the frame beside the selected one
   PhotoLoader* loader() { return &loader_; }
   RetextureBar* retexture() { return retexture_; }
   /// Something is still being read, developed or waiting to be drawn.
@@ -66,7 +66,7 @@ class FramePanel : public QWidget {
  signals:
   void photographFailed(int frame, const QString& reason);  ///< there is nothing to show for it
   void probed(const QString& text);
-  void problem(const QString& why);  ///< what was asked for cannot be done
+  void problem(const QString& why);  ///< a request cannot be fulfilled
 
  protected:
   void changeEvent(QEvent* e) override;
@@ -113,7 +113,7 @@ class FramePanel : public QWidget {
   QToolButton* folded_ = nullptr;        ///< the overlays' switches, where there is no room for a row of them
   bool follows_ = false;                 ///< zoomed to the highlight by the user, who has not moved it since
   int seenFrame_ = -1;                   ///< that was selected last
-  std::array<int, 2> pictured_{-1, -1};  ///< whose photographs the canvases show; -1 = nobody's
+  std::array<int, 2> pictured_{-1, -1};  ///< whose photographs the canvases show; -1 = none
   bool whatIf_ = false;                  ///< the request has a what-if
   bool fewerLines_ = false;              ///< a what-if was put back: the captions may shrink to what there was to say before it
   bool zoomedByLook_ = false;            ///< and the user has not moved it since

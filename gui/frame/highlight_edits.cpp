@@ -84,7 +84,7 @@ std::optional<Pixel> HighlightEdits::ideal() const {
   return p.allFinite() ? std::optional(p) : std::nullopt;
 }
 
-/// Of overlapping ones the smallest; -1 = none.
+/// The highlight under the mouse, the smallest if several overlap; -1 = none.
 int HighlightEdits::under(const FrameEvidence& evidence) const {
   const std::optional<Pixel> at = ideal();
   int best = -1;

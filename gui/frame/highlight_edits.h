@@ -20,8 +20,8 @@ namespace glint::gui {
 
 class FrameCanvas;
 
-/// Ignores, merges, splits and grows observed highlights of the selected frame, at the place where the mouse is or was last in the
-/// photograph. One edit is one step of undo; they are part of the what-if (core/inspect/hand_edits.h).
+/// Ignores, merges, splits and grows observed highlights of the selected frame, at the place where the mouse is or was last in
+/// the photograph. One edit is one step of undo; they are part of the what-if (core/inspect/hand_edits.h).
 class HighlightEdits : public QObject {
   Q_OBJECT
  public:
@@ -38,7 +38,7 @@ class HighlightEdits : public QObject {
  private:
   struct Target {
     std::shared_ptr<const Inspection> inspection;
-    const FrameEvidence* evidence;  ///< of the selected frame; null where it is not known
+    const FrameEvidence* evidence;  ///< of the selected frame; null if it is not known
     int frame;
   };
   /// An edit at the place under the pointer, or why it cannot be made.
@@ -47,8 +47,8 @@ class HighlightEdits : public QObject {
     std::function<void()> run;  ///< makes it
   };
   Plan ignore();  ///< at the place, else the selected highlight; what is ignored there is taken back
-  Plan
-  merge();  ///< the selected highlight with the one at the place; where these are one, with the nearest other one of its light
+  /// The selected highlight with the one at the place; if these are one, with the nearest other one of its light.
+  Plan merge();
   Plan split();
   Plan grow();
   Plan undoAll();  ///< takes all edits of the frame back

@@ -59,7 +59,7 @@ std::vector<FrameCanvas*> LadderPanel::canvases() const {
   return all;
 }
 
-/// Of a scene just opened, the selected frame's results come before all others, and the frame view shows them too.
+/// When a scene opens, the selected frame's results come before all others, and the frame view shows them too.
 std::shared_ptr<const Inspection> LadderPanel::inspection() const {
   return document_.inspection() ? document_.inspection() : document_.frameInspection();
 }

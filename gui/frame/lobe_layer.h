@@ -8,8 +8,8 @@
 
 namespace glint::gui {
 
-/// What the frame view's layer "Lobes" draws, read while the layer is shown: the pixels of the selected frame's highlights with every
-/// lobe fitted to them.
+/// What the frame view's layer "Lobes" draws, read while the layer is shown: the pixels of the selected frame's highlights with
+/// every lobe fitted to them.
 class LobeLayer : public QObject {
   Q_OBJECT
  public:

@@ -138,7 +138,7 @@ void PairBar::addLines(draw::FrameOverlay& first, draw::FrameOverlay& second) {
     first.marks.insert(first.marks.end(), picture.frames[0].marks.begin(), picture.frames[0].marks.end());
     second.lines.insert(second.lines.end(), picture.frames[1].lines.begin(), picture.frames[1].lines.end());
     second.marks.insert(second.marks.end(), picture.frames[1].marks.begin(), picture.frames[1].marks.end());
-    // Of a failure its name; the tool tip says the rest.
+    // For a failure its name will do; the tool tip says the rest.
     const QString what = picture.tangents ? tr("miss by %1 px").arg(picture.tangents->rmsPx(), 0, 'f', 2)
                                           : QString(QLatin1String(nameOf(picture.failure->reason)));
     if (!picture.tangents) reasons << title + QStringLiteral(": ") + toQString(picture.failure->message());

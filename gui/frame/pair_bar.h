@@ -14,7 +14,7 @@ class QLabel;
 
 namespace glint::gui {
 
-/// Which frame stands beside the selected one, and the tangent epipolar lines of the pair. Options "frame/side-by-side",
+/// Which frame is beside the selected one, and the tangent epipolar lines of the pair. Options "frame/side-by-side",
 /// "frame/second" (number of a frame), "frame/epipolar" (off, real, virtual, both), "frame/epipolar-ellipse" (observed,
 /// canonical).
 class PairBar : public QWidget {
@@ -25,7 +25,7 @@ class PairBar : public QWidget {
 
   bool on() const;
   int secondFrame() const;
-  /// Adds the lines to both overlays and says what they miss by.
+  /// Adds the lines to both overlays and shows by how much they miss.
   void addLines(draw::FrameOverlay& first, draw::FrameOverlay& second);
   /// A kind of line that is drawn: its colour, and whose it is with what it misses by.
   struct KeyEntry {
@@ -34,7 +34,7 @@ class PairBar : public QWidget {
   };
   /// Empty without lines.
   const QList<KeyEntry>& key() const { return key_; }
-  /// The key as a label; whoever owns the bar places it where it does not scroll. Hidden without lines.
+  /// The key as a label; the owner of the bar places it where it does not scroll. Hidden without lines.
   QLabel* sentence() const { return miss_; }
 
  private:

@@ -26,7 +26,7 @@ struct FramePicture {
 /// The picture's bytes without a copy; they live as long as the image.
 QImage imageOf(const std::shared_ptr<const viz::Picture8>& picture);
 
-/// What stands over the photograph of another frame meanwhile.
+/// The text over the photograph of another frame meanwhile.
 QString photographAwaited(const Scene& scene, int frame);
 
 /// Reads, or renders for a what-if, photographs or radiances and develops them off the interface thread. Only the newest wish is

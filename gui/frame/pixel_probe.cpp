@@ -15,7 +15,7 @@ namespace glint::gui {
 struct PixelProbeWorker::Images {
   FramePictures of;
   int frame = -1;
-  DecodedFrames::Held photograph, radiance;  // null where there is none
+  DecodedFrames::Held photograph, radiance;  // null without such a file
 };
 
 PixelProbeWorker::PixelProbeWorker(QObject* parent) : QObject(parent), images_(std::make_shared<Images>()) {}

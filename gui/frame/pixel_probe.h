@@ -18,7 +18,7 @@ class PixelProbeWorker : public QObject {
   explicit PixelProbeWorker(QObject* parent = nullptr);
   /// @param inspection  may be null: then only the values are read.
   void want(std::shared_ptr<const Scene> scene, std::shared_ptr<const Inspection> inspection, int frame, const Pixel& at);
-  /// What is under way is not answered any more.
+  /// Running jobs give no answer.
   void forget() { job_.drop(); }
   bool busy() const { return job_.busy(); }
 

@@ -206,7 +206,7 @@ void RetextureBar::buildDetails() {
       number(kRepeat, tr("Repeat"), tr("Textures in place of one, in both directions"), numberRange(0.01, kMostRepeats, 1), 1);
   albedo_ =
       number(kAlbedo, tr("Albedo"),
-             tr("Of the surface as it was; the texture's values are then albedos. 0: the texture's mean takes the place of it"),
+             tr("Albedo of the surface as it was; the texture's values are then albedos. 0: the texture's mean takes its place"),
              numberRange(0, 1, 0.05), 0);
   margin_ = number(kMargin, tr("Margin px"), tr("How far beyond its visible part a highlight is removed"),
                    numberRange(0, kLargestMargin, 1), kUsualMargin);
@@ -233,7 +233,7 @@ void RetextureBar::setOn(bool on) {
 RetextureRequest RetextureBar::request() const {
   RetextureRequest r;
   r.model = document_.plottedModel();
-  r.light = light_->currentData().toString().toStdString();  // "" also where the option names one that this model has no fit of
+  r.light = light_->currentData().toString().toStdString();  // "" even if the option names one that this model has no fit of
   r.base = chosen() == QLatin1String("texture")      ? RetextureBase::Texture
            : chosen() == QLatin1String("background") ? RetextureBase::Background
                                                      : RetextureBase::Removed;

@@ -22,10 +22,11 @@ class FrameCanvas;
 class NumberBox;
 class PanelScroll;
 
-/// The predicted highlight of the plotted model over a texture or a background, or the frame without its highlight, in place of the photograph:
-/// left of a line stands what was captured. It follows results, frame, model and every option. Options, all "frame/retexture...": "" (off,
-/// texture, background, removed), "-texture" and "-background" (files, relative to the scene's folder where they lie in it), "-mapping",
-/// "-repeat", "-shading", "-albedo" (0 = the texture's mean), "-margin", "-light" ("" = all), "-compare" (share of the width left of the line).
+/// Shows the plotted model's predicted highlight over a texture or a background, or the frame without its highlight, in place of
+/// the photograph; what was captured stays left of a line. Follows results, frame, model and options. Options, all
+/// "frame/retexture...": "" (off, texture, background, removed), "-texture", "-background" (files, relative to the scene's folder
+/// if inside), "-mapping", "-repeat", "-shading", "-albedo" (0 = the texture's mean), "-margin", "-light" ("" = all), "-compare"
+/// (share of the width on the left).
 class RetextureBar : public QWidget {
   Q_OBJECT
  public:
@@ -35,10 +36,10 @@ class RetextureBar : public QWidget {
   bool on() const;
   /// Something is being computed or read for it.
   bool busy() const { return refresh_.isActive() || maker_.busy(); }
-  /// What is said about the picture; the owner places it below the bar.
+  /// The text about the picture; the owner places it below the bar.
   QWidget* words() const;
   void setMostWords(int height);  ///< px; the rest scrolls
-  /// The picture of the state on screen; null where there is none, or a newer one is on its way.
+  /// The picture of the state on screen; null without one, or while a newer one is on its way.
   std::shared_ptr<const Retextured> result() const { return busy() ? nullptr : answer_.result; }
   void setOn(bool on);
 
@@ -57,7 +58,7 @@ class RetextureBar : public QWidget {
   RetextureRequest request() const;
   void chooseFile(const QString& base);
   void allow();
-  /// Absolute; OutsidePath where a session names it and nobody allowed it; InputError.
+  /// Absolute; OutsidePath if a session names it and the user did not allow it; InputError.
   std::string fileOf(const QString& base) const;
   void refresh();
   void showControls();

@@ -17,7 +17,7 @@ namespace glint::gui {
 struct RetextureWish {
   std::shared_ptr<const Inspection> inspection;
   int frame = -1;
-  std::string file;          ///< of the texture or background; "" where none is needed
+  std::string file;          ///< of the texture or background; "" if none is needed
   RetextureRequest request;  ///< but for its picture
   viz::Development look;     ///< as the photograph beside it
 };
@@ -25,13 +25,13 @@ struct RetextureWish {
 struct RetextureAnswer {
   int frame = -1;
   std::string model;
-  std::shared_ptr<const Retextured> result;  ///< null where it failed
+  std::shared_ptr<const Retextured> result;  ///< null if it failed
   FramePicture picture;
   QString failure;  ///< one line; "" = none
 };
 
-/// Retextures frames off the interface thread. What runs for the same frame goes on to its end, so that pictures follow a slider that is
-/// being dragged; of what is asked for meanwhile, the newest is next.
+/// Retextures frames off the interface thread. A run for the same frame goes on to its end, so that pictures follow a slider
+/// that is being dragged; then comes the newest request.
 class RetextureMaker : public QObject {
   Q_OBJECT
  public:
@@ -39,7 +39,7 @@ class RetextureMaker : public QObject {
   ~RetextureMaker() override;
   /// made() follows; at once where nothing has changed since.
   void want(const RetextureWish& wish);
-  /// Nothing that was asked for is of use any more.
+  /// No request is needed any longer.
   void forget();
   /// An answer is on its way.
   bool busy() const { return running_ || waiting_; }

@@ -234,7 +234,7 @@ void BallControls::show(const BallQuestion& q) {
   outlineChoice_->setCurrentIndex(outlineChoice_->findData(QLatin1String(toText(q.outlines))));
 }
 
-/// Who is told why the field is wrong can correct it at once. @return the whole sentence
+/// A user who reads why the field is wrong can correct it at once. @return the whole sentence
 QString BallControls::refused(QLineEdit* field, const QString& why) {
   complain(field, why);
   field->setFocus();

@@ -25,11 +25,11 @@ class BallControls : public QWidget {
   explicit BallControls(BallOutlines& outlines, QWidget* parent = nullptr);
   /// @param folders  with photographs, below the chosen one; "" = itself. Asks where they were cut out where there are several.
   void setFolders(const QStringList& folders);
-  /// The middle and a quarter of this size are where a ball is added.
+  /// New balls are added in the middle, with a quarter of this size.
   void setPhotographSize(QSize size) { size_ = size; }
   /// Camera, radius and outlines of this question; its balls are the outlines'.
   void show(const BallQuestion& question);
-  /// Camera, radius and outlines as typed. Where one of them cannot be taken: why, which is said below its field, too; else "".
+  /// Camera, radius and outlines as typed. If one is wrong: why, which its field shows, too; else "".
   QString fill(BallQuestion& question);
 
  signals:

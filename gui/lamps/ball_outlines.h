@@ -34,7 +34,7 @@ class BallOutlines : public QObject, public DragTool {
   void add(const BallOutline& outline);
   void remove(int ball);
   void set(int ball, const BallOutline& outline);
-  /// With all steps back.
+  /// Removes all outlines, and the steps back.
   void clear();
   /// One step back, and forth again: a drag, a new or removed outline, or what was typed into one field.
   void undo() { step(past_, future_); }

@@ -13,7 +13,7 @@ class LampsPanel;
 class PlotCanvas;
 class RowsModel;
 
-/// What photographs of balls gave: the lamps, what each ball leaves, and what each photograph contributes.
+/// Results from photographs of balls: the lamps, each ball's residuals, and each photograph's contribution.
 class BallResults : public QTabWidget {
   Q_OBJECT
  public:
@@ -24,7 +24,7 @@ class BallResults : public QTabWidget {
   PlotCanvas* shares() const { return shares_; }
   /// @param report  null = none, because `why`
   void show(const LampsReport* report, const QString& why);
-  /// Of this lamp, which is that of a photograph; -1 = none.
+  /// Selects this lamp, which is that of a photograph; -1 = none.
   void select(int lamp);
 
  signals:

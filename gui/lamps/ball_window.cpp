@@ -61,7 +61,7 @@ QString withoutBallOptions(const QString& line) {
   return QString(line).replace(ball, BallWindow::tr("the ball at \\1"));
 }
 
-/// The size of a photograph, by its header; nothing where that cannot be read: whoever decodes it says why.
+/// The size of a photograph, by its header; nothing if that cannot be read: decoding it reports why.
 QSize sizeOf(const std::filesystem::path& file) {
   try {
     const ImageHeader header = readImageHeader(readFile(file, Limit::ImageMegabytes));

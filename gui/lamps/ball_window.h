@@ -19,18 +19,18 @@ class BallControls;
 class BallResults;
 class FrameCanvas;
 
-/// Lamps from photographs of mirror balls: draw each ball's outline, measure, look at what came out. One lamp in each
+/// Lamps from photographs of mirror balls: draw each ball's outline, measure, look at the results. One lamp in each
 /// photograph. It asks the same as `glint lights FOLDER --ball …`, and knows no scene.
 class BallWindow : public QWidget {
   Q_OBJECT
  public:
   explicit BallWindow(const Engine& engine, QWidget* parent = nullptr);
   ~BallWindow() override;
-  /// Photographs of a folder, or of its folders where it has none itself. False, with a problem, where there are none.
+  /// Photographs of a folder, or of its folders where it has none itself. False, with a problem, without any photograph.
   bool open(const QString& folder);
   /// Opens the folder and shows what is asked, for measure(). False, with a problem, where it has no photographs; InputError.
   bool ask(const BallQuestion& question);
-  /// The photograph of this name, with or without its ending; none: nothing changes.
+  /// Shows the photograph of this name, with or without its ending, if it exists.
   void showPhotograph(const QString& name);
   /// Nothing runs, and the photograph is there.
   bool idle() const { return !jobs_.busy() && !loader_->busy(); }
@@ -39,7 +39,7 @@ class BallWindow : public QWidget {
   BallResults* results() const { return results_; }
   /// The newest; null before the first.
   std::shared_ptr<const LampsReport> report() const { return report_; }
-  /// What would be asked now. False, and it is said where, where something typed cannot be taken.
+  /// What would be asked now. False, and a message says where, if something typed is wrong.
   bool question(BallQuestion& question);
 
  public slots:

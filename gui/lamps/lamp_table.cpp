@@ -50,7 +50,7 @@ RowsModel::Cell droppedOf(const LampAnswer& lamp) {
   if (lamp.dropped.empty()) return cell;
   QStringList names, lines;
   for (const DroppedSighting& d : lamp.dropped) {
-    // Of photographs of balls there is one for each lamp, which the lamp's id says.
+    // Each photograph of balls has one lamp, whose id names it.
     const QString name = d.ball ? QObject::tr("ball %1").arg(*d.ball + 1) : nameText(d.frame);
     if (!names.contains(name)) names << name;
     lines << QStringLiteral("%1: %2").arg(name, toQString(d.reason));

@@ -11,7 +11,7 @@ class QSortFilterProxyModel;
 
 namespace glint::gui {
 
-/// One row for each lamp: where it is and how surely, what its highlights leave, which were dropped, and why there is no more.
+/// One row for each lamp: its place with the uncertainty, the residuals of its highlights, dropped ones, and why more is unknown.
 class LampTable : public QTableView {
   Q_OBJECT
  public:
@@ -19,7 +19,7 @@ class LampTable : public QTableView {
   explicit LampTable(QWidget* parent = nullptr);
   /// @param report  null = no rows
   void show(const LampsReport* report);
-  /// The lamp is an index into the report's. -1 = none. Tells nobody.
+  /// The lamp is an index into the report's. -1 = none. Emits nothing.
   void setCurrentLamp(int lamp);
   int currentLamp() const;
 

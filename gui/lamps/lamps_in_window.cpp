@@ -47,7 +47,7 @@ BallWindow* LampsInWindow::ballWindow() {
   if (!balls_) {
     balls_ = new BallWindow(engine_, window_);
     connect(balls_, &BallWindow::message, this, &LampsInWindow::message);
-    connect(balls_, &BallWindow::problem, this, &LampsInWindow::message);  // it is said in that window
+    connect(balls_, &BallWindow::problem, this, &LampsInWindow::message);  // that window shows it
   }
   return balls_;
 }

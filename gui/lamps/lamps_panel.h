@@ -20,7 +20,7 @@ class LampsPanel : public QWidget {
  public:
   explicit LampsPanel(QWidget* parent = nullptr);
   LampTable* table() const { return table_; }
-  /// @param report  null = there are none, because `why`
+  /// @param report  null = no lamps, because `why`
   void show(const LampsReport* report, const QString& why);
   void setStale(bool stale);
   /// @param possible  there is something to measure

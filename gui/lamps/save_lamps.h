@@ -13,7 +13,7 @@ namespace glint::gui {
 
 /// Asks for a file and writes the lamps there as `glint lights -o` does: .json, .csv or .lp, by the ending.
 /// @param folder  where the dialog starts. @param inputs  what is not overwritten
-/// @return  the file; "" where a person gave up. Throws InputError.
+/// @return  the file; "" if a person gave up. Throws InputError.
 QString saveLamps(QWidget* window, const LampsReport& report, const QString& folder,
                   const std::vector<std::filesystem::path>& inputs);
 

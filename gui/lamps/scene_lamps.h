@@ -20,8 +20,8 @@ using LampsPtr = std::shared_ptr<const LampsReport>;
 
 /// The lamps of the open scene: measured in the background when a person asks, shown in a dock and in the 3D views, saved as
 /// `glint lights` writes them. Measured with the settings, frames and what-if on screen; once these change, they are out of
-/// date. A session keeps that they were measured (option "lamps/measured"), as it keeps no fit either: once its results are there, they
-/// are measured again.
+/// date. A session keeps that they were measured (option "lamps/measured"), as it keeps no fit either: once its results are
+/// there, they are measured again.
 class SceneLamps : public QObject {
   Q_OBJECT
  public:

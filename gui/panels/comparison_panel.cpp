@@ -67,7 +67,7 @@ QTableView* table(RowsModel* model, const char* name, const QString& what) {
   return view;
 }
 
-/// With the folders that a person allowed this file to name when it was opened.
+/// Opens the file with the folders that a person allowed it to name.
 Opened openedFor(const Engine& engine, const QString& file) {
   Relinked instead;
   for (const QString& folder : allowedFolders(file)) instead.folders.emplace_back(folder.toStdString());

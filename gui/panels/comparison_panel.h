@@ -22,7 +22,7 @@ class RowsModel;
 std::pair<QString, QString> shortestNames(const QString& fileA, const QString& fileB);
 
 /// What is on screen (A) beside another session (B): what changed in inputs, parameters and results, and the error of every frame
-/// with both. Only differences unless asked for all; a click on a frame selects it.
+/// with both. Shows only differences unless asked for all; a click on a frame selects it.
 class ComparisonPanel : public QWidget {
   Q_OBJECT
  public:

@@ -27,7 +27,7 @@ namespace {
 constexpr int kFrame = Qt::UserRole, kLight = Qt::UserRole + 1, kModel = Qt::UserRole + 2, kHighlight = Qt::UserRole + 3,
               kShared = Qt::UserRole + 4, kPredicted = Qt::UserRole + 5, kPlace = Qt::UserRole + 6, kGood = Qt::UserRole + 7;
 constexpr std::size_t kMostFrames = 12;      // of a model: more are in the table of errors
-constexpr std::size_t kMostHighlights = 12;  // that stand against a model
+constexpr std::size_t kMostHighlights = 12;  // that contradict a model
 
 /// A frame where a model misses or invents highlights, or is far off.
 struct WrongFrame {
@@ -349,7 +349,7 @@ void DiagnosisPanel::fillProblems() {
   const std::shared_ptr<const Inspection> inspection = document_.inspection();
   if (!inspection) return;
   fillGood();
-  const bool explained = advised();  // the verdict stands above, and causes say why
+  const bool explained = advised();  // the verdict is above, and causes say why
   const bool folded = explained || !good_.empty();
   for (const std::string& name : inspection->request.models) {
     const auto result = inspection->models.find(name);

@@ -23,9 +23,9 @@ class QTreeWidgetItem;
 
 namespace glint::gui {
 
-/// What is wrong: models without an answer with their reasons, frames whose highlights are missed or far off; and, when asked, what to do about
-/// it, as `glint diagnose` says it: one verdict for the model on screen, at most three remedies, and folded below what they stand on. A click on a
-/// frame or highlight selects it; "Try" makes the change as one step of undo.
+/// What is wrong: models without an answer with their reasons, frames whose highlights are missed or far off; and, when asked,
+/// what to do about it, as `glint diagnose` says it: one verdict for the model on screen, at most three remedies, and folded
+/// below their evidence. A click on a frame or highlight selects it; "Try" makes the change as one step of undo.
 class DiagnosisPanel : public QWidget {
   Q_OBJECT
  public:
@@ -37,7 +37,7 @@ class DiagnosisPanel : public QWidget {
   void addActions(Actions& actions, QMenu* menu, std::function<void()> show);
 
  public slots:
-  /// Compares the models and measures what helps, off the interface thread; the verdict appears at once and improves. Asked again: stops.
+  /// Compares models and measures what helps, off the interface thread; the verdict appears at once and improves. Twice: stops.
   void diagnose();
   void tryFirst();  ///< the first remedy
   void stop();
@@ -46,7 +46,7 @@ class DiagnosisPanel : public QWidget {
   void problemsChanged(int count);  ///< models that do not answer, and frames with missed or spurious highlights or large errors
   void problem(const QString& oneLine);
   void message(const QString& oneLine);
-  /// How the fits that were asked about went, for the 3D view; null = nothing is known, or of an earlier state.
+  /// Runs of the requested fits, for the 3D view; null = unknown, or of an earlier state.
   void runsChanged(const std::shared_ptr<const std::vector<glint::viz::DrawnRuns>>& runs);
 
  private:
@@ -55,18 +55,18 @@ class DiagnosisPanel : public QWidget {
   void fillProblems();
   /// The model that is selected, if nothing is wrong with it; else "".
   std::string goodModel() const;
-  /// Says so first, where the list has something about others.
+  /// Says first that the selected model is good, if the list is about others.
   void fillGood();
   /// What the highlights that this model gets wrong have in common.
   void addShared(QTreeWidgetItem* top, const Inspection& inspection, const std::string& model);
   bool isOf(const Inspection& inspection) const;
-  /// What is known by now.
+  /// Takes the diagnosis so far.
   void take(Diagnosis diagnosis);
   bool advised() const;  ///< there is an answer, and nothing has changed since
   void fillAdvice();
   void fillDiagnosis(const ModelDiagnosis& model);
   void tellRuns();
-  /// The line of a model below the verdict, made with this text where there is none.
+  /// The line of a model below the verdict, made with this text if missing.
   QTreeWidgetItem* itemOf(const std::string& model, const QString& otherwise);
   void addRemedy(QTreeWidgetItem* top, const Remedy& remedy);
   void enableTries();

@@ -9,8 +9,8 @@ class QTableView;
 
 namespace glint::gui {
 
-/// Which columns of the error table are shown: chosen in a menu, which a right click on a heading opens, and kept in the program's settings.
-/// Those of pinned results come and go with them.
+/// Which columns of the error table are shown: chosen in a menu, which a right click on a heading opens, and kept in the
+/// program's settings. Those of pinned results come and go with them.
 class ErrorColumns : public QObject {
   Q_OBJECT
  public:

@@ -59,12 +59,12 @@ class ErrorModel : public QAbstractTableModel {
   static QString idOf(int column);
   /// The models among the rows, from simple to rich.
   QStringList models() const;
-  /// All rows are of an earlier request than what is asked for: faded.
+  /// All rows belong to an earlier request: faded.
   void setEarlier(bool earlier);
 
  private:
   void rebuild();
-  /// The pinned row of the same highlight; null where there is none, or nothing to compare with.
+  /// The pinned row of the same highlight; null without one, or without pinned results.
   const HighlightRow* pinnedOf(int row) const;
   QString cell(int row, int column) const;
   QVariant sorted(int row, int column) const;

@@ -39,13 +39,13 @@ namespace glint::gui {
 
 namespace {
 constexpr int kSearchWidth = 90, kChangeWidth = 110;  // px
-constexpr int kHeadGapPx = 6;                         // between what stands above the table
+constexpr int kHeadGapPx = 6;                         // between the texts above the table
 constexpr int kLeastLetters = 6;                      // of a choice of rows; its list shows the rest
 constexpr int kColumnGapPx = 5;                       // of the summary
-constexpr double kWorstPct = 1000;                    // ten times the highlight's size: how far astray beyond that says nothing
+constexpr double kWorstPct = 1000;                    // ten times the highlight's size: how wrong beyond that says nothing
 constexpr int kIou = 4, kMissed = 6, kSpurious = 7;   // columns of its values
-// What the errors leave out comes before their tails: without it, a mean over few matched highlights looks too good. The last ones
-// are left out first.
+// What the errors leave out comes before their tails: without it, a mean over few matched highlights looks too good. The last
+// ones are left out first.
 constexpr int kColumnOrder[] = {0, 1, kMissed, kSpurious, 2, 3, kIou, 5};
 }  // namespace
 
@@ -103,7 +103,7 @@ ErrorTable::ErrorTable(Document& document, QWidget* parent) : QWidget(parent), d
                     : i == ErrorModel::Difference   ? kChangeWidth
                                                     : kNumberWidth,
                     fontMetrics().horizontalAdvance(model_->headerData(i, Qt::Horizontal, Qt::DisplayRole).toString()) + kArrow));
-  // Why there is no number stands beside "failed", not out of sight behind a row of dashes.
+  // The reason for a missing number is beside "failed", not out of sight behind a row of dashes.
   view_->horizontalHeader()->moveSection(ErrorModel::ReasonText, ErrorModel::Status + 1);
   // The errors themselves are in sight without scrolling.
   for (const int column : {ErrorModel::Difference, ErrorModel::Pinned, ErrorModel::ErrorPx, ErrorModel::ErrorPct})
@@ -282,7 +282,7 @@ void ErrorTable::showSummary() {
         s.poor ? toQString(s.reason) : QString()};
     if (s.answered) {
       const Statistic& e = s.contourErrorPct;
-      // As many decimals as the table below, so that points stand under points.
+      // As many decimals as the table below, so that points are under points.
       const auto fixed = [](double v, int decimals) {
         return !std::isfinite(v) ? QStringLiteral("–")
                : v > kWorstPct   ? QStringLiteral("> 1000")
@@ -343,7 +343,7 @@ int ErrorTable::nameWidth() const {
 }
 
 int ErrorTable::columnWidth(int column) const {
-  // Of the widest number that an error, a share or a count of this column's frames can be: it stays while a slider moves.
+  // Width of the largest error, share or count that this column can have: it stays while a slider moves.
   const QString widest = column < 4 ? QStringLiteral("999.999") : column == kIou ? QStringLiteral("0.9999") : QString();
   int width = summary_->fontMetrics().horizontalAdvance(widest);
   for (const SummaryRow& row : summaryRows_)
@@ -359,7 +359,7 @@ void ErrorTable::fitSummary() {
   }
   const int all = int(std::size(kColumnOrder));
   const QMargins margins = layout()->itemAt(0)->layout()->contentsMargins();
-  // Also where there are none: they come and go with each recomputation.
+  // Room for warnings even without any: they come and go with each recomputation.
   const int beside = warnings_->fontMetrics().horizontalAdvance(tr("%1 warnings").arg(99)) + 3 * kHeadGapPx;
   const int room = width() - margins.left() - margins.right() - beside;
   const int first = nameWidth() + 20;

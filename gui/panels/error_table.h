@@ -21,8 +21,9 @@ class ErrorModel;
 class StaleBadge;
 class RowFilter;
 
-/// Sortable table of errors with a summary line per model above it; rows are chosen by frame, model, status, words and brush, columns by a
-/// menu. Selecting a row selects its frame, model and highlight everywhere; Ctrl+C copies the selected rows as tab-separated text with a header.
+/// Sortable table of errors with a summary line per model above it. Frame, model, status, words and brush choose rows, a menu
+/// columns. Selecting a row selects its frame, model and highlight everywhere. Ctrl+C copies selected rows as tab-separated text
+/// with a header.
 class ErrorTable : public QWidget {
   Q_OBJECT
  public:
@@ -60,7 +61,7 @@ class ErrorTable : public QWidget {
   void showWarnings();
   void fitReason();
   void selectFromDocument();
-  /// The current row is not left half behind the lower edge.
+  /// Scrolls so that the lower edge does not cut the current row.
   void uncutCurrent();
   void selectFromTable();
 

@@ -10,7 +10,7 @@ namespace glint::gui {
 
 class ElidedLabel;
 
-/// While results are pinned: how the held-out errors of the shown model changed since, and what was changed, in words. Two lines, so that nothing jumps; the tool tip has all models.
+/// While results are pinned: what changed since, and the shown model's held-out errors. Always two lines; tool tip: all models.
 class PinnedSummary : public QWidget {
   Q_OBJECT
  public:

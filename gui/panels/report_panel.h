@@ -21,7 +21,7 @@ class ReportPanel : public QWidget {
   Q_OBJECT
  public:
   explicit ReportPanel(QWidget* parent = nullptr);
-  /// @param report  null = there is none yet, because `why`
+  /// @param report  null = no report yet, because `why`
   void show(const ReportPtr& report, const QString& why);
   QString text() const;
 

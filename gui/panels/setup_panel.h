@@ -13,7 +13,7 @@ class QListWidget;
 
 namespace glint::gui {
 
-/// What is computed: models (checkable, in their colours), training frames, and which pictures.
+/// Chooses what is computed: models (checkable, in their colours), training frames, and which pictures.
 class SetupPanel : public QWidget {
   Q_OBJECT
  public:

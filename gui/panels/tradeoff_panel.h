@@ -22,7 +22,7 @@ class TradeoffPlot : public PlotCanvas {
   /// Where a setting (an index into Tradeoff::points) is drawn; empty for one without a finite error.
   std::optional<QPointF> placeOf(int setting) const;
   void load(int setting);
-  /// What stands in place of a plot that there is not; empty when there is one.
+  /// The text in place of a missing plot; empty if there is one.
   QString message() const;
   void setMeasuring(bool measuring);
 

@@ -16,7 +16,7 @@ class QTabBar;
 
 namespace glint::gui {
 
-/// A coloured chip: a value with its verdict as colour and as a sign, so that it can be told without the colour.
+/// A coloured chip: a value with its verdict as colour and as a sign, which works without the colour.
 class Chip : public QAbstractButton {
   Q_OBJECT
  public:
@@ -25,7 +25,7 @@ class Chip : public QAbstractButton {
   void show(Verdict verdict, const QString& text);
   /// "%" or "px" after a space; "" = none.
   QString unit() const;
-  /// Where the row's name has it, no chip of the row does.
+  /// The chips show no unit if the row's name has it.
   void setUnitShown(bool shown);
   QSize sizeHint() const override;
   QSize minimumSizeHint() const override;
@@ -45,13 +45,13 @@ class Chip : public QAbstractButton {
 };
 
 /// The conditioning strip of one light (tabs choose where there are several, and say how each one is): one column per model, one
-/// row per quantity, the held-out errors of the selected model, the reason in words below (of the chip under the mouse, else the worst of the model that is selected).
-/// Follows every inspection. A click selects the chip's model.
+/// row per quantity, the held-out errors of the selected model, the reason in words below (of the chip under the mouse, else the
+/// worst of the model that is selected). Follows every inspection. A click selects the chip's model.
 class ConditioningPanel : public QWidget {
   Q_OBJECT
  public:
   explicit ConditioningPanel(Document& document, QWidget* parent = nullptr);
-  /// The chip of a model and quantity ("gap"), null when there is none.
+  /// The chip of a model and quantity ("gap"), null without one.
   Chip* chip(const std::string& model, const std::string& finding) const;
   QString reason() const;
 
@@ -67,7 +67,7 @@ class ConditioningPanel : public QWidget {
   void showLights();
   /// Shows the columns of this light, if there are any.
   void follow(const std::string& light);
-  /// The unit that all chips of a row have stands in its name, at any width and whatever the numbers are, so that it does not
+  /// A row's name has the unit of its chips, at any width and whatever the numbers are, so that it does not
   /// move.
   void placeUnit(int row);
   void explain(const Conditioning& c, const Finding& f);

@@ -27,9 +27,10 @@ class PlotCanvas : public QWidget {
   const draw::PlotData& plot() const;
   draw::PlotStyle style() const;
   void showAll();
-  /// Dragging marks a rectangle and tells what is in it; with Shift it moves what is zoomed. A click beside all samples marks nothing.
+  /// Dragging marks a rectangle and reports its content; with Shift it moves the zoomed part. A click beside the samples marks
+  /// none.
   void setBrushing(bool brushing) { brushing_ = brushing; }
-  /// Where a sample is drawn, in this widget's coordinates; empty when it is not.
+  /// Where a sample is drawn, in this widget's coordinates; empty if it is not.
   std::optional<QPointF> positionOf(const draw::PlotSample& sample) const;
   void renderNow() { repaint(); }
 

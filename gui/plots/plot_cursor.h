@@ -11,16 +11,16 @@
 
 namespace glint::gui {
 
-/// A point of a plot that the keyboard goes to, and the points from another one up to it. It stays with its point when the plot is
-/// drawn anew, also where the point is in another series then; it is gone where there is no such point any more.
+/// A point of a plot that the keyboard goes to, and the points from another one up to it. It stays with its point when the plot
+/// is drawn anew, even if the point is in another series then; it goes if that point no longer exists.
 class PlotCursor {
  public:
   /// Where a sample is drawn; nothing for what is not in sight.
   using Where = std::function<std::optional<QPointF>(const draw::PlotSample&)>;
   enum class Step { Next, Previous, First, Last };
 
-  /// Goes from point to point, left to right, of those above each other from the top. Without a point yet, Next begins at the first
-  /// and Previous at the last.
+  /// Goes from point to point, left to right, of those above each other from the top. Without a point yet, Next begins at the
+  /// first and Previous at the last.
   /// @param extend  the range goes on from where it began; else it is the point alone
   /// @return whether it is at a point now
   bool move(const draw::PlotData& plot, const Where& where, Step step, bool extend);

@@ -206,7 +206,7 @@ void PlotsPanel::refresh() {
     if (!pane.dirty || !pane.canvas->isVisible()) continue;
     pane.dirty = false;
     draw::PlotData plot = data(kind(i), pane);
-    plot.id = kind(i);  // also where there is nothing to show
+    plot.id = kind(i);  // even if there is nothing to show
     pane.canvas->show(plot);
     pane.canvas->setSelection(document_.selection());
   }
@@ -222,7 +222,7 @@ draw::PlotData PlotsPanel::data(const std::string& id, Pane& pane) {
     return empty;
   }
   if (!inspection) {
-    // Of a scene just opened, the selected frame's results come before all others, and the frame view shows them too.
+    // When a scene opens, the selected frame's results come before all others, and the frame view shows them too.
     if (id == "dial" && document_.frameInspection())
       return draw::residualDial(*document_.frameInspection(), s.frame, s.highlight);
     empty.empty = (!document_.scene()            ? tr("No scene")
@@ -356,7 +356,7 @@ void PlotsPanel::saveAs(const char* ending) {
   if (document_.shownStale() && kind(current_) != "tradeoff") return void(emit problem(notUpToDate()));
   const QString type = QString::fromLatin1(ending);
   std::optional<FigureLook> look;
-  if (type != QLatin1String("csv")) {  // numbers have no size; pictures go to light pages unless somebody asks for something else
+  if (type != QLatin1String("csv")) {  // numbers have no size; pictures go to light pages unless the user asks for something else
     const PlotCanvas* canvas = panes_[std::size_t(current_)].canvas;
     const QSize shown = QSize(std::max(320, canvas->width()), std::max(200, canvas->height())) * devicePixelRatioF();
     FigureDialog dialog(tr("Plot as picture"), QStringLiteral("plot"), shown, this);

@@ -37,7 +37,7 @@ class PlotsPanel : public QWidget {
   QComboBox* selector(int pane) const { return panes_[std::size_t(pane)].selector; }
   /// Nothing is being read for the plots on screen.
   bool idle() const { return !loader_.busy(); }
-  /// Draws what is on screen now, for a picture of the window.
+  /// Draws the plots on screen now, for a picture of the window.
   void renderNow();
   /// Writes the current plot, by the file's ending: .svg, .png or .csv. False, with one line in `problem`, when it cannot be
   /// written. @param look  none: as on screen, a PNG twice as fine

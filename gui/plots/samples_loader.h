@@ -17,7 +17,7 @@ class SamplesLoader : public QObject {
   Q_OBJECT
  public:
   explicit SamplesLoader(QObject* parent = nullptr) : QObject(parent) {}
-  /// Answers with loaded(). @param inspection  null = nothing is wanted any more.
+  /// Answers with loaded(). @param inspection  null = nothing is wanted.
   void want(std::shared_ptr<const Inspection> inspection, int frame, const std::string& model);
   bool busy() const { return job_.busy(); }
 

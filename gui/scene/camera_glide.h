@@ -14,7 +14,7 @@ namespace glint::gui {
 void setAnimationsWanted(bool wanted);
 bool animationsWanted();
 
-/// Moves a 3D view to another place within a moment, so that one sees where it goes. Whoever takes the view meanwhile has it.
+/// Moves a 3D view to another place within a moment, so that the way is seen. Ends if the user moves the view.
 class CameraGlide : public QObject {
   Q_OBJECT
  public:

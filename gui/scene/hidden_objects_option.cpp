@@ -11,7 +11,7 @@ namespace {
 const std::string kOption = "scene/hidden";
 const std::string kCamera = "camera ", kSurface = "surface ", kLight = "light ", kEllipsoid = "ellipsoid ";
 
-/// What follows the prefix of a line; nothing when it has another one.
+/// What follows the prefix of a line; nothing if it has another one.
 std::optional<std::string> after(const std::string& prefix, const std::string& line) {
   if (line.rfind(prefix, 0) != 0) return {};
   return line.substr(prefix.size());

@@ -25,7 +25,7 @@ class LayerList : public QListWidget {
   int view_ = 0;
 };
 
-/// The checklist, and while there are several views: which one it is about, and whether that has layers of its own.
+/// The checklist. With several views it names its view, and whether that has layers of its own.
 class LayerPanel : public QWidget {
   Q_OBJECT
  public:

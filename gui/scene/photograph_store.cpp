@@ -64,7 +64,7 @@ void PhotographStore::wish(const Key& key) {
   };
   const auto keep = [this, taken](const JobResult<Texture>& result) {
     if (result.overtaken || !wished_.erase(*taken)) return;
-    const Texture texture = result.value.value_or(nullptr);  // null is said by the layer as one that could not be read
+    const Texture texture = result.value.value_or(nullptr);  // the layer reports null as unreadable
     const int bytes = texture ? int(1024 * texture->GetActualMemorySize()) : 1;
     kept_.insert(*taken, new Kept{texture, pictures_.key}, std::min(bytes, int(kept_.maxCost())));
     emit arrived(taken->first);

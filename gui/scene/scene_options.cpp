@@ -122,7 +122,7 @@ std::set<std::string> ownLayers(const Document& document, int view) {
 }
 
 void setLayers(Document& document, int view, const std::set<std::string>& layers, const QString& text) {
-  std::string names(1, kBetween);  // own ones also where nothing is shown
+  std::string names(1, kBetween);  // own ones even if nothing is shown
   for (const std::string& name : layers) names += name + kBetween;
   document.setOption(viewOption("layers", view), names, text);
 }

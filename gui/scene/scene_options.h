@@ -19,7 +19,7 @@ enum class Arrangement { One, SideBySide, Grid, Wipe };
 struct SceneOptions {
   Arrangement arrangement = Arrangement::One;
   bool linked = true;                   ///< cameras move together, one eye for all; always in a wipe
-  double wipe = 0.5;                    ///< where the line stands, share of the width
+  double wipe = 0.5;                    ///< place of the line, share of the width
   bool parallel = false, solo = false;  ///< `parallel`: all views; else each its own
   double glyphScale = 1, opacity = 0.5;
   bool lampsMove = false;  ///< true lights can be dragged
@@ -29,7 +29,7 @@ struct SceneOptions {
     viz::Eye eye = viz::Eye::Outside;
     std::set<std::string> models;  ///< empty = all
     bool parallel = false;
-    std::string name;  ///< "A: dual"; "" where there is nothing to tell apart
+    std::string name;  ///< "A: dual"; "" if there is nothing to tell apart
   };
   std::array<View, kMostSceneViews> views;
 

@@ -128,7 +128,7 @@ void ScenePanel::buildBars() {
   auto* row = new QHBoxLayout(eyeBar_);
   row->setContentsMargins(8, 2, 4, 2);
   row->setSpacing(6);
-  row->addStretch(1);  // which camera it is stands in the picture
+  row->addStretch(1);  // the picture names the camera
   row->addWidget(new QLabel(tr("Photograph")));
   opacity_ = slider("photographOpacity", 0, 100, tr("Opacity of the photograph over the scene"));
   opacity_->setFixedWidth(110);
@@ -240,7 +240,7 @@ void ScenePanel::showOptions() {
   const SceneOptions options = sceneOptions(document_);
   const std::pair<Arrangement, bool> arranged(options.arrangement, options.linked);
   if (arranged_ && *arranged_ != arranged)
-    history_.leave(framed_ ? std::optional(views_->places()) : std::nullopt);  // before there are results they stand nowhere
+    history_.leave(framed_ ? std::optional(views_->places()) : std::nullopt);  // before there are results they have no place
   arranged_ = arranged;
   views_->apply(options);
   showLayers();               // a view may have its own
@@ -448,7 +448,7 @@ void ScenePanel::goToNextView() {
 }
 
 void ScenePanel::removeView(const QString& name) {
-  // An option cannot be taken away; an empty one is none.
+  // An option cannot be taken away; an empty one has no effect.
   document_.setOption(kSavedView + name.toStdString(), std::string(), tr("Delete %1").arg(shownText(name)));
 }
 

@@ -60,7 +60,7 @@ class ScenePanel : public QWidget {
   void frameAll();
   void frameSelection();
   void lookAlong(glint::viz::AxisView axis);
-  /// Of the active view, or of all where they are linked.
+  /// Moves the active view, or all views if they are linked.
   void setEye(glint::viz::Eye eye);
   void setArrangement(glint::gui::Arrangement arrangement);
   void setColourBy(const QString& by);
@@ -73,7 +73,7 @@ class ScenePanel : public QWidget {
  signals:
   void activeViewChanged(int view);
   void picked(const glint::viz::Picked& picked);
-  void influenceRequested();  ///< the cameras are to be coloured by what was not measured yet
+  void influenceRequested();  ///< camera colours need an influence that is not measured yet
 
  private:
   void moveLamp(const QString& light, const Eigen::Vector3d& by);
@@ -81,7 +81,7 @@ class ScenePanel : public QWidget {
   void buildBars();
   void showScene();
   void showInspection();
-  /// What there is to see before all results are there; null = nothing.
+  /// Shows what is known before all results exist; null = nothing.
   void showFirst(const std::shared_ptr<const Inspection>& inspection);
   void frameFirst();  ///< all views, from where the first results are looked at; not where the user has moved on
   bool movedBeforeResults() const;

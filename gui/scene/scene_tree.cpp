@@ -24,9 +24,9 @@ namespace glint::gui {
 using Kind = SceneObject::Kind;
 
 namespace {
-constexpr int kFewCameras = 40;  // more are folded away until somebody asks for them
+constexpr int kFewCameras = 40;  // more are folded away until the user asks for them
 
-/// Groups stay in their order, whatever the objects are sorted by; what has no number stands last in both orders.
+/// Groups stay in their order, whatever the objects are sorted by; what has no number comes last in both orders.
 class Shown : public QSortFilterProxyModel {
  public:
   using QSortFilterProxyModel::QSortFilterProxyModel;
@@ -153,7 +153,7 @@ void SceneTree::find(const QString& text) {
   const std::optional<SceneObject> current = objectAt(tree_->currentIndex());
   if (current && isSelected(*current, document_.selection())) return;
   selecting_ = true;
-  tree_->selectionModel()->clear();  // what stands there now is not what is selected
+  tree_->selectionModel()->clear();  // the current item is not what is selected
   selecting_ = false;
   mark({Kind::Camera, document_.selection().frame, -1, {}, {}});
 }

@@ -66,7 +66,7 @@ class SceneTree : public QWidget {
   draw::Selection followed_;  ///< the last selection that the tree has shown
   StepRun steps_;             ///< from row to row
   bool selecting_ = false;    ///< by this tree
-  int leaving_ = 0;           ///< rows go: what then becomes the current one was not chosen by anybody
+  int leaving_ = 0;           ///< rows are removed: the user has not chosen the new current one
   bool ticked_ = false;       ///< the double click that comes was on a tick
 };
 

@@ -34,9 +34,9 @@ bool isHiddenIn(const viz::HiddenObjects& hidden, const SceneObject& object);
 /// Whether the selection is, or holds, the object. Never of a surface.
 bool isSelected(const SceneObject& object, const draw::Selection& selection);
 
-/// The scene as a tree: surfaces, cameras with the highlights observed in them (which says of each by
-/// which models it is missed) and those predicted in vain, lights and the models' ellipsoids. A tick says
-/// that an object is drawn; to change it is one step of undo.
+/// The scene as a tree: surfaces, cameras with the highlights observed in them (each with the models
+/// that miss it) and the spurious ones, lights and the models' ellipsoids. A tick says
+/// that an object is drawn; changing it is one step of undo.
 class SceneTreeModel : public QAbstractItemModel {
   Q_OBJECT
  public:
@@ -89,7 +89,7 @@ class SceneTreeModel : public QAbstractItemModel {
   void emitChanged(int group);  ///< its head and its objects
   void emitHighlightsChanged(int camera);
   QString highlightName(const SceneObject& object) const;
-  std::vector<std::string> missedBy(const SceneObject& object) const;  ///< none where it is spurious, or where no one misses it
+  std::vector<std::string> missedBy(const SceneObject& object) const;  ///< none if it is spurious, or if no one misses it
   void emitAllChanged();
   std::array<bool, kGroups> layersShown() const;
   bool layerShown(const Group& group) const;

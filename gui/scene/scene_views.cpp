@@ -49,7 +49,7 @@ std::array<double, 4> viewport(const SceneOptions& o, int view) {
   return {0, 0, 1, 1};
 }
 
-/// What is drawn, for who does not see it.
+/// What is drawn, for users who do not see it.
 QString sceneWords(const Inspection* inspection, const draw::Selection& selection, int views) {
   if (!inspection || !inspection->scene || inspection->scene->frames.empty()) return QObject::tr("No results are drawn yet");
   const Scene& scene = *inspection->scene;

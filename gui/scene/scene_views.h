@@ -48,7 +48,7 @@ class SceneViews : public QWidget {
   /// See behindChanged().
   bool behind() const { return behind_; }
   bool busy() const { return photographs_->busy() || renderPending_; }
-  /// Where every view stands, shown or not; linked ones all where the active one does.
+  /// The place of every view, shown or not; linked ones all where the active one does.
   std::vector<viz::ViewPoint> places() const;
   void setPlaces(const std::vector<viz::ViewPoint>& places);
 
@@ -69,7 +69,7 @@ class SceneViews : public QWidget {
   void renderNow();
   /// Draws now as while something moves, and in full when nothing moved for a while.
   void renderMoving();
-  /// Something that is looked through says so; else what it says is "".
+  /// Names the camera that is looked through; else "".
   QString eyeText() const;
 
  signals:
@@ -77,7 +77,7 @@ class SceneViews : public QWidget {
   void picked(const glint::viz::Picked& picked);
   void emptyClicked();
   void activeChanged();
-  /// The picture is of another selection or other results than were set. It ends only after a pause, so that a mark does not
+  /// The picture shows an older selection or older results. It ends only after a pause, so that a mark does not
   /// flicker while one picture after the other is late.
   void behindChanged(bool behind);
   void wipeMoved(double share, bool released);
@@ -116,7 +116,7 @@ class SceneViews : public QWidget {
   std::shared_ptr<viz::LayerCache> cache_;
   PhotographStore* photographs_;
   std::array<std::unique_ptr<viz::SceneView>, kMostSceneViews> views_;
-  std::array<bool, kMostSceneViews> own_{};  ///< a view that is not shown comes back where it stands
+  std::array<bool, kMostSceneViews> own_{};  ///< a view that is not shown comes back to its place
   std::shared_ptr<const Inspection> inspection_;
   std::shared_ptr<const std::vector<LampAnswer>> lamps_;
   std::shared_ptr<const std::vector<viz::DrawnRuns>> runs_;

@@ -11,16 +11,16 @@ class QUndoCommand;
 
 namespace glint::gui {
 
-/// Where the 3D views stood in every arrangement of the undo history. Moving a view is no step of undo, but a step that arranges
-/// the views otherwise moves them: linked views follow one, new views start at one. Going back over such a step brings each view
-/// back to where it stood.
+/// The places of the 3D views in every arrangement of the undo history. Moving a view is no step of undo, but a step that
+/// arranges the views otherwise moves them: linked views follow one, new views start at one. Going back over such a step brings
+/// each view back to its place.
 class ViewHistory {
  public:
   using Places = std::vector<viz::ViewPoint>;  ///< of all views, shown or not
   explicit ViewHistory(const QUndoStack* stack) : stack_(stack) { forget(); }
   /// Another scene: its history starts here.
   void forget();
-  /// A step arranges the views otherwise; call before they move. @param places  nothing where they stand nowhere yet.
+  /// A step arranges the views otherwise; call before they move. @param places  nothing if they have no place yet.
   void leave(const std::optional<Places>& places);
   /// The stack's index has changed. Where the views go back to; nothing after a new step, or one that arranged nothing.
   std::optional<Places> arrive();

@@ -23,7 +23,7 @@ class Thumbnails : public QObject {
   /// Results whose pictures are wished for from now on; null or not synthesised: the scene's. Those before stay until they are
   /// replaced.
   void setInspection(std::shared_ptr<const Inspection> inspection);
-  /// Null while it is not there; frames without a readable picture stay so.
+  /// Null while it is missing; frames without a readable picture stay so.
   QImage find(int frame) const;
   /// Reads the missing ones of these, in this order; earlier wishes that were not reached are dropped.
   void want(const QList<int>& frames, int heightPx);

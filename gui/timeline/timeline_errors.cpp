@@ -114,7 +114,7 @@ void TimelineStrip::paintErrors(QPainter& painter) {
   painter.setRenderHint(QPainter::Antialiasing);
   paintMissed(painter);
   painter.setRenderHint(QPainter::Antialiasing, false);
-  const double left = c.left() - kBesideChart;  // of what stands beside the chart
+  const double left = c.left() - kBesideChart;  // of the texts beside the chart
   c.setTop(missedRow().bottom());
   if (missedRow().height() > 0) {
     painter.setPen(QPen(palette().color(QPalette::Mid), 1, Qt::DotLine));
@@ -125,7 +125,7 @@ void TimelineStrip::paintErrors(QPainter& painter) {
   const auto write = [&](const QString& text, double middle) {
     painter.drawText(QRectF(0, middle - lineHeight() / 2, left, lineHeight()), Qt::AlignRight | Qt::AlignVCenter, text);
   };
-  // Below the line where the word "missed" stands above it.
+  // The label stands below the line if the word "missed" is above it.
   const bool named = missedRow().height() > 0 && chart().height() >= kRoomForName * scale_;
   const double lower = named ? lineHeight() / 2 : 0;
   write(texts[0], c.top() + lower);

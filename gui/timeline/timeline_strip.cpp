@@ -386,7 +386,7 @@ void TimelineStrip::mousePressEvent(QMouseEvent* e) {
       showTip(e->globalPos(), lightTip(light, frame), this);
     return;
   }
-  if (e->modifiers() & Qt::ControlModifier) {  // a plain click selects: who wants to see a frame must not exclude it
+  if (e->modifiers() & Qt::ControlModifier) {  // a plain click selects: looking at a frame must not exclude it
     const FrameRole next[] = {FrameRole::HeldOut, FrameRole::Excluded,
                               FrameRole::Training};  // after training, held out, excluded
     document_.setRole(frame, next[int(document_.role(frame))]);
@@ -495,7 +495,7 @@ QString TimelineStrip::toolTip(int frame) const {
 
 QString TimelineStrip::tipAt(const QPoint& position) const {
   const int frame = frameAt(position), light = lightAt(position.y());
-  const bool beside = position.x() < left_;  // where the rows' names stand
+  const bool beside = position.x() < left_;  // the column of the rows' names
   if (light >= 0 && (frame >= 0 || beside))
     return frame < 0 ? lightTip(light, frame) : lightTip(light, frame) + QLatin1Char('\n') + toolTip(frame);
   return frame < 0 ? QString() : toolTip(frame);

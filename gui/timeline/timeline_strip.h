@@ -40,7 +40,7 @@ class TimelineStrip : public QWidget {
   /// Frames that are marked as without a readable photograph, with the reason.
   void setUnreadable(const QMap<int, QString>& reasons);
   QList<int> unreadable() const { return unreadable_.keys(); }
-  /// What the tool tip says there: of a light's row which light it is, and of the frame all there is; "" = none.
+  /// The tool tip there: for a light's row its light, for a frame all that is known; "" = none.
   QString tipAt(const QPoint& position) const;
   int backgroundsPainted() const { return backgroundsPainted_; }
   const Thumbnails& thumbnails() const { return thumbnails_; }
@@ -87,11 +87,11 @@ class TimelineStrip : public QWidget {
   double lineHeight() const { return kLine * scale_; }  ///< of a text, px
   QFont smallFont() const;
   void measure();                 ///< scale_ and left_, after font or axis have changed
-  QStringList axisTexts() const;  ///< what stands beside the chart: its upper end, its lower end, "log"
+  QStringList axisTexts() const;  ///< texts beside the chart: its upper end, its lower end, "log"
   QString toolTip(int frame) const;
   QString lightTip(int row, int frame) const;  ///< frame -1: of the row
   int lightAt(double y) const;                 ///< row, -1 outside
-  /// As everywhere else in the window; the end of a long one.
+  /// The id as elsewhere in the window; of a long one its end.
   QString idText(int frame) const;
   bool namesLights() const;  ///< their rows are high enough for their names
 
@@ -107,7 +107,7 @@ class TimelineStrip : public QWidget {
   } drawn_;  ///< of the request
   static constexpr double kLine = 14;
   double scale_ = 1;  ///< of its texts: 1 = as usual, or smaller
-  double left_ = 56;  ///< px, of the chart: left of it stand the texts of its axis
+  double left_ = 56;  ///< px, of the chart: the texts of its axis are left of it
   double first_ = 0, inView_ = 1;
   bool bars_ = false, thumbnailsOn_ = true;
   std::string plotted_;

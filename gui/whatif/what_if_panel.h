@@ -21,7 +21,7 @@ class QToolButton;
 namespace glint::gui {
 
 /// Highlights of the selected frame that there are knobs for, of the newest results: those before edits by hand, then those that
-/// were made by hand. Of each what edits did to it, "" = nothing.
+/// were made by hand. Each with what edits did to it, "" = nothing.
 QStringList highlightsToMove(const Document& document);
 /// One step of undo; equal positive gestures merge. @param value  in the unit of the knob.
 void turnKnob(Document& document, const WhatIfKnob& knob, double value, int gesture = 0);
@@ -33,8 +33,8 @@ class WhatIfPanel : public QScrollArea {
   Q_OBJECT
  public:
   explicit WhatIfPanel(Document& document, QWidget* parent = nullptr);
-  /// Brings a knob by its key, "synthesise" or "lobe" in sight and gives it the keyboard; where it counts only for synthesised
-  /// contours and there are none, what switches them on gets the keyboard. False for an unknown key.
+  /// Scrolls to the knob of this key, "synthesise" or "lobe", and gives it the keyboard. If the knob needs synthesised contours
+  /// and they are off, the switch that makes them gets the keyboard. False for an unknown key.
   bool showKnob(const std::string& key);
 
  private:

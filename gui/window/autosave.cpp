@@ -17,7 +17,7 @@ namespace glint::gui {
 namespace {
 QString lockOf(const QString& file) { return file + QStringLiteral(".lock"); }
 
-/// What killed programs left that nobody can recover: a half-written file, the lock of a program that had nothing unsaved.
+/// Remains of killed programs that cannot be recovered: a half-written file, the lock of a program that had nothing unsaved.
 void removeAbandoned(const QString& folder) {
   removeAbandonedTemporaries(folder.toStdString());
   for (const QFileInfo& info : QDir(folder).entryInfoList({lockOf(QStringLiteral("*.glint"))}, QDir::Files)) {

@@ -25,10 +25,10 @@ class Autosave : public QObject {
 
   struct Found {
     QString file;
-    QString of;  ///< session or scene that it is about; "" when the file does not tell
+    QString of;  ///< session or scene that it is about; "" if the file does not tell
     QDateTime when;
   };
-  /// The newest file that a program left behind that does not run any more; its own is none.
+  /// The newest file left behind by a program that runs no more; this program's own file does not count.
   std::optional<Found> leftBehind() const;
   static void discard(const Found& found);
   /// Waits until the newest state is written. For tests and for the end of the program.
@@ -46,7 +46,7 @@ class Autosave : public QObject {
   std::function<Opened()> snapshot_;
   QString folder_, file_;
   std::unique_ptr<QLockFile> lock_;
-  bool reported_ = false;  ///< a folder that cannot be written is told once
+  bool reported_ = false;  ///< a folder that cannot be written is reported once
   JobQueue jobs_{JobQueue::Rank::Foreground};
 };
 

@@ -36,7 +36,7 @@ void ChangedInputs::check() {
   if (!session || session->files.empty()) return;
   job_.run([this, session, scene = document_.sharedScene()](const JobToken& token) {
     QStringList lines;
-    // Files that are missing or were found elsewhere are said by what needs them.
+    // Files that are missing or were found elsewhere are reported by what needs them.
     std::set<std::string> changed;
     int outside = 0;
     for (const std::filesystem::path& p : filesOf(*scene)) changed.insert(p.string() + ": changed");

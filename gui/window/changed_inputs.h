@@ -13,7 +13,7 @@ namespace glint::gui {
 class MessageBar;
 
 /// Inputs of the open session that are not what they were when it was saved: their hashes are compared once the first results are
-/// there, and a difference is said on the message bar and, file by file, in the log.
+/// there, and a difference is shown on the message bar and, file by file, in the log.
 class ChangedInputs : public QObject {
   Q_OBJECT
  public:

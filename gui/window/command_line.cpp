@@ -23,7 +23,7 @@ Theme themeOf(const QString& name) {
     throw InputError("", "--theme", "'" + name.toStdString() + "' is not one of: light, dark");
   return name == QStringLiteral("dark") ? Theme::Dark : Theme::Light;
 }
-/// Null where there is none of this name.
+/// Null for an unknown name.
 const ChoiceOption* choiceOption(const QString& name) {
   for (const ChoiceOption& option : choiceOptions())
     if (name == QLatin1String(option.flag)) return &option;

@@ -17,11 +17,11 @@ struct CommandLine {
   InputChoices choices;  ///< how it is read, where it is a capture of another program
   QString layout = QStringLiteral("debug");
   std::optional<Theme> theme;  ///< nothing: the one of last time
-  QStringList
-      balls;        ///< outlines of mirror balls, as `glint lights --ball` takes them: INPUT is a folder of photographs of these
-  QString exclude;  ///< photographs of balls that are left out
-  QString frame;    ///< frame id, or number where no id matches; "" = first
-  QStringList run;  ///< ids of actions to run once the scene is shown
+  /// Outlines of mirror balls, as `glint lights --ball` takes them: INPUT is a folder of photographs of these.
+  QStringList balls;
+  QString exclude;      ///< photographs of balls that are left out
+  QString frame;        ///< frame id, or number where no id matches; "" = first
+  QStringList run;      ///< ids of actions to run once the scene is shown
   QString screenshot;   ///< PNG to write; "" = stay open
   QSize size;           ///< empty = default
   QStringList limits;   ///< "NAME=VALUE", for setLimit()

@@ -9,7 +9,7 @@ class ErrorTable;
 class FramePanel;
 class PlotsPanel;
 
-/// A click with the right button on a photograph, a plot or the errors: what one does there most.
+/// Menus of the right mouse button on a photograph, a plot or the errors: the most frequent actions there.
 void offerMenus(const Actions& actions, FramePanel& frame, PlotsPanel& plots, ErrorTable& errors);
 
 }  // namespace glint::gui

@@ -20,7 +20,7 @@ namespace glint::gui {
 class Docks {
  public:
   explicit Docks(QMainWindow* window) : window_(window) {}
-  /// Content that needs much room gets scroll bars. It has no place in the window before the first apply().
+  /// Large content gets scroll bars. It has no place in the window before the first apply().
   /// @param behind  name of the dock that it is a tab behind; "" = it has a place of its own, where the window is large.
   QDockWidget* add(const char* name, const QString& title, QWidget* content, Qt::DockWidgetArea area, const char* behind = "");
   /// Shows a dock and puts it before its tabs; where it would cover the dock that is to stay visible, beside the views instead.

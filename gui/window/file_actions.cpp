@@ -136,7 +136,7 @@ void FileActions::openDialog() {
 }
 
 void FileActions::openFolderDialog() {
-  // Of a file, the dialog would take the name for a folder's, which does not exist.
+  // The dialog would take a file's name for that of a folder, which does not exist.
   const QString now = document_.inputFile();
   const QString path = QFileDialog::getExistingDirectory(window_, tr("Open scene folder"),
                                                          now.isEmpty() ? QString() : QFileInfo(now).absolutePath());
@@ -283,7 +283,7 @@ bool FileActions::saveAsTo(QString path) {
   return answer == SaveRules::Answer::Write && saveTo(path);
 }
 
-/// A session or scene that was written names what is on screen, which a person opened or pointed at: it opens again without a question.
+/// A written session or scene names what is on screen, which a person opened or pointed at: it opens again without a question.
 void FileActions::rememberFoldersOf(const QString& session) {
   const Scene& scene = *document_.scene();
   std::vector<std::filesystem::path> named;

@@ -24,7 +24,7 @@ class FileActions : public QObject {
   FileActions(const Engine& engine, Document& document, Runner& runner, QWidget* window);
   void addActions(Actions& actions, QMenu* menu);
   QStringList recent() const;
-  /// The path of the first local file of a drop; "" when there is none.
+  /// The path of the first local file of a drop; "" without one.
   static QString dropped(const QMimeData* data);
   /// True when nothing is lost, or the user says so. Waits for a save that is under way.
   bool mayDiscard();
@@ -42,21 +42,21 @@ class FileActions : public QObject {
   /// scene or in the one that lies above it.
   void drop(const QString& path);
   void open(const QString& path);
-  /// What a program left behind that died. @param of  the session or scene that it is about.
+  /// Opens what a program left behind that died. @param of  the session or scene that it is about.
   void openRecovered(const QString& file, const QString& of);
-  /// Opens what was refused, because a person says that its folder may be read. That is remembered, for this file and this folder; a
-  /// file cannot say it itself.
+  /// Opens what was refused, because the user allows its folder. Remembers the permission, for this file and this
+  /// folder; a file cannot give it to itself.
   void allow(const glint::gui::OutsidePtr& outside);
-  /// Opens a session or scene of which a file lies elsewhere now. False when the user gave up.
+  /// Opens a session or scene of which a file lies elsewhere now. False if the user gave up.
   bool openRelinked(const QString& path, const glint::Relinked& instead);
-  /// Takes over what is on screen with another scene; layout and 3D camera stay.
+  /// Keeps what is on screen, with another scene; layout and 3D camera stay.
   void reopen(const glint::gui::OpenedPtr& opened);
-  /// Asks where a scene or mesh is, starting in `folder`; "" when the user gave up.
+  /// Asks where a scene or mesh is, starting in `folder`; "" if the user gave up.
   static QString whereIs(const QString& file, bool mesh, const QString& folder, QWidget* window);
   /// Asks where a missing scene or mesh is, then opens what needs it with it. Other meshes that are missing are looked for
-  /// beside it. False when the user gave up.
+  /// beside it. False if the user gave up.
   bool locate(const glint::gui::MissingPtr& missing);
-  /// Save in the background; false when there was nothing to save or the user gave up. Message or problem tells how it ended.
+  /// Save in the background; false if there was nothing to save or the user gave up. Message or problem tells how it ended.
   bool save();
   bool saveAs();
   /// Save as, to a file that was chosen; ".glint" is appended to a name without an ending. Asks before it replaces a session, and

@@ -10,7 +10,7 @@ class QWidget;
 
 namespace glint::gui {
 
-/// The content of a window that lies on the screen with its frame: smaller and moved as far as that takes.
+/// The content of a window that lies on the screen with its frame: smaller and moved if necessary.
 /// @param frame  around the content: title bar and borders.  @param available  the screen without panels of the desktop.
 QRect contentWithin(const QRect& content, const QMargins& frame, const QRect& available);
 

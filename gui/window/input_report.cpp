@@ -51,10 +51,10 @@ void InputReport::take(const ReportPtr& report) {
   for (const ConventionReport::Proposal& p : report->corrections)
     answers << std::pair(tr("%1…").arg(toQString(p.correction.words)), [this, c = p.correction] { fix(c); });
   answers << std::pair(tr("Show report"), [this] { emit shown(); });
-  // What can be corrected at once stands first.
+  // What can be corrected at once comes first.
   const std::size_t first = report->corrections.empty() ? 0 : report->corrections.front().finding;
   offered_ = toQString(report->findings[first]);
-  offered_[0] = offered_[0].toUpper();  // a sentence there; in lists a word stands before it
+  offered_[0] = offered_[0].toUpper();  // a sentence there; in lists a word precedes it
   if (report->findings.size() > 1) offered_ += tr(" (1 of %1 findings)").arg(report->findings.size());
   bar_.queueOffer(offered_, answers);
 }

@@ -13,8 +13,8 @@ namespace glint::gui {
 class FileActions;
 class MessageBar;
 
-/// The convention report of what is open: made in the background once the first results are there, or could not be computed; offers
-/// the corrections that it proposes, and writes and opens the corrected scene.
+/// The convention report of what is open: made in the background once the first results are there, or could not be computed;
+/// offers the corrections that it proposes, and writes and opens the corrected scene.
 class InputReport : public QObject {
   Q_OBJECT
  public:

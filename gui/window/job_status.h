@@ -13,7 +13,7 @@ class QToolButton;
 
 namespace glint::gui {
 
-/// Right end of the status line: what runs, how far it is, and a button that stops it.
+/// Right end of the status line: the running job, its progress, and a button that stops it.
 class JobStatus : public QWidget {
   Q_OBJECT
  public:
@@ -24,7 +24,7 @@ class JobStatus : public QWidget {
 
  private:
   void refresh();
-  /// What the badges of out-of-date panels say.
+  /// Updates the badges of out-of-date panels.
   void markBadges();
 
   Document& document_;

@@ -363,7 +363,7 @@ void MainWindow::buildMenus() {
                  exports_->longJob()->cancel();
                },
                {{Qt::Key_Escape}, "stop"});
-  // What has a button in a panel is found by who looks for it in menus or the palette, too.
+  // Actions with a button in a panel are in menus and the palette, too.
   const auto press = [this](const char* button) {
     return [this, button] { findChild<QAbstractButton*>(QLatin1String(button))->click(); };
   };
@@ -557,7 +557,7 @@ void MainWindow::offerToLocate(const QString& oneLine, const MissingPtr& missing
 
 void MainWindow::log(const QString& line) { log_->add(line); }
 
-/// In the log and, for a while, in the status line.
+/// Writes a line to the log and, for a while, to the status line.
 void MainWindow::tell(const QString& line) {
   log(line);
   // A menu that closes clears the line of status tips: after that.

@@ -81,7 +81,7 @@ class MainWindow : public QMainWindow {
 
  protected:
   void closeEvent(QCloseEvent* e) override;
-  /// As Qt's, but past what lies behind another tab.
+  /// As Qt's, but skips what lies behind another tab.
   bool focusNextPrevChild(bool next) override;
   void resizeEvent(QResizeEvent* e) override;
   bool event(QEvent* e) override;
@@ -141,10 +141,10 @@ class MainWindow : public QMainWindow {
   ScriptedActions* script_ = nullptr;
   UnreadableFiles* unreadable_ = nullptr;
   MissingPtr located_;  ///< was pointed at, and is being opened
-  OutsidePtr outside_;  ///< a folder that the opening that failed last may not name; null = for another reason, or it was said
-  UndecidedPtr
-      undecided_;       ///< what the opening that failed last would have to be told; null = for another reason, or it was said
-  MissingPtr missing_;  ///< why the opening that failed last did; null = for another reason, or it was said
+  OutsidePtr outside_;  ///< a folder that the opening that failed last may not name; null = for another reason, or already said
+  /// What the opening that failed last would have to be told; null = for another reason, or already said.
+  UndecidedPtr undecided_;
+  MissingPtr missing_;      ///< why the opening that failed last did; null = for another reason, or already said
   bool runFailed_ = false;  ///< the message bar shows why the last run failed
 };
 

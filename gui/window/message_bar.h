@@ -14,7 +14,7 @@ class QToolButton;
 
 namespace glint::gui {
 
-/// One line across the window for what went wrong or what can be done now; it stays until it is closed, answered or overtaken,
+/// One line across the window about an error or a possible action; it stays until it is closed, answered or overtaken,
 /// and blocks nothing.
 class MessageBar : public QWidget {
   Q_OBJECT
@@ -23,19 +23,19 @@ class MessageBar : public QWidget {
 
   explicit MessageBar(QWidget* parent = nullptr);
   void showError(const QString& oneLine, const Answers& answers = {});
-  /// Not an error: something to be decided. What takes its place gives it back when it is closed or answered.
+  /// Not an error, but a decision. What replaces it gives its place back when closed or answered.
   void showOffer(const QString& oneLine, const Answers& answers);
   /// The same, after an error that is on screen.
   void queueOffer(const QString& oneLine, const Answers& answers);
-  /// Worth knowing, asks for nothing: whatever else is to be said may take its place.
+  /// Worth knowing, asks for nothing: any other message may replace it.
   void showNotice(const QString& oneLine);
-  /// Something has worked since: an error that asks for nothing goes.
+  /// Something has worked since: removes an error that asks for nothing.
   void overtakeError();
   /// An error or an offer waits for an answer.
   bool waits() const { return !isHidden() && !notice_; }
   /// An error is on screen; an offer may give way to another one.
   bool failed() const { return waits() && !offerShown_; }
-  /// The offer holds no longer: what it was about is closed.
+  /// Withdraws an offer whose subject is closed.
   void withdraw(const QString& oneLine);
   QString text() const;
 
@@ -47,7 +47,7 @@ class MessageBar : public QWidget {
   QLabel* label_;
   QList<QWidget*> buttons_;
   bool notice_ = false;
-  std::optional<std::pair<QString, Answers>> offer_;  ///< that nobody has answered or closed
+  std::optional<std::pair<QString, Answers>> offer_;  ///< not yet answered or closed
   bool offerShown_ = false;
 };
 

@@ -16,12 +16,12 @@ class OwnLayouts : public QObject {
   Q_OBJECT
  public:
   static constexpr int kPlaces = 3;
-  /// @param views  what shares the middle of the window
+  /// @param views  the views that share the middle of the window
   OwnLayouts(QMainWindow* window, QSplitter* views);
   void addActions(Actions& actions, QMenu* menu);
   bool has(int place) const;  ///< 1 .. kPlaces
-  void keep(int place);       ///< what is on screen takes the place
-  void apply(int place);      ///< nothing happens where nothing was kept
+  void keep(int place);       ///< stores the present arrangement in the place
+  void apply(int place);      ///< does nothing for an empty place
 
  signals:
   void applied();

@@ -149,7 +149,7 @@ void Palette::popUp() {
 void Palette::search() {
   const QString typed = line_->text().trimmed();
   const QList<PaletteItem> all = source_(typed);
-  // Of a line "name = value" the name is what is looked for.
+  // In a line "name = value", only the name is looked for.
   const QString wanted = typed.section(QLatin1Char('='), 0, 0).trimmed();
   std::vector<std::pair<PaletteMatch, int>> found;  // place in `all`
   for (int i = 0; i < all.size(); ++i) {
@@ -216,7 +216,7 @@ void Palette::runCurrent() {
   }
   if (!shown_[row].enabled) {
     const QString& detail = shown_[row].detail;
-    // Of a value its problem; an action has its keys there.
+    // The detail of a value is its problem, that of an action its keys.
     const bool isValue = line_->text().contains(QLatin1Char('='));
     complain(line_, isValue && !detail.isEmpty() ? QStringLiteral("%1: %2").arg(shown_[row].title, detail)
                                                  : tr("%1 is not available now").arg(shown_[row].title));

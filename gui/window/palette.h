@@ -21,10 +21,10 @@ struct PaletteItem {
   QString detail;  ///< a shortcut or a value
   bool enabled = true;
   std::function<void()> run;
-  QString words = {};  ///< what else one may call it, not shown: its tool tip, the values that it takes, synonyms
+  QString words = {};  ///< other words for it, not shown: its tool tip, its values, synonyms
 };
 
-/// How well an item answers what was typed. The way in which it was found counts before the score.
+/// How well an item matches the typed text. The way of the match counts before the score.
 struct PaletteMatch {
   enum class Way {
     Scattered,  ///< letters in order with anything between them
@@ -36,7 +36,7 @@ struct PaletteMatch {
   friend auto operator<=>(const PaletteMatch&, const PaletteMatch&) = default;
 };
 /// Every word that was typed must occur in the item. A whole word counts more than the start of one, that more than the inside;
-/// the title counts most, then the place, then the starts of its other words; American spelling is understood. Nothing when a
+/// the title counts most, then the place, then the starts of its other words; American spelling is understood. Nothing if a
 /// word does not occur.
 std::optional<PaletteMatch> matchOf(const QString& typed, const PaletteItem& item);
 
@@ -44,7 +44,7 @@ std::optional<PaletteMatch> matchOf(const QString& typed, const PaletteItem& ite
 class Palette : public QFrame {
   Q_OBJECT
  public:
-  /// @param items  asked for whenever what is typed changes, best in the order that an empty line should show.
+  /// @param items  called whenever the typed text changes; for an empty line, the best come first.
   Palette(std::function<QList<PaletteItem>(const QString& typed)> items, QWidget* window);
   void popUp();
   /// The action that opens it: its keys, pressed again, select what was typed.

@@ -13,8 +13,8 @@ struct PaletteTargets {
   std::function<int()> activeView = [] { return 0; };  ///< whose layers are meant
 };
 
-/// What the palette offers for what is typed: every action, every layer of the active 3D view, every parameter and every knob of the what-if with its value, the
-/// frames once a number is typed, and for "name = value" the parameters and knobs with that value, to be set at once.
+/// What the palette offers for the typed text: actions, layers of the active 3D view, parameters and knobs of the what-if with
+/// their values; for a number frames, too; and for "name = value" the parameters and knobs with that value, to be set at once.
 QList<PaletteItem> paletteItems(const QString& typed, const Actions& actions, Document& document, const PaletteTargets& targets);
 
 }  // namespace glint::gui

@@ -15,8 +15,8 @@ class QMainWindow;
 
 namespace glint::gui {
 
-/// Two states side by side: pins the newest results, flips every view between them and the newest ones, and says everywhere which of both is shown.
-/// While the pinned ones are shown nothing can be exported: files would not be of what the settings say.
+/// Two states side by side: pins the newest results, flips every view between them and the newest ones, and shows everywhere
+/// which of both is shown. While the pinned ones are shown nothing can be exported: files would not be of what the settings say.
 class PinnedResults : public QObject {
   Q_OBJECT
  public:

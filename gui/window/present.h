@@ -13,8 +13,8 @@ class QWidget;
 
 namespace glint::gui {
 
-/// The window as one shows it to a room: the whole screen, large texts, nothing but the views, the timeline and what is explained; a
-/// remote control steps (Page down, Page up; B for a black screen), and Esc gives back everything as it was.
+/// Shows the window to a room: the whole screen, large texts, nothing but the views, the timeline and what is
+/// explained; a remote control steps (Page down, Page up; B for a black screen), and Esc gives back everything as it was.
 class Present : public QObject {
   Q_OBJECT
  public:

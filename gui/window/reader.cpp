@@ -124,7 +124,7 @@ void Reader::goTo(const QString& page, const QString& place) {
   text_->verticalScrollBar()->setValue(int(box.top()));
 }
 
-/// @param next  else from where the search stands, so that a word that is being typed stays where it was found.
+/// @param next  else from the place of the search, so that a word that is being typed stays where it was found.
 void Reader::find(bool next) {
   QTextCursor at = text_->textCursor();
   if (!next) at.setPosition(at.selectionStart());

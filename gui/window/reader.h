@@ -12,16 +12,16 @@ class QUrl;
 
 namespace glint::gui {
 
-/// A window beside the others in which one reads: the manual, the method, the notation, and the glossary. It needs no network: the
-/// pages are part of the program.
+/// A separate window for reading: the manual, the method, the notation, and the glossary. It needs no network:
+/// the pages are part of the program.
 class Reader : public QDialog {
   Q_OBJECT
  public:
   explicit Reader(QWidget* parent = nullptr);
   /// Shows a page, and brings the window to the front.
   /// @param page   "manual", "method", "notation" or "glossary"; another one leaves the page as it is.
-  /// @param place  of the method: a section's number ("8a"); of the glossary: a word; of the others: how a heading begins. "" or what is
-  ///               not there = the beginning.
+  /// @param place  of the method: a section's number ("8a"); of the glossary: a word; of the others: how a heading begins. "" or
+  ///               a missing one = the beginning.
   void openPage(const QString& page, const QString& place = {});
 
  private:

@@ -12,7 +12,7 @@ namespace glint::gui {
 class FileActions;
 class MessageBar;
 
-/// Keeps an autosave while the program runs, and at its start offers what a program that died left behind.
+/// Keeps an autosave while the program runs, and at its start offers what a crashed program left behind.
 class Recovery : public QObject {
   Q_OBJECT
  public:

@@ -17,7 +17,7 @@ namespace {
 QString tr(const char* text) { return QCoreApplication::translate("SaveRules", text); }
 QString shownPath(const QString& file) { return shownText(QDir::toNativeSeparators(file)); }
 
-/// A file that is there and is no session stays as it is, whoever chose it.
+/// An existing file that is no session stays as it is, even if the user chose it.
 QString whyNoSession(const QString& file) {
   if (QFileInfo(file).isDir()) return tr("%1 is a folder; choose another name").arg(shownPath(file));
   if (documentKind(file.toStdString()) == "glint_session") return {};

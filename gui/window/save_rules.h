@@ -11,14 +11,14 @@ class QWidget;
 
 namespace glint::gui {
 
-/// Which session files may be replaced: the one that was opened, as long as nobody else has changed it; any other session after a
-/// question; nothing else, and nothing that came with the program.
+/// Which session files may be replaced: the one that was opened, as long as no other program has changed it; any other session
+/// after a question; nothing else, and nothing that came with the program.
 class SaveRules {
  public:
   enum class Answer { Write, SaveAs, Cancel };
 
   SaveRules(const Document& document, QWidget* window) : document_(document), window_(window) {}
-  /// A session was opened from, or saved to this file, which held this then; "" = not known.
+  /// A session was opened from, or saved to, this file with this stamp; "" = unknown.
   void follow(const QString& session, const std::string& stamp);
   /// Another window or program that has the open session open, in words; "" = none.
   QString otherHolder() { return lock_.otherHolder(document_.sessionFile()); }

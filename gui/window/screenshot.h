@@ -9,8 +9,8 @@ namespace glint::gui {
 class MainWindow;
 
 /// `--screenshot`: writes the window as PNG and ends the program, with 0, or with 2 and one line on standard error when
-/// the input or the file cannot be used. A file of what is open, one that came with the program, or one that holds something else
-/// than a PNG stays as it is. Without `waitIdle` it waits for the input to be open, not for results.
+/// the input or the file cannot be used. A file of the open input, one that came with the program, or one that holds something
+/// else than a PNG stays as it is. Without `waitIdle` it waits for the input to be open, not for results.
 class Screenshot : public QObject {
   Q_OBJECT
  public:

@@ -7,12 +7,12 @@
 
 namespace glint::gui {
 
-/// Tells programs that have the same session open from each other. The lock lies in the program's own folder, not beside the session,
-/// and is for telling only: nothing is locked. What a program left behind that ended unexpectedly does not count, and is removed.
+/// Tells programs that have the same session open from each other. The lock lies in the program's folder, not beside the session,
+/// and only informs: nothing is locked. The lock of a program that ended unexpectedly does not count, and is removed.
 class SessionLock {
  public:
   SessionLock();
-  /// This window has the session open from now on, and no other any more; "" = none.
+  /// From now on this window has this session open, and no other; "" = none.
   void hold(const QString& session);
   /// Another window or program that has the session open, in words; "" = none.
   QString otherHolder(const QString& session);

@@ -16,12 +16,12 @@ class ShortcutDialog : public QDialog {
   Q_OBJECT
  public:
   explicit ShortcutDialog(Actions& actions, QWidget* parent = nullptr);
-  /// Gives an action one key (none when empty).
+  /// Gives an action one key (none if empty).
   void setShortcut(QAction* action, const QKeySequence& key);
 
  private:
   void fill();
-  /// After a question.
+  /// Asks before it resets.
   void resetAll();
   void filter();
 

@@ -29,8 +29,8 @@ class Tile : public QAbstractButton {
   QPixmap picture_;
 };
 
-/// What an empty window shows: what this is, what to do first, lessons and sessions to look at, and the recent files. Tab and the arrow
-/// keys go through all of it.
+/// The content of an empty window: what this is, what to do first, lessons and sessions, and the recent files. Tab and the
+/// arrow keys go through all of it.
 class StartPage : public QWidget {
   Q_OBJECT
  public:

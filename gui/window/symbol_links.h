@@ -16,14 +16,14 @@ class DualityWindow;
 class EquationBrowser;
 class SceneViews;
 
-/// Joins a text's symbols with the 3D views: what one points at in either lights up in both. Also the plane that is lit in the window
-/// of primal and dual, which touches its cone in 3D; and back, what is clicked in 3D lights its plane there.
+/// Joins a text's symbols with the 3D views: what the user points at in either lights up in both. Also the plane that is lit in
+/// the window of primal and dual, which touches its cone in 3D; and back, what is clicked in 3D lights its plane there.
 class SymbolLinks : public QObject {
   Q_OBJECT
  public:
   SymbolLinks(EquationBrowser& text, SceneViews& views, QObject* parent);
   void follow(DualityWindow& duality);
-  /// Of the first view.
+  /// What is lit in the first view.
   const viz::LitParts& lit() const { return *lit_.front(); }
   /// Lights the symbols of what is drawn at a place of the widget of the views, and that.
   void pointAt(const QPoint& place);

@@ -22,8 +22,8 @@ class Reader;
 class ScenePanel;
 class WindowLayout;
 
-/// What explains the program and what it shows: wires the explanation to the views and to the arrangement of the window, opens pages to
-/// read, and presents.
+/// Explains the program and its pictures: wires the explanation to the views and to the arrangement of the window, opens
+/// pages to read, and presents.
 class Teaching : public QObject {
   Q_OBJECT
  public:

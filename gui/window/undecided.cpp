@@ -30,7 +30,7 @@ QString titleOf(const UndecidedInput::Answer& answer, Question question) {
   return question == Question::Reading ? QObject::tr("Open %1").arg(words) : words;
 }
 
-// Each asks for an answer and opens with it; false when the user gives none.
+// Each asks for an answer and opens with it; false if the user gives none.
 
 /// @param filter  as QFileDialog takes it
 bool chooseFile(const UndecidedPtr& undecided, QWidget* window, const QString& title, const QString& filter, const Open& open) {

@@ -10,8 +10,8 @@ class QWidget;
 
 namespace glint::gui {
 
-/// Shows a message with buttons for what the files leave open: one for each answer, and one that asks for a mesh, for poses or for
-/// intrinsics. Whoever cancels such a question finds the message there again.
+/// Shows a message with buttons for what the files leave undecided: one for each answer, and one that asks for a mesh, for poses
+/// or for intrinsics. A user who cancels such a question finds the message there again.
 /// @param open  opens the input, or the folder inside it that is meant, with this in addition
 void askIn(MessageBar& bar, const QString& oneLine, const UndecidedPtr& undecided, QWidget* window,
            const std::function<void(const QString& path, const Relinked&)>& open);

@@ -24,7 +24,7 @@ namespace glint::gui {
 namespace {
 constexpr int kNamed = 2;  // on the message bar; the list has all
 
-/// Frames whose photograph and mask the pipeline has decoded, so that nobody needs to look at their files again.
+/// Frames whose photograph and mask the pipeline has decoded, so that their files need not be read again.
 bool decoded(const Inspection& in, std::size_t frame) {
   const Frame& f = in.given->frames[frame];
   return f.highlights.empty() && !in.request.whatIf.synthesise && (f.radiance.empty() || f.image.empty()) &&

@@ -23,7 +23,7 @@ namespace glint::gui {
 class MessageBar;
 
 /// The files of the open scene's frames that cannot be read, with file and reason: photographs, depth maps, normal maps and
-/// masks. Those that the pipeline or a view failed at, and those whose file is missing, empty or cut off, which is found out once
+/// masks. Those that the pipeline or a view could not read, and those whose file is missing, empty or cut off, known once
 /// the first results are there. Names them all in one place, and looks for them in another folder when asked. The same for a mesh
 /// that is there but damaged, one at a time: nothing is computed without it.
 class UnreadableFiles : public QObject {
@@ -37,7 +37,7 @@ class UnreadableFiles : public QObject {
   QMap<int, QString> all(FrameFile kind = FrameFile::Photograph) const;
   bool busy() const { return job_.busy(); }
 
-  /// Shows a failure with the offer to locate the mesh that it is about; false when it is about none of the scene's.
+  /// Shows a failure with the offer to locate the mesh that it is about; false if it is about none of the scene's.
   bool offerMesh(const QString& oneLine);
 
  public slots:

@@ -14,13 +14,13 @@ class QSplitter;
 namespace glint::gui {
 
 /// How the docks and the views in the middle of the window are arranged: as one of the layouts says, as the user keeps them, or
-/// for a while as something needs that the user has started.
+/// for a while, as a task needs that the user has started.
 class WindowLayout : public QObject {
   Q_OBJECT
  public:
-  /// @param views  what shares the middle of the window.
+  /// @param views  the views that share the middle of the window.
   WindowLayout(QMainWindow* window, Docks& docks, QSplitter* views);
-  /// Of the layout that was applied last.
+  /// Name of the layout that was applied last.
   const QString& name() const { return name_; }
   void apply(const QString& name);
   /// No docks while nothing is open. @see showAgain
@@ -29,7 +29,7 @@ class WindowLayout : public QObject {
   void showAgain();
   /// The user's own arrangement was applied: it stays as it is, whatever size the window gets.
   void setOwn();
-  /// Arranges the window as the layout `dock` does, where that dock is not shown as it should be, and brings the dock to the front.
+  /// Arranges the window as the layout `dock` does, if that dock is not shown as it should be, and brings it to the front.
   /// @param rearrange  else the dock is only brought to the front.
   /// @return whether the views have another size now.
   bool makeRoomFor(const QString& dock, bool rearrange);
@@ -53,7 +53,7 @@ class WindowLayout : public QObject {
   QString name_;
   bool own_ = false;
   bool hidden_ = false;                ///< see hideUntilOpen()
-  std::optional<Arrangement> before_;  ///< to go back to; none where makeRoomFor() found what it wants
+  std::optional<Arrangement> before_;  ///< to go back to; none if makeRoomFor() found what it wants
 };
 
 }  // namespace glint::gui

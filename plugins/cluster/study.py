@@ -88,7 +88,8 @@ class Task:
         for file in (self.result, self.done, self.failed):  # of another command, or of a run that failed
             file.unlink(missing_ok=True)
         started = time.monotonic()
-        ended = subprocess.run([*self.command, "--json", str(self.result)], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
+        ended = subprocess.run([*self.command, "--json", str(self.result)], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
+                               text=True,
                                errors="replace")
         lines = ended.stderr.strip().splitlines()
         record = {"command": self.command, "code": ended.returncode, "seconds": round(time.monotonic() - started, 3),
@@ -200,7 +201,8 @@ def submit(study, options):
     left, jobs = study.left(), []
 
     def sbatch(*arguments, **more):
-        done = subprocess.run(["sbatch", "--parsable", "--export=ALL", *arguments], env={**environment, **more}, capture_output=True, text=True)
+        done = subprocess.run(["sbatch", "--parsable", "--export=ALL", *arguments], env={**environment, **more},
+                              capture_output=True, text=True)
         if done.returncode:
             raise Wrong("sbatch: %s" % done.stderr.strip())
         return done.stdout.strip().split(";")[0]
@@ -209,15 +211,18 @@ def submit(study, options):
         numbers = left[at:at + MOST_IN_ARRAY]
         chunk = logs / ("tasks-%d.txt" % (at // MOST_IN_ARRAY + 1))
         write(chunk, "".join("%d\n" % n for n in numbers))
-        jobs.append(sbatch("--array=1-%d" % len(numbers), "--output=%s/%%A-%%a.txt" % output, *options, str(HERE / "study.sbatch"),
+        jobs.append(sbatch("--array=1-%d" % len(numbers), "--output=%s/%%A-%%a.txt" % output, *options,
+                           str(HERE / "study.sbatch"),
                            STUDY_TASKS=str(chunk)))
         print("array %s: %d tasks" % (jobs[-1], len(numbers)))
     behind = ["--dependency=afterany:" + ":".join(jobs)] if jobs else []
     print("table %s: %s" % (sbatch("--job-name=glint-table", "--output=%s/table.txt" % output, *behind,
-                                   "--wrap=python3 \"$STUDY_PY\" collect \"$STUDY\" -o \"$STUDY/table.csv\""), study.folder / "table.csv"))
+                                   "--wrap=python3 \"$STUDY_PY\" collect \"$STUDY\" -o \"$STUDY/table.csv\""),
+                            study.folder / "table.csv"))
 
 
-COLUMNS = ["scene", "model", "settings", "status", "reason", "frames", "predicted", "mean_pct", "median_pct", "p95_pct", "max_pct", "mean_px",
+COLUMNS = ["scene", "model", "settings", "status", "reason", "frames", "predicted", "mean_pct", "median_pct", "p95_pct",
+           "max_pct", "mean_px",
            "matched", "missed", "spurious", "iou", "predict_us", "seconds", "command"]
 
 
@@ -275,11 +280,13 @@ def page_of(rows):
     columns = COLUMNS[:-1]
     lines = []
     for row in rows:
-        cells = "".join("<td%s>%s</td>" % (" class=number" if isinstance(row[c], (int, float)) else "", html.escape(text_of(row[c])))
+        cells = "".join("<td%s>%s</td>" % (" class=number" if isinstance(row[c], (int, float)) else "",
+                                           html.escape(text_of(row[c])))
                         for c in columns)
         lines.append('<tr class="%s" title="%s">%s</tr>\n' % (html.escape(row["status"]), html.escape(row["command"]), cells))
     return PAGE % (html.escape("%d tasks: %s. Errors are mean contour errors of held-out frames." % (
-        len(rows), ", ".join("%d %s" % (n, s) for s, n in sorted(counts.items())))), "".join("<th>%s</th>" % c for c in columns), "".join(lines))
+        len(rows), ", ".join("%d %s" % (n, s) for s, n in sorted(counts.items())))),
+                   "".join("<th>%s</th>" % c for c in columns), "".join(lines))
 
 
 def collect(study, file):

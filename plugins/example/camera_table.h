@@ -12,7 +12,7 @@
 
 namespace glint::example {
 
-/// cameras.csv: a row per image, "image,width,height,fx,fy,cx,cy,qw,qx,qy,qz,tx,ty,tz", world to camera, (0, 0) the centre of the first pixel.
+/// cameras.csv: "image,width,height,fx,fy,cx,cy,qw,qx,qy,qz,tx,ty,tz" an image, world to camera, (0, 0) the first pixel's centre.
 class CameraTable final : public CaptureReader {
  public:
   std::string name() const override { return "camera-table"; }

@@ -8,8 +8,8 @@
 
 namespace glint::example {
 
-/// Student's t distribution of slopes: D = (gamma - 1)^gamma m^(2 gamma - 2) / (pi cos^4 theta ((gamma - 1) m^2 + tan^2 theta)^gamma),
-/// which is GGX for gamma = 2 and Beckmann's for gamma -> infinity. Masking is left out: Lambda has no closed form for every gamma.
+/// Student's t of slopes: D = (gamma - 1)^gamma m^(2 gamma - 2) / (pi cos^4 theta ((gamma - 1) m^2 + tan^2 theta)^gamma),
+/// which is GGX for gamma = 2 and Beckmann's for gamma -> infinity. No masking: Lambda has no closed form for every gamma.
 /// @see Ribardiere, Bringier, Meneveaux, Simonot: STD: Student's t-distribution of slopes for microfacet based BSDFs, CGF 2017.
 class StudentLobe final : public LobeProfile {
  public:

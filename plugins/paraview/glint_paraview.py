@@ -21,7 +21,8 @@ import numpy as np
 from paraview.util.vtkAlgorithm import VTKPythonAlgorithmBase, smproperty, smproxy
 from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkDataArraySelection, vtkOutputWindow, vtkPoints, vtkStringArray
-from vtkmodules.vtkCommonDataModel import (vtkCellArray, vtkDataObject, vtkMultiBlockDataSet, vtkPolyData, vtkStructuredGrid, vtkTable)
+from vtkmodules.vtkCommonDataModel import (vtkCellArray, vtkDataObject, vtkMultiBlockDataSet, vtkPolyData, vtkStructuredGrid,
+                                           vtkTable)
 from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm, vtkStreamingDemandDrivenPipeline
 from vtkmodules.vtkFiltersCore import vtkTriangleFilter
 from vtkmodules.vtkParallelCore import vtkMultiProcessController
@@ -45,7 +46,8 @@ SPHERE_STEPS = 48  # meridians of a drawn ellipsoid
 UNITS = "lengths: world units of the scene, metres where its file says nothing else; pixels: ideal, (0, 0) is the centre of the first pixel"
 PARTS = ("Surface", "Cameras", "Lights", "Ellipsoids", "Training", "Photograph", "Observed", "Predicted")
 NEED_INSPECTION = {"Lights", "Ellipsoids", "Training", "Observed", "Predicted"}
-METRICS = ("contour_error_pct", "contour_error_px", "hausdorff_px", "iou", "centre_offset_px", "axis_ratio_error", "angle_error_deg",
+METRICS = ("contour_error_pct", "contour_error_px", "hausdorff_px", "iou", "centre_offset_px", "axis_ratio_error",
+           "angle_error_deg",
            "peak_offset_px")
 
 
@@ -92,7 +94,9 @@ def _note(data, **fields):
             continue
         if isinstance(value, (list, tuple)) and not value:
             continue
-        data.GetFieldData().AddArray(_array(name, [value] if np.ndim(value) == 0 else value if np.ndim(value) == 1 else np.ravel(value)))
+        data.GetFieldData().AddArray(_array(name,
+                                            [value] if np.ndim(value) == 0 else value if np.ndim(value) == 1
+                                            else np.ravel(value)))
     return data
 
 
@@ -209,7 +213,8 @@ def _frustum(camera, depth):
     """Points (the centre first) and lines of a camera."""
     around = _at_depth(camera, _border(camera), depth)
     n = len(around)
-    return np.concatenate([camera.centre[None], around]), [np.append(np.arange(1, n + 1), 1)] + [np.array([0, 1 + i * OUTLINE_STEPS]) for i in range(4)]
+    return np.concatenate([camera.centre[None], around]), [np.append(np.arange(1, n + 1),
+                                                                     1)] + [np.array([0, 1 + i * OUTLINE_STEPS]) for i in range(4)]
 
 
 def _mirrored(plane, points):
@@ -239,7 +244,8 @@ def _square(plane, middle, half, across):
 
 def _ellipsoid(body):
     """Points, quads and normals of an ellipsoid."""
-    v, u = np.meshgrid(np.linspace(0, np.pi, SPHERE_STEPS // 2 + 1), np.arange(SPHERE_STEPS) * 2 * np.pi / SPHERE_STEPS, indexing="ij")
+    v, u = np.meshgrid(np.linspace(0, np.pi, SPHERE_STEPS // 2 + 1), np.arange(SPHERE_STEPS) * 2 * np.pi / SPHERE_STEPS,
+                       indexing="ij")
     unit = np.stack([np.sin(v) * np.cos(u), np.sin(v) * np.sin(u), np.cos(v)], axis=-1).reshape(-1, 3)
     pose, axes = body.world_from_ellipsoid, body.semi_axes
     normals = unit / np.maximum(axes, 1e-12 * axes.max()) @ pose[:3, :3].T
@@ -369,7 +375,8 @@ class _View:
         n = len(contour)
         of_points = {"pixel": contour, **of_points}
         every = np.ones(n, bool)
-        image.add(_at_depth(self.camera, contour, self.depth * (1 - OFF_PLANE)), _runs(_kept(n, gaps, every)), of_points, **of_cells)
+        image.add(_at_depth(self.camera, contour, self.depth * (1 - OFF_PLANE)), _runs(_kept(n, gaps, every)), of_points,
+                  **of_cells)
         positions, hit = self.hits(contour)
         if not hit.any():
             on_surface.missing("no ray of a contour meets the surface")
@@ -430,7 +437,8 @@ def _training(answers, view):
         _draw_canonical(ellipses, v.camera, v.tangent_plane, v.canonical, **where)
         b = v.brightest_point
         points.add([b.position], None, {"normals": [b.normal], "pixel": [b.pixel], "alpha_deg": [math.degrees(b.alpha)]}, **where)
-    return {"VirtualCameras": cameras.data(), "TangentPlanes": planes.data(), "CanonicalEllipses": ellipses.data(), "BrightestPoints": points.data()}
+    return {"VirtualCameras": cameras.data(), "TangentPlanes": planes.data(), "CanonicalEllipses": ellipses.data(),
+            "BrightestPoints": points.data()}
 
 
 def _observed(answers, view):
@@ -476,12 +484,14 @@ class _Predicted:
         self.view.draw_contour(self.image, self.on_surface, highlight.contour, highlight.gaps,
                                {"sigma_px": sigma} if len(sigma) == len(highlight.contour) else {}, **numbers)
         b = highlight.brightest_point
-        self.points.add([b.position], None, {"normals": [b.normal], "pixel": [b.pixel], "alpha_deg": [math.degrees(b.alpha)]}, **where)
+        self.points.add([b.position], None, {"normals": [b.normal], "pixel": [b.pixel], "alpha_deg": [math.degrees(b.alpha)]},
+                        **where)
         if highlight.tangent_plane is None:
             for block in self.planes, self.cameras, self.ellipses:
                 block.missing(f"{self.model} has no tangent planes")
             return
-        _draw_mirror(self.view, self.planes, self.cameras, self.view.camera, highlight.tangent_plane, b, highlight.contour, **where)
+        _draw_mirror(self.view, self.planes, self.cameras, self.view.camera, highlight.tangent_plane, b, highlight.contour,
+                     **where)
         _draw_canonical(self.ellipses, self.view.camera, highlight.tangent_plane, highlight.canonical, **where)
 
     def tree(self):
@@ -523,12 +533,14 @@ def _ellipsoids(answers, surface_key):
             else:
                 points, quads, normals = _ellipsoid(fit.ellipsoid)
                 out.add(points, list(quads), {"normals": normals}, colour=_colour(model))
-            numbers = {} if fit is None else dict(q_dual=fit.q_dual, gap_ratio=fit.gap_ratio, condition=fit.condition, residual_px=fit.residual_px,
+            numbers = {} if fit is None else dict(q_dual=fit.q_dual, gap_ratio=fit.gap_ratio, condition=fit.condition,
+                                                  residual_px=fit.residual_px,
                                                   frames=fit.frames, solver=fit.solver, warnings=list(fit.warnings))
             if fit is not None and fit.ellipsoid is not None:
                 numbers.update(centre=fit.ellipsoid.centre, semi_axes=fit.ellipsoid.semi_axes,
                                world_from_ellipsoid=fit.ellipsoid.world_from_ellipsoid)
-            tree["-".join([model, f.light] + ([f.surface] if f.surface else []))] = out.data(model=model, light=f.light, **numbers)
+            tree["-".join([model, f.light]
+                          + ([f.surface] if f.surface else []))] = out.data(model=model, light=f.light, **numbers)
     return tree
 
 
@@ -550,15 +562,18 @@ def _lights(answers, scene, frame, surface_key, middle, reach):
             continue
         c = estimate.covariance
         c = np.full((3, 3), np.nan) if c is None else np.array(c)
-        _draw_light(estimated, lines, middle, reach, light, estimate.light.homogeneous, covariance=c.ravel(), sigma=np.sqrt(np.diag(c)),
+        _draw_light(estimated, lines, middle, reach, light, estimate.light.homogeneous, covariance=c.ravel(),
+                    sigma=np.sqrt(np.diag(c)),
                     limit_angle_deg=math.degrees(estimate.limit_angle), rms_px=estimate.rms_px, solver=estimate.solver)
     for model in answers.inspection.models:
         for f in _fits_of(answers, model, surface_key):
             if f.fit is None or f.fit.light_estimate is None:
                 continue
             angle, radius = f.fit.limit_angle, f.fit.light_radius
-            _draw_light(lamps, _Parts("lines"), middle, reach, f.light, f.fit.light_estimate.homogeneous, model=model, colour=_colour(model),
-                        limit_angle_deg=math.nan if angle is None else math.degrees(angle), light_radius=math.nan if radius is None else radius)
+            _draw_light(lamps, _Parts("lines"), middle, reach, f.light, f.fit.light_estimate.homogeneous, model=model,
+                        colour=_colour(model),
+                        limit_angle_deg=math.nan if angle is None else math.degrees(angle),
+                        light_radius=math.nan if radius is None else radius)
             if f.fit.light_segment is not None:
                 tubes.add(f.fit.light_segment, model=model, light=f.light)
     for light in scene.lights:
@@ -578,9 +593,12 @@ def _camera_numbers(scene, frame):
     c = scene.frames[frame].camera
     pose = c.camera_from_world
     files = scene.frames[frame].files
-    return dict(frame=frame, frame_id=scene.frames[frame].id, width_px=c.width, height_px=c.height, K_px=c.K, camera_from_world=pose,
-                projection=c.projection, lens=c.model, distortion=c.distortion if np.any(c.distortion) else None, view_position=c.centre,
-                view_focal_point=c.centre + pose[2, :3], view_up=-pose[1, :3], view_angle_deg=math.degrees(2 * math.atan2(c.height / 2, c.K[1, 1])),
+    return dict(frame=frame, frame_id=scene.frames[frame].id, width_px=c.width, height_px=c.height, K_px=c.K,
+                camera_from_world=pose,
+                projection=c.projection, lens=c.model, distortion=c.distortion if np.any(c.distortion) else None,
+                view_position=c.centre,
+                view_focal_point=c.centre + pose[2, :3], view_up=-pose[1, :3],
+                view_angle_deg=math.degrees(2 * math.atan2(c.height / 2, c.K[1, 1])),
                 image=files.get("image") or files.get("radiance"), surface=scene.frames[frame].surface or None, units=UNITS)
 
 
@@ -609,7 +627,8 @@ def _photograph(scene, frame, depth, largest):
     share = np.outer(np.diff(np.append(rows, h)), np.diff(np.append(columns, w)))[..., None]
     rgb = np.clip(np.rint(255 * np.nan_to_num(sums / share)), 0, 255).astype(np.uint8)
     x, y = np.meshgrid(np.append(columns, w) - 0.5, np.append(rows, h) - 0.5)
-    corners = np.stack([x.ravel() * camera.width / w, y.ravel() * camera.height / h], axis=1) if (w, h) != (camera.width, camera.height) \
+    corners = np.stack([x.ravel() * camera.width / w, y.ravel() * camera.height / h],
+                       axis=1) if (w, h) != (camera.width, camera.height) \
         else np.stack([x.ravel(), y.ravel()], axis=1)
     grid = vtkStructuredGrid()
     grid.SetDimensions(len(columns) + 1, len(rows) + 1, 1)
@@ -646,9 +665,13 @@ def _errors(table, inspection):
     for model in models:
         found = [rows[k].get(model) for k in keys]
         for metric in METRICS:
-            columns.append((f"{metric} {model}", [math.nan if f is None or f[1].metrics is None else getattr(f[1].metrics, metric) for f in found]))
-        columns.append((f"coverage {model}", [math.nan if f is None or f[1].predicted < 0 else f[0].prediction[f[1].predicted].coverage for f in found]))
-        columns.append((f"reason {model}", ["no prediction" if f is None else (f[1].failure or f[0].prediction.failure or "") for f in found]))
+            columns.append((f"{metric} {model}",
+                            [math.nan if f is None or f[1].metrics is None else getattr(f[1].metrics, metric) for f in found]))
+        columns.append((f"coverage {model}",
+                        [math.nan if f is None or f[1].predicted < 0 else f[0].prediction[f[1].predicted].coverage
+                         for f in found]))
+        columns.append((f"reason {model}",
+                        ["no prediction" if f is None else (f[1].failure or f[0].prediction.failure or "") for f in found]))
     for name, values in columns:
         if keys:
             table.AddColumn(_array(name, values))
@@ -732,12 +755,16 @@ _AGAIN = ('<Property name="ReadAgain" command="ReadAgain" panel_widget="command_
 _OUTSIDE = ('<Property name="AllowFilesOutside" command="AllowFilesOutside" panel_widget="command_button" panel_visibility="advanced">'
             '<Documentation>From now on read files that this scene or session names outside of its own folder, until another file is chosen or '
             'ParaView ends. Without it such a path is refused. State files do not keep it.</Documentation></Property>')
-_LEVEL = _number("ContourLevel", 0.0, 0, 1, "Fraction of a highlight's peak above the background at which contours lie, more than 0 and "
+_LEVEL = _number("ContourLevel", 0.0, 0, 1,
+                 "Fraction of a highlight's peak above the background at which contours lie, more than 0 and "
                  "less than 1. 0: the session's, else 0.5.")
-_DIRECTIONS = _whole("Directions", 0, 0, 3600, "Directions from the brightest point in which a contour is predicted. 0: the session's.")
-_SETTINGS = _Property("String", "FurtherSettings", "", "As `glint evaluate --set` takes them, separated by blanks: predict.band=true "
+_DIRECTIONS = _whole("Directions", 0, 0, 3600,
+                     "Directions from the brightest point in which a contour is predicted. 0: the session's.")
+_SETTINGS = _Property("String", "FurtherSettings", "",
+                      "As `glint evaluate --set` takes them, separated by blanks: predict.band=true "
                       "detect.min_area=20. `glint settings` lists them.", advanced=True)
-_DEPTH = _number("CameraDepth", 0.0, 0, None, "How far before a camera its photograph and the end of its frustum are drawn, world "
+_DEPTH = _number("CameraDepth", 0.0, 0, None,
+                 "How far before a camera its photograph and the end of its frustum are drawn, world "
                  "units. 0: a seventh of the distance to the object.")
 _PLANES = _number("TangentPlaneSide", 0.0, 0, None, "World units. 0: four times the highlight's radius.", advanced=True)
 
@@ -854,7 +881,8 @@ class _Algorithm(VTKPythonAlgorithmBase):
             middle = surface.bounds.mean(axis=0)
         if middle is None:  # where the first camera looks, as far as the cameras are apart
             c = given.scene.frames[0].camera
-            middle = c.centre + c.camera_from_world[2, :3] * max(np.linalg.norm(centres - centres.mean(axis=0), axis=1).max(), 1e-3)
+            middle = c.centre + c.camera_from_world[2, :3] * max(np.linalg.norm(centres - centres.mean(axis=0), axis=1).max(),
+                                                                 1e-3)
         distance = float(np.median(np.linalg.norm(centres - middle, axis=1)))
         return middle, distance, self.length("CameraDepth") or max(distance / 7, 1e-9)
 
@@ -877,7 +905,8 @@ def _ticked(selection):
     return [selection.GetArrayName(i) for i in range(selection.GetNumberOfArrays()) if selection.GetArraySetting(i)]
 
 
-@smproxy.reader(name="GlintReader", label="Glint Reader", file_description="Glint sessions and scenes", filename_patterns="*.glint scene.json")
+@smproxy.reader(name="GlintReader", label="Glint Reader", file_description="Glint sessions and scenes",
+                filename_patterns="*.glint scene.json")
 @_parameters(
     _Property("String", "FileName", "", "A session *.glint, a scene file, or a folder with a capture that Glint reads.", _FILES,
               '<FileChooser extensions="glint json" file_description="Glint sessions and scenes"/>'),
@@ -887,7 +916,8 @@ def _ticked(selection):
     _ticks("Models", "Which models are fitted and predict, where they are not the session's."),
     _Property("String", "TrainingFrames", "", "first:6, spread:6, 0-5,14, per-surface. Empty: the session's."),
     _LEVEL, _DIRECTIONS, _SETTINGS,
-    _whole("LargestPhotographSide", 1024, 1, 65536, "Cells, one a pixel. A larger photograph is averaged over squares of pixels."),
+    _whole("LargestPhotographSide", 1024, 1, 65536,
+           "Cells, one a pixel. A larger photograph is averaged over squares of pixels."),
     _whole("SurfaceCells", 64, 1, 4096, "Along a side. Meshes stay as they are."),
     _DEPTH, _PLANES, _OUTSIDE, _AGAIN)
 class GlintReader(_Algorithm):
@@ -1057,7 +1087,8 @@ class GlintPredictHighlights(_Algorithm):
             raise Refused("the input has no triangles or polygons: a mesh is needed")
         ids = vtk_to_numpy(mesh.GetPolys().GetConnectivityArray()).reshape(-1, 3)
         normals = mesh.GetPointData().GetNormals()
-        surface = glint.mesh(vtk_to_numpy(mesh.GetPoints().GetData()), ids, None if normals is None else vtk_to_numpy(normals), **settings)
+        surface = glint.mesh(vtk_to_numpy(mesh.GetPoints().GetData()), ids, None if normals is None else vtk_to_numpy(normals),
+                             **settings)
         self.mesh = (key, surface)
         return surface
 

@@ -76,7 +76,8 @@ def main():
     what = parser.add_mutually_exclusive_group(required=True)
     what.add_argument("--mend-loader", action="store_true", help="write the file")
     what.add_argument("--undo", action="store_true", help="remove it")
-    parser.add_argument("--python", default="/usr/bin/python3", help="the interpreter that ParaView embeds (default: %(default)s)")
+    parser.add_argument("--python", default="/usr/bin/python3",
+                        help="the interpreter that ParaView embeds (default: %(default)s)")
     options = parser.parse_args()
     folder, healthy = folder_of(options.python)
     if options.undo:

@@ -44,5 +44,7 @@ work = ROOT / "build/python-package"
 work.mkdir(parents=True, exist_ok=True)
 setup(name="glint", version=VERSION, description="Specular highlights: lamps, virtual cameras, ellipsoids and predicted contours",
       license="BSD-3-Clause", python_requires=">=3.11", install_requires=["numpy"], packages=["glint"],
-      package_data={"glint": ["*.pyi", "py.typed"]}, ext_modules=[Extension("glint._glint", [])], cmdclass={"build_ext": BuildByCMake},
-      options={"build": {"build_base": str(work)}, "egg_info": {"egg_base": str(work)}, "bdist_wheel": {"dist_dir": str(work)}}, zip_safe=False)
+      package_data={"glint": ["*.pyi", "py.typed"]}, ext_modules=[Extension("glint._glint", [])],
+      cmdclass={"build_ext": BuildByCMake},
+      options={"build": {"build_base": str(work)}, "egg_info": {"egg_base": str(work)}, "bdist_wheel": {"dist_dir": str(work)}},
+      zip_safe=False)

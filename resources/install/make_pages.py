@@ -20,8 +20,9 @@ def version_of(program):
 
 
 def roff(text):
-    """Text as it stands, in the page's fixed layout."""
-    return "\n".join(r"\&" + line if line[:1] in ".'" else line for line in text.replace("\\", r"\e").replace("-", r"\-").splitlines())
+    """Text as written, in the page's fixed layout."""
+    return "\n".join(r"\&" + line if line[:1] in ".'" else line
+                     for line in text.replace("\\", r"\e").replace("-", r"\-").splitlines())
 
 
 def manual(name, summary, text, version, also):
@@ -61,9 +62,11 @@ def options_in(text):
 
 
 def completion(commands, pages):
-    lines = ["# SPDX-License-Identifier: BSD-3-Clause", "# Completion of glint for bash: commands, options and their words; file names elsewhere.",
+    lines = ["# SPDX-License-Identifier: BSD-3-Clause",
+             "# Completion of glint for bash: commands, options and their words; file names elsewhere.",
              "_glint() {", "  local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]} command=${COMP_WORDS[1]} flags= words=",
-             '  if [ "$COMP_CWORD" = 1 ]; then', f'    COMPREPLY=($(compgen -W "{" ".join(name for name, _ in commands)} --help --version" -- "$word"))',
+             '  if [ "$COMP_CWORD" = 1 ]; then',
+             f'    COMPREPLY=($(compgen -W "{" ".join(name for name, _ in commands)} --help --version" -- "$word"))',
              "    return", "  fi", '  case "$command" in']
     for name, _ in commands:
         flags, choices = options_in(pages[name])
@@ -74,8 +77,10 @@ def completion(commands, pages):
             lines += [f'        {flag}) words="{" ".join(values)}" ;;' for flag, values in sorted(choices.items())]
             lines.append("      esac")
         lines.append("      ;;")
-    lines += ["  esac", '  if [ -n "$words" ]; then', '    COMPREPLY=($(compgen -W "$words" -- "$word"))', '  elif [ "${word:0:1}" = - ]; then',
-              '    COMPREPLY=($(compgen -W "$flags" -- "$word"))', "  else", '    COMPREPLY=($(compgen -f -- "$word"))', "  fi", "}",
+    lines += ["  esac", '  if [ -n "$words" ]; then', '    COMPREPLY=($(compgen -W "$words" -- "$word"))',
+              '  elif [ "${word:0:1}" = - ]; then',
+              '    COMPREPLY=($(compgen -W "$flags" -- "$word"))', "  else", '    COMPREPLY=($(compgen -f -- "$word"))', "  fi",
+              "}",
               "complete -o filenames -F _glint glint"]
     return "\n".join(lines) + "\n"
 
@@ -86,7 +91,8 @@ def in_quotes(text):
 
 
 def zsh_completion(commands, pages):
-    lines = ["#compdef glint", "# SPDX-License-Identifier: BSD-3-Clause", "# Completion of glint for zsh: commands, options and their words; file names elsewhere.",
+    lines = ["#compdef glint", "# SPDX-License-Identifier: BSD-3-Clause",
+             "# Completion of glint for zsh: commands, options and their words; file names elsewhere.",
              "_glint() {", "  local -a commands flags", "  if (( CURRENT == 2 )); then", "    commands=("]
     lines += ["      " + in_quotes(name + ":" + summary) for name, summary in commands]
     lines += ["    )", "    _describe command commands", "    return", "  fi", "  case $words[2] in"]
@@ -98,12 +104,14 @@ def zsh_completion(commands, pages):
             lines += [f"        {flag}) compadd -- {' '.join(values)}; return ;;" for flag, values in sorted(choices.items())]
             lines.append("      esac")
         lines.append("      ;;")
-    lines += ["  esac", "  if [[ $words[CURRENT] == -* ]]; then", "    compadd -- $flags", "  else", "    _files", "  fi", "}", '_glint "$@"']
+    lines += ["  esac", "  if [[ $words[CURRENT] == -* ]]; then", "    compadd -- $flags", "  else", "    _files", "  fi", "}",
+              '_glint "$@"']
     return "\n".join(lines) + "\n"
 
 
 def fish_completion(commands, pages):
-    lines = ["# SPDX-License-Identifier: BSD-3-Clause", "# Completion of glint for fish: commands, options and their words; file names elsewhere."]
+    lines = ["# SPDX-License-Identifier: BSD-3-Clause",
+             "# Completion of glint for fish: commands, options and their words; file names elsewhere."]
     lines += [f"complete -c glint -n __fish_use_subcommand -f -a {name} -d {in_quotes(summary)}" for name, summary in commands]
     for name, _ in commands:
         flags, choices = options_in(pages[name])
@@ -124,15 +132,18 @@ def main():
     commands = commands_in(text)
     pages = {name: help_of(options.glint, name) for name, _ in commands}
     also = [f"glint-{name}" for name, _ in commands]
-    (options.out / "glint.1").write_text(manual("glint", "predict specular highlights from a few images of a known scene", text, version, also + ["glint-inspector"]))
+    (options.out / "glint.1").write_text(manual("glint", "predict specular highlights from a few images of a known scene", text,
+                                                version, also + ["glint-inspector"]))
     for name, summary in commands:
-        (options.out / f"glint-{name}.1").write_text(manual(f"glint-{name}", summary[0].lower() + summary[1:], pages[name], version, ["glint"]))
+        (options.out / f"glint-{name}.1").write_text(manual(f"glint-{name}", summary[0].lower() + summary[1:], pages[name],
+                                                            version, ["glint"]))
     (options.out / "glint.bash").write_text(completion(commands, pages))
     (options.out / "_glint").write_text(zsh_completion(commands, pages))
     (options.out / "glint.fish").write_text(fish_completion(commands, pages))
     if options.inspector:
         (options.out / "glint-inspector.1").write_text(
-            manual("glint-inspector", "show a reconstruction of specular highlights step by step", help_of(options.inspector), version, ["glint"]))
+            manual("glint-inspector", "show a reconstruction of specular highlights step by step", help_of(options.inspector),
+                   version, ["glint"]))
 
 
 main()

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The same results whatever the number of threads, the allocator and what lies in fresh memory (replay --exact), and results within 1e-9
-// on a processor with fewer features (replay). GLINT_SESSIONS=all takes every shipped session (tests/run_determinism).
+// The same results whatever the number of threads, the allocator and what lies in fresh memory (replay --exact), and results
+// within 1e-9 on a processor with fewer features (replay). GLINT_SESSIONS=all takes every shipped session
+// (tests/run_determinism).
 #include <dlfcn.h>
 #include <gmock/gmock.h>
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every call that writes, and every large allocation, fails once. Whatever fails: exit code 2 or 3 and one line, and every output is old,
-// absent or complete. GLINT_FAULTS=all tries every call (tests/run_faults); otherwise a few of each kind, spread over the run.
+// Every call that writes, and every large allocation, fails once. Whatever fails: exit code 2 or 3 and one line, and every output
+// is old, absent or complete. GLINT_FAULTS=all tries every call (tests/run_faults); otherwise a few of each kind, spread over the
+// run.
 #include <gmock/gmock.h>
 #include <sys/mount.h>
 #include <unistd.h>

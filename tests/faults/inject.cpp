@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Preloaded (LD_PRELOAD) into the program under test: counts its calls and lets one of them fail, see injected.h. Nothing here allocates.
+// Preloaded (LD_PRELOAD) into the program under test: counts its calls and lets one of them fail, see injected.h. Nothing here
+// allocates.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <pthread.h>
@@ -210,7 +211,8 @@ ssize_t sendfile64(int out, int in, off64_t* offset, size_t bytes) {
   return next(out, in, offset, bytes);
 }
 
-/// The C library's streams write through calls of its own, so their functions are the ones that fail. Such a stream remembers an error.
+/// The C library's streams write through calls of its own, so their functions are the ones that fail. Such a stream remembers an
+/// error.
 static bool streamFails(FILE* stream) {
   if (!stream || !counted(fileno(stream)) || !fails(Call::Write)) return false;
   stream->_flags |= 0x20;  // what ferror() looks at

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Killed or asked to stop, at every call that writes and at random moments: every output is old, absent or complete, and the same command
-// runs again and leaves nothing over. GLINT_KILLS is the number of random kills of the whole program, GLINT_SEED their seed
-// (tests/run_kills); with fewer than a hundred only some of the calls are tried.
+// Killed or asked to stop, at every call that writes and at random moments: every output is old, absent or complete, and the same
+// command runs again and leaves nothing over. GLINT_KILLS is the number of random kills of the whole program, GLINT_SEED their
+// seed (tests/run_kills); with fewer than a hundred only some of the calls are tried.
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <signal.h>
@@ -100,7 +100,8 @@ TEST_P(Kills, AskedToStopAtEveryCall) {
       const bool withOld = n % 2 == 0 && !GetParam().before.empty();
       const int signal = n % 2 ? SIGINT : SIGTERM;
       for (const char* how : {"signal", "stuck"}) {
-        // They take turns. Both at the last write: it is that of the process's end, which no longer works but may wait for a reader.
+        // They take turns. Both at the last write: it is that of the process's end, which no longer works but may wait for a
+        // reader.
         if (!all() && call != Call::Write && (int(call) % 2 == 0) == (how[1] == 'i')) continue;
         const Fault fault{kCallNames[int(call)], how + ("=" + std::to_string(signal)), n};
         stage.prepare(withOld);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// glint-save HOW INPUT MODEL TARGET: what the inspector does when it saves (HOW = save, with results) or keeps what is not saved (autosave).
+// glint-save HOW INPUT MODEL TARGET: what the inspector does when it saves (HOW = save, with results) or keeps what is not saved
+// (autosave).
 #include <cstdio>
 #include <exception>
 #include <string>

@@ -204,7 +204,8 @@ Found Stage::look(bool withOld, std::vector<std::string>& problems) const {
     const auto found = now.find(name), before = old_.find(name), good = good_.find(name);
     const bool there = found != now.end(), hadOld = withOld && before != old_.end();
     const bool isOld = hadOld ? there && found->second == before->second : !there;
-    // An old file is as valid as a new one: where the two differ, it is not complete, else "written" and "left alone" would look alike.
+    // An old file is as valid as a new one: where the two differ, it is not complete, else "written" and "left alone" would look
+    // alike.
     const bool isNew =
         there && good != good_.end() && (found->second == good->second || (!isOld && isValid(name, found->second, good->second)));
     const bool isGood = good != good_.end() ? isNew : isOld || !there;

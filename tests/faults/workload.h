@@ -17,14 +17,14 @@ namespace fs = std::filesystem;
 struct Workload {
   std::string name;
   std::vector<std::string> arguments;  ///< IN stands for the folder of the inputs; outputs are relative to the current folder
-  std::vector<std::string>
-      before;                     ///< the same command with other results under the same names; empty: nothing replaces anything
+  /// The same command with other results under the same names; empty: nothing replaces anything.
+  std::vector<std::string> before;
   std::string program = "glint";  ///< or "glint-save"
 };
 inline void PrintTo(const Workload& w, std::ostream* out) { *out << w.name; }
 
-/// Every command that writes a file, on small shipped data, and the inspector's save and autosave. Not `every`: one for each way of
-/// writing (a file, a folder with a file, a new folder, an encoder's file, the inspector's), for CI.
+/// Every command that writes a file, on small shipped data, and the inspector's save and autosave. Not `every`: one for each way
+/// of writing (a file, a folder with a file, a new folder, an encoder's file, the inspector's), for CI.
 std::vector<Workload> workloads(bool every);
 
 /// How the files of a workload were found after a run.
@@ -44,8 +44,8 @@ class Stage {
   ChildRun run(const ChildOptions& options) const;
   /// What is wrong goes to `problems`: a file that is cut, a leftover, another file that changed.
   Found look(bool withOld, std::vector<std::string>& problems) const;
-  /// Files and folders that are neither outputs nor on the way to one. @param work  the measured work of a trade-off may stay: it goes on
-  /// from there.
+  /// Files and folders that are neither outputs nor on the way to one. @param work  the measured work of a trade-off may stay: it
+  /// goes on from there.
   std::vector<std::string> leftovers(bool work = false) const;
   /// The same command once more, undisturbed: it succeeds, everything is complete, nothing is left over.
   void again(std::vector<std::string>& problems);
@@ -75,8 +75,8 @@ struct Tally {
   void add(const std::string& outcome) { ++outcomes[outcome]; }
 };
 
-/// Writes rows for docs/trust.md when the test program ends: the file that the environment variable GLINT_PIECE names. Where a filter chose
-/// some tests only (--gtest_filter), rows of other names stay in the file, and the new ones say their day.
+/// Writes rows for docs/trust.md when the test program ends: the file that the environment variable GLINT_PIECE names. Where a
+/// filter chose some tests only (--gtest_filter), rows of other names stay in the file, and the new ones say their day.
 class Piece : public testing::Environment {
  public:
   Piece(std::string what, std::string command) : what_(std::move(what)), command_(std::move(command)) {}

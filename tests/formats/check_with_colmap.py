@@ -27,7 +27,7 @@ def colmap(*arguments):
 
 
 def records(path, rows):
-    """Of a text of COLMAP's, by id: its words, `rows` lines to a record. Empty lines count: a view may have no features."""
+    """The words of a text of COLMAP's by id, `rows` lines to a record. Empty lines count: a view may have no features."""
     lines = [line for line in path.read_text().split("\n") if not line.startswith("#")][:-1]
     texts = [" ".join(lines[i:i + rows]).split() for i in range(0, len(lines), rows)]
     return {words[0]: words[1:] for words in texts}
@@ -60,7 +60,7 @@ def compare_models(ours, theirs):
 
 
 def initial_cost(log):
-    """Of the bundle adjustment, in pixels (root mean square)."""
+    """The error of the bundle adjustment, in pixels (root mean square)."""
     return float(re.search(r"Initial cost\s*:\s*([-+.e\d]+)", log)[1])
 
 

@@ -77,8 +77,8 @@ def check_coco(coco, name):
         check(key in coco, "%s has no %s" % (name, key))
     images = {i["id"]: i for i in coco["images"]}
     categories = {c["id"]: c for c in coco["categories"]}
-    check(len(images) == len(coco["images"]) and len(categories) == len(coco["categories"]), name + ": an id stands twice")
-    check(len({a["id"] for a in coco["annotations"]}) == len(coco["annotations"]), name + ": an annotation's id stands twice")
+    check(len(images) == len(coco["images"]) and len(categories) == len(coco["categories"]), name + ": a repeated id")
+    check(len({a["id"] for a in coco["annotations"]}) == len(coco["annotations"]), name + ": a repeated id of an annotation")
     for image in images.values():
         check(isinstance(image["file_name"], str) and image["width"] > 0 and image["height"] > 0, "%s: image %s" % (name, image["id"]))
     for a in coco["annotations"]:

@@ -127,7 +127,7 @@ def main():
         check(len(h["sigma_px"]) == len(h["contour"]) and h["sigma_px"] in listed[h["model"]], "sigma_px of %s" % h["model"])
     check([h["contour"] for h in bands[0]] == [h["contour"] for h in bands[1]], "bands move no contour")
 
-    # Frames with surfaces of their own: a pose that is none of them has none, and says so.
+    # Frames with surfaces of their own: a pose of another place has no surface, and says so.
     several = session.parent.parent / "plane-to-cylinder" / "plane-to-cylinder.glint"
     frame = json.loads((several.parent / "scene.json").read_text("utf-8"))["frames"][3]
     process = start(glint, several)

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // One reader of files fed with its corpus and with damaged copies of it: what CI runs, without libFuzzer and with any compiler.
 //   fuzz_readers READER CORPUS [--inputs N] [--seconds S] [--seed K] [--first N]
-// Input number n of a seed is always the same, so that a finding comes back with --first n --inputs 1. Ends with 1 at a finding, whose bytes
-// lie in the working folder as finding-READER.
+// Input number n of a seed is always the same, so that a finding comes back with --first n --inputs 1. Ends with 1 at a finding,
+// whose bytes lie in the working folder as finding-READER.
 #include <fcntl.h>
 #include <unistd.h>
 

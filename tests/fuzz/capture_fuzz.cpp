@@ -30,7 +30,7 @@ void requirePromise(bool kept, const char* promise) {
 void checkView(const CaptureView& view) {
   const Camera& c = view.camera;
   requirePromise(c.width >= 1 && c.height >= 1, "an image without a size");
-  requirePromise(c.pixelFromRay.allFinite() && c.pixelFromRay(0, 0) > 0 && c.pixelFromRay(1, 1) > 0, "a K that is none");
+  requirePromise(c.pixelFromRay.allFinite() && c.pixelFromRay(0, 0) > 0 && c.pixelFromRay(1, 1) > 0, "an illegal K");
   const Eigen::Matrix3d r = c.camFromWorld.linear();
   constexpr double kRotation = 2e-6;  // to single precision it was meant as a rotation, and stays (readPoseJson)
   requirePromise(c.camFromWorld.matrix().allFinite(), "a pose that is not finite");
@@ -38,7 +38,7 @@ void checkView(const CaptureView& view) {
                  "a pose that is not rigid");
   for (const double p : c.lens.parameters) requirePromise(std::isfinite(p), "a lens that is not finite");
   requirePromise(!view.name.empty(), "an image without a name");
-  requirePromise(view.depth.empty() || (std::isfinite(view.depthScale) && view.depthScale >= 0), "a depth scale that is none");
+  requirePromise(view.depth.empty() || (std::isfinite(view.depthScale) && view.depthScale >= 0), "an illegal depth scale");
 }
 
 void checkCapture(const Capture& capture, const std::vector<CaptureTrack>& tracks) {

@@ -20,8 +20,8 @@ struct Victim {
   int weight = 1;
 };
 
-/// Makes the inputs with the program itself, in `folder`: scenes of 48 x 36 to 84 x 63 pixels with all kinds of files, a session, meshes, contours,
-/// specifications. Throws std::runtime_error when the program does not work at all.
+/// Makes the inputs with the program itself, in `folder`: scenes of 48 x 36 to 84 x 63 pixels with all kinds of files, a session,
+/// meshes, contours, specifications. Throws std::runtime_error when the program does not work at all.
 std::vector<Victim> makeMaterials(const std::filesystem::path& program, const std::filesystem::path& folder);
 
 }  // namespace glint::fuzz

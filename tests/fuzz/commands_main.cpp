@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Damaged inputs through the program itself, as a script would run it:
 //   fuzz_commands PROGRAM [--seed K] [--count N] [--first N] [--jobs N] [--keep FOLDER] [--piece FILE]
-// Number n of a seed is always the same damage and command. A finding is: a signal; more than 20 s of the processor or a minute's silence; more
-// than 1 GB; an exit code other than 0, 2, 3 (1 for replay); a failure without its one line, or more than one line on standard error; a line of more
-// than 400 characters; control characters or bytes that are no UTF-8 on the terminal; a file written, changed or removed outside of out/; a
-// JSON file that is none. Ends with 1 when there was one. Each is kept in FOLDER/n: the folder as it was, and CMD.
+// Number n of a seed is always the same damage and command. A finding is: a signal; more than 20 s of the processor or a minute's
+// silence; more than 1 GB; an exit code other than 0, 2, 3 (1 for replay); a failure without its one line, or more than one line
+// on standard error; a line of more than 400 characters; control characters or bytes that are no UTF-8 on the terminal; a file
+// written, changed or removed outside of out/; a invalid JSON file. Ends with 1 when there was one. Each is kept in FOLDER/n: the
+// folder as it was, and CMD.
 #include <fcntl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -238,7 +239,8 @@ void one(const Options& o, const fs::path& materials, const std::vector<const Vi
                               << run.err;
 }
 
-/// The first command that fails on what is not damaged, with its words; "" = none. Such a command would reach nothing behind its failure.
+/// The first command that fails on what is not damaged, with its words; "" = none. Such a command would reach nothing behind its
+/// failure.
 std::string failsUndamaged(const Options& o, const fs::path& materials, const std::vector<Victim>& victims) {
   std::set<std::pair<std::string, std::string>> seen;
   for (const Victim& v : victims)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// libFuzzer's entries for all readers: `fuzz_libfuzzer --reader=scene CORPUS...`. GLINT_FUZZ_CPU_SECONDS ends a run after so much time of the
-// processor, as libFuzzer's own limit counts the clock on the wall.
+// libFuzzer's entries for all readers: `fuzz_libfuzzer --reader=scene CORPUS...`. GLINT_FUZZ_CPU_SECONDS ends a run after so much
+// time of the processor, as libFuzzer's own limit counts the clock on the wall.
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>

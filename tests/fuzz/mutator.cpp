@@ -11,7 +11,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Numbers at which arithmetic, casts and sizes break, as JSON or as a word of a text. Some are no JSON (NaN), as other programs write it.
+/// Numbers at which arithmetic, casts and sizes break, as JSON or as a word of a text. Some are no JSON (NaN), as other programs
+/// write it.
 const std::vector<std::string> kNumbers = {"0",
                                            "-0.0",
                                            "1",

@@ -8,15 +8,15 @@
 
 namespace glint::fuzz {
 
-/// One reader of files that come from others. `feed` returns whether the bytes were read; false = refused as such bytes shall be. Everything
-/// else is a finding: it throws Finding, or something that no reader may throw, or the process dies.
+/// One reader of files that come from others. `feed` returns whether the bytes were read; false = refused as such bytes shall be.
+/// Everything else is a finding: it throws Finding, or something that no reader may throw, or the process dies.
 struct Reader {
   std::string name;  ///< also of its folder in tests/fuzz/corpus
   Form form;
   bool (*feed)(const std::string& bytes);
 };
 const std::vector<Reader>& readers();
-/// Null when there is none of this name.
+/// Null for an unknown name.
 const Reader* readerOf(const std::string& name);
 
 struct Finding {

@@ -13,7 +13,7 @@
 namespace glint::fuzz {
 
 bool feedWorkFile(const std::string& bytes) {
-  // A file that is none of this run counts as empty, never as an error; the key is the one of the corpus.
+  // A file that this run did not make counts as empty, never as an error; the key is the one of the corpus.
   const WorkFile work(scratch().write("run.work", bytes), "key");
   return work.size() > 0;
 }

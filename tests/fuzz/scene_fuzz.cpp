@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The readers of JSON documents: scene, session, specification of synth, contours of --truth. What was read can be written, and what was
-// written is read again.
+// The readers of JSON documents: scene, session, specification of synth, contours of --truth. What was read can be written, and
+// what was written is read again.
 #include "core/base/outcome.h"
 #include "core/fit/evidence.h"
 #include "core/inspect/inspection.h"

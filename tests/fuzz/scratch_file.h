@@ -10,7 +10,8 @@
 
 namespace glint::fuzz {
 
-/// A folder of this process, removed when it ends, with files that are written again and again. TMPDIR names where (/dev/shm: in memory).
+/// A folder of this process, removed when it ends, with files that are written again and again. TMPDIR names where (/dev/shm: in
+/// memory).
 class ScratchFolder {
  public:
   ScratchFolder() {

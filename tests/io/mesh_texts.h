@@ -107,7 +107,7 @@ inline std::string glb() {
   return glbOf(gltfDocument(""), binary);
 }
 
-/// What every mesh that was read must fulfil, whatever the bytes. "" when it does.
+/// What every mesh that was read must fulfil, whatever the bytes. "" if it does.
 inline std::string brokenPromise(const MeshContent& mesh) {
   if (mesh.triangles.empty()) return "no triangles";
   if (!mesh.normals.empty() && mesh.normals.size() != mesh.vertices.size()) return "normals and vertices differ in number";

@@ -97,7 +97,7 @@ def smooth_noise(rng):
 def scene(smooth):
     rng = random.Random(5)
     frames, radii = [], []
-    for i in ((k * 37) % VIEWS for k in range(VIEWS)):  # the first ones are spread, as of a person who walks about
+    for i in ((k * 37) % VIEWS for k in range(VIEWS)):  # the first ones are spread, as when a person walks about
         azimuth, elevation = 2 * math.pi * i / VIEWS * 0.6 - 0.9, 0.5 + 0.25 * math.sin(2 * math.pi * i / 24)
         distance = 0.8 + 0.1 * math.cos(2 * math.pi * i / 31)
         eye = (math.sin(azimuth) * math.cos(elevation), 0.6 * math.sin(elevation), math.cos(azimuth) * math.cos(elevation))

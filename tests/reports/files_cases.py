@@ -9,7 +9,7 @@ import zlib
 
 from run import lacks, near, says  # noqa: F401
 
-# Of the same capture without the fault, by the README of each folder.
+# Errors of the same capture without the fault, by the README of each folder.
 WHOLE = {"limit-angle": 0.7935, "canonical": 1.6744}
 POSED = ["./im", "--poses", "./poses.txt", "--surface", "./mesh.ply", "--camera", "400.0,400.0,159.5,119.5"]
 

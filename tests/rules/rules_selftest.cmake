@@ -147,6 +147,22 @@ foreach(planted "long_functions.py|void lasts() {\n${steps}}\n" "long_functions.
   endif()
 endforeach()
 
+string(REPEAT "long " 40 long)
+foreach(planted "gui/a.cpp|/// Null where there is none.\n" "gui/a.cpp|int a;  // px, as of images\n" "gui/a.cpp|/// Of a scene.\n"
+        "gui/a.cpp|f(\"Of a scene: all\");\n" "docs/page.md|Of a scene all files are read.\n" "gui/a.cpp|struct Skirt {};\n"
+        "gui/a.cpp|// cuts tongues\n" "gui/a.cpp|// after parting\n" "gui/a.cpp|// ${long}\n" "docs/page.md|| a | ${long}${long} |\n")
+  string(REGEX MATCH "^([^|]*)\\|(.*)$" unused "${planted}")
+  set(file "${CMAKE_MATCH_1}")
+  set(planted_text "${CMAKE_MATCH_2}")
+  clean_tree()
+  execute_process(COMMAND ${PYTHON} -B "${RULES}/words.py" "${WORK}" RESULT_VARIABLE clean OUTPUT_QUIET)
+  file(APPEND "${WORK}/${file}" "${planted_text}")
+  execute_process(COMMAND ${PYTHON} -B "${RULES}/words.py" "${WORK}" RESULT_VARIABLE rc OUTPUT_VARIABLE text)
+  if(NOT clean EQUAL 0 OR rc EQUAL 0 OR NOT text MATCHES "${file}")
+    string(APPEND failures "\n  words.py refuses a clean tree, or accepts ${planted_text}: ${text}")
+  endif()
+endforeach()
+
 plant(citations.cmake tests/part/CMakeLists.txt "# see docs/page.md, \"Another thing\"\n")
 
 file(REMOVE_RECURSE "${WORK}")

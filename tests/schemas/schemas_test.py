@@ -282,7 +282,7 @@ SESSIONS_REFUSED = {
     "key result is text": put("results", "key_results", {"a": "1"}),
     "no digest": put("results", "digest", ...),
     "a lamp switched in no frame": put("request", "what_if", {"lights_switched": [{"light": "lamp", "on": True}]}),
-    "a lobe that is none": put("request", "what_if", {"synthesise": {"lobe": "gloss", "roughness": 0.1}}),
+    "an unknown lobe": put("request", "what_if", {"synthesise": {"lobe": "gloss", "roughness": 0.1}}),
     "trade-off without points": put("tradeoff", {"glint_tradeoff": 1}),
 }
 SESSIONS_ACCEPTED = {

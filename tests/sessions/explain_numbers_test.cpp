@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every number of every Explain step, in every frame of every lesson, against geometry of its own: the surfaces as equations F = 0,
-// rays met by bisection, normals and curvatures by differences, ways on contours by search. A number without a check is a failure.
+// Every number of every Explain step, in every frame of every lesson, against geometry of its own: the surfaces as equations F =
+// 0, rays met by bisection, normals and curvatures by differences, ways on contours by search. A number without a check is a
+// failure.
 #include <Eigen/Eigenvalues>
 #include <Eigen/SVD>
 #include <algorithm>
@@ -264,7 +265,8 @@ double rmsAway(const Points& from, const Ellipse& ellipse) {
   return std::sqrt(sum / double(from.size()));
 }
 
-/// Tolerances: contours and peaks are stored to 0.001 px; the vase's mesh is 1e-4 m from its equation, and its bends are told by facets.
+/// Tolerances: contours and peaks are stored to 0.001 px; the vase's mesh is 1e-4 m from its equation, and its bends are told by
+/// facets.
 void addGeometry(std::map<std::string, Check>& all) {
   const auto place = [](const Seen& s) { return s.mesh() ? 3e-4 : 1e-5; };  // m
   const auto turned = [](const Seen& s) { return s.mesh() ? 0.5 : 2e-3; };  // deg

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the first lesson and the answers to the lessons' questions claim, against values from elsewhere: Fermat's principle, mirror
-// images, a cylinder's normals, hulls; and what the models do when a question is followed.
+// What the first lesson and the answers to the lessons' questions claim, against values from elsewhere: Fermat's principle,
+// mirror images, a cylinder's normals, hulls; and what the models do when a question is followed.
 #include <algorithm>
 #include <numbers>
 
@@ -17,8 +17,8 @@ double pathLength(const Eigen::Vector3d& eye, const Eigen::Vector3d& lamp, const
   return (eye - at).norm() + (lamp - at).norm();
 }
 
-/// Where light from the lamp reaches the eye: on the sheet z = (cos(k x') - 1) / k, bent about an axis along y, Fermat's principle
-/// makes the way the shortest. A search that shrinks; it knows nothing of normals.
+/// Where light from the lamp reaches the eye: on the sheet z = (cos(k x') - 1) / k, bent about an axis along y, Fermat's
+/// principle makes the way the shortest. A search that shrinks; it knows nothing of normals.
 Eigen::Vector3d shortestWay(const Eigen::Vector3d& eye, const Eigen::Vector3d& lamp, double curvature) {
   const auto place = [&](double s, double y) {
     return curvature == 0 ? Eigen::Vector3d(s, y, 0)
@@ -105,8 +105,8 @@ TEST(LessonAnswers, MirrorEveryRayPointsAtTheMirroredLampWhichGrowsItWhenRaised)
     const Ray ray = camera.ray(in.evidence[i].highlights.at(0).peak);
     const Eigen::Vector3d to = mirrored - ray.origin;
     EXPECT_LT((to - to.dot(ray.direction) * ray.direction).norm(), 2e-4) << "m beside the mirrored lamp, frame " << i;
-    // Closed form: the image of the lamp lies in a straight line. alpha = s (1/d + 1/r) / (2 cos) across the plane of incidence, and
-    // the same with cos above along it; seen from d, under the slant.
+    // Closed form: the image of the lamp lies in a straight line. alpha = s (1/d + 1/r) / (2 cos) across the plane of incidence,
+    // and the same with cos above along it; seen from d, under the slant.
     const auto size = [&](double rise) {
       const double straight = (Eigen::Vector3d(lamp.x(), lamp.y(), -lamp.z() - rise) - ray.origin).norm();
       const double d = straight * ray.origin.z() / (ray.origin.z() + lamp.z() + rise), r = straight - d;

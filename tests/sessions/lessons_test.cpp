@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the lessons claim, on their own sessions, against values from elsewhere: the mirror equation, closed-form surfaces, true lights.
+// What the lessons claim, on their own sessions, against values from elsewhere: the mirror equation, closed-form surfaces, true
+// lights.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -118,8 +119,8 @@ TEST(Lessons, BentMirrorItsFieldOfViewFollowsTheMirrorEquation) {
     const Eigen::Vector3d eye = e.view->camera.centreInWorld(), at = e.view->seen->brightest.point.position;
     EXPECT_LT(std::abs(at.x()), 1e-4);
     const double d = (eye - at).norm(), r = (lamp - at).norm(), cosine = (eye - at).normalized().z(), kappa = curvatures[k];
-    // Across the bend (sagittal): alpha(w) = w (kappa + (1/d + 1/r) / (2 cos theta)), and rays a distance 2 w apart leave as if from
-    // an image of the camera at d' behind the mirror: 1/d' = 1/d + 2 kappa cos theta.
+    // Across the bend (sagittal): alpha(w) = w (kappa + (1/d + 1/r) / (2 cos theta)), and rays a distance 2 w apart leave as if
+    // from an image of the camera at d' behind the mirror: 1/d' = 1/d + 2 kappa cos theta.
     const double limit = 0.07 * std::sqrt(std::numbers::ln2);
     const double half = limit / (kappa + (1 / d + 1 / r) / (2 * cosine)), field = 2 * half * (1 / d + 2 * kappa * cosine);
     double widest = 0;

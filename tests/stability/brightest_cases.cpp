@@ -110,7 +110,8 @@ void addBrightestCases(Cases& cases) {
       const Light light = grazingLight(degrees);
       add(name, degrees, 1e-9, "", [light, a, k] { return pointCase(k, k > 0, light, 0, 0, 1, 800, 0.1, 1 / std::cos(a)); });
     }
-  // The camera stands so far that the object is seen as large as by a lens of 800 px from 1 m; the error is over the object's metre.
+  // The camera stands so far that the object is seen as large as by a lens of 800 px from 1 m; the error is over the object's
+  // metre.
   for (const auto& [focal, words] :
        {std::pair(1e4, "1e4 px at 12.5 m"), std::pair(1e5, "1e5 px at 125 m"), std::pair(1e6, "1e6 px at 1,250 m")})
     for (const double k : {2.0, 0.0}) {

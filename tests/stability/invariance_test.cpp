@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What must not change an answer, on random scenes: motion and unit of the world, unit and origin of the pixels, order and repeats
-// of views, order and start of contour points, order of lights.
+// What must not change an answer, on random scenes: motion and unit of the world, unit and origin of the pixels, order and
+// repeats of views, order and start of contour points, order of lights.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -54,7 +54,7 @@ Scene randomScene(unsigned seed, double noisePx) {
   Scene scene{stability::specOf(k, round), Light::at(uniform(1, 3) * towards), {}};
   const Bent<Real> bent{Real(k), round};
   const Lamp<Real> lamp = stability::lampOf<Real>(scene.light);
-  std::normal_distribution<double> noise;  // a standard deviation of zero is none
+  std::normal_distribution<double> noise;  // zero is no legal standard deviation
   for (int i = 0; i < 6; ++i) {
     const RealView<Real> view =
         stability::mirrorView(bent, lamp, uniform(-0.25, 0.25), uniform(-0.25, 0.25), uniform(1.2, 1.8), 800);
@@ -221,8 +221,8 @@ TEST(Invariance, UnitOfTheWorld) {
   }
 }
 
-// Exact contours: under noise the weights of the bundle are differences over half a pixel, which another unit of the pixel changes
-// by the square of that step over the highlight's size.
+// Exact contours: under noise the weights of the bundle are differences over half a pixel, which another unit of the pixel
+// changes by the square of that step over the highlight's size.
 TEST(Invariance, UnitAndOriginOfThePixels) {
   for (const double zoom : {1.0 / 16, 4.0, 64.0})
     for (const Pixel& shift : {Pixel(0, 0), Pixel(3000, -2000)}) {

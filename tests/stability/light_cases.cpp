@@ -68,8 +68,8 @@ struct BundleScene {
   Refine refine = Refine::Nothing;
 };
 
-/// The light and the limit angle with what is refined beside them. From exact contours of a point light there is nothing to refine, so that the
-/// answer is the same; what moved all the same is an error.
+/// The light and the limit angle with what is refined beside them. From exact contours of a point light there is nothing to
+/// refine, so that the answer is the same; what moved all the same is an error.
 struct Refined {
   Light light;
   double limit = 0, moved = 0;

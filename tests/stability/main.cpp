@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// stability [--stage NAME] [--json FILE] [--markdown]: the extremes as a table, as JSON (docs/formats.md) or as the table of docs/stability.md.
+// stability [--stage NAME] [--json FILE] [--markdown]: the extremes as a table, as JSON (docs/formats.md) or as the table of
+// docs/stability.md.
 #include <algorithm>
 #include <iostream>
 

@@ -24,7 +24,8 @@ constexpr int kSide = 13;                // vertices a side
 constexpr std::int64_t kEdge = 100'000;  // between them
 constexpr double kEdgeMetres = 0.1;
 
-/// A bowl turned over, z = -k (x^2 + y^2) / 2, in whole micrometres, so that a file's decimals hold it at any offset without error.
+/// A bowl turned over, z = -k (x^2 + y^2) / 2, in whole micrometres, so that a file's decimals hold it at any offset without
+/// error.
 struct Bowl {
   std::vector<Whole> vertices, normals;  ///< normals: unit times 1e6 or so
   std::vector<Eigen::Vector3i> triangles;
@@ -155,7 +156,8 @@ Outcome<Measured> hitCase(const FileScene& f) {
   return Measured{worst, f.condition};
 }
 
-/// Eight cameras on the reflected ray of a known place: the brightest point that is found nearest to it, over the distance of 1 m.
+/// Eight cameras on the reflected ray of a known place: the brightest point that is found nearest to it, over the distance of 1
+/// m.
 /// @param degrees  from the normal, of the light that is 2 m away
 Outcome<Measured> mirrorCase(const FileScene& f, double degrees) {
   const Bowl bowl(f.curvature);
@@ -208,7 +210,8 @@ void addMeshFileCases(Cases& cases) {
         const std::string name = std::string(format) + " at " + o.name + ", " + policy;
         cases.push_back(answerCase("mesh file", name + ": hits and normals", size, tolerance, tolerance > 1e-9 ? note : "",
                                    [scene] { return hitCase(scene); }));
-        // On facets of a curved mesh and on their edges the mirror point turns by the slope of one facet against the next: the same places.
+        // On facets of a curved mesh and on their edges the mirror point turns by the slope of one facet against the next: the
+        // same places.
         cases.push_back(answerCase("mesh file", name + ": brightest point", size, tolerance, tolerance > 1e-9 ? note : "",
                                    [scene] { return mirrorCase(scene, 30); }));
       }

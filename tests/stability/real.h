@@ -114,8 +114,8 @@ struct RealCamera {
   }
 };
 
-/// Root of an increasing or decreasing f between a and b (opposite signs): Illinois steps, bisection when they are slow, until the
-/// bracket is a few units of T's round-off.
+/// Root of an increasing or decreasing f between a and b (opposite signs): Illinois steps, bisection when they are slow, until
+/// the bracket is a few units of T's round-off.
 template <class T, class F>
 T rootBetween(const F& f, T a, T b) {
   using std::abs;

@@ -3,7 +3,7 @@
 """Groups of tests that run when their code changed: occasional.txt names their entries and paths, occasional.stamps what the paths held when the
 group last passed. tests/run_nightly runs all of them.
 
-  tests/suite/occasional.py changed [GROUP...]   the groups (of these) that are to run; exit code 1 where there are none
+  tests/suite/occasional.py changed [GROUP...]   the groups (of these) that are to run; exit code 1 without any
   tests/suite/occasional.py stamp [GROUP...]     they (all) passed with the files as they are now; commit occasional.stamps
 
 Content counts, not history: a clone without history, or one whose files were changed, decides alike."""
@@ -35,7 +35,7 @@ def groups(file=HERE / "occasional.txt"):
 
 
 def digest(root, group):
-    """Of names and contents of all files below the paths that git does not ignore; None where git does not tell."""
+    """A hash of names and contents of all files below the paths that git does not ignore; None where git does not tell."""
     asked = subprocess.run(["git", "-C", str(root), "ls-files", "-z", "--cached", "--others", "--exclude-standard", "--", *group.paths],
                            capture_output=True)
     names = sorted(set(asked.stdout.split(b"\0")) - {b""})

@@ -110,7 +110,7 @@ def widgetSkips(case):
 
 
 def reasonOf(case):
-    """Of a skipped test."""
+    """The reason of a skipped test."""
     message = case.find("skipped").get("message", "") if case.find("skipped") is not None else ""
     said = [line for line in case.findtext("system-out", "").splitlines() if line.strip()]
     return " ".join((said[-1] if said and "SKIP_" in message else message).split()) or "no reason given"

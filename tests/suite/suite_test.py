@@ -16,7 +16,7 @@ sample = pathlib.Path(sys.argv.pop(1)).resolve()
 sys.path.insert(0, str(here))
 import occasional  # noqa: E402
 
-# Of whoever runs this test.
+# The environment of whoever runs this test.
 environment = {name: value for name, value in os.environ.items() if not name.startswith(("GLINT_TEST_", "GTEST_"))}
 
 

@@ -136,7 +136,8 @@ TEST_F(LegendPicture, OverAPhotographItStandsOnAPanel) {
   EXPECT_LT(pixels(false), font) << "but for the smoothed edges of letters";
 }
 
-/// Of two entries side by side in the list, how many rows of pixels lie between their strokes; nothing where the first is left out.
+/// How many rows of pixels lie between the strokes of two neighbouring entries of the list; nothing if the first is left
+/// out.
 TEST_F(LegendPicture, ALongLegendSharesRowsAndALowPictureKeepsOnlyWhatItHasToShow) {
   const auto between = [&](int width, int others) -> std::optional<int> {
     const Image image = picture(width, true, [others](Annotations& a) {
@@ -235,7 +236,8 @@ TEST(LabelPlaces, KeepOffCamerasWhereThereIsRoom) {
   EXPECT_FALSE(placeForLabel(at, size, picture, kFont, {all}, {}));
 }
 
-/// As far from the tip at every zoom: no corner of the text is nearer along the arrow than the gap, and its middle is on the arrow's line.
+/// As far from the tip at every zoom: no corner of the text is nearer along the arrow than the gap, and its middle is on the
+/// arrow's line.
 TEST(LabelPlaces, ALetterStandsInFrontOfItsArrowsTip) {
   const Eigen::Vector2d tip(200, 180), size(12, 16), picture(400, 400);
   constexpr double kFont = 20, kGap = 6;

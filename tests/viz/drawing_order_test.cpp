@@ -17,8 +17,8 @@ using test::heldOutInput;
 using test::smallInspection;
 using test::TemporaryFolder;
 
-/// A step about one frame shows that frame alone, and its camera alone may look down so steeply that the image's upwards is nearly
-/// level: what is up must not follow from how many cameras are shown.
+/// A step about one frame shows that frame alone, and its camera alone may look down so steeply that the image's upwards is
+/// nearly level: what is up must not follow from how many cameras are shown.
 TEST(Framing, WhatIsUpDoesNotDependOnHowManyCamerasAreShown) {
   const TemporaryFolder folder;
   const auto inspection = smallInspection(folder.path());

@@ -47,7 +47,8 @@ TEST(FrameOverlay, ContoursAndPeaksLieExactlyWhereTheInspectionHasThem) {
   EXPECT_EQ(overlay.marks[0].at, observed.peak);
 }
 
-/// A highlight of Blinn-Phong's lobe, written out here: the camera above a plane, the light turned by 0.025 rad per pixel about it.
+/// A highlight of Blinn-Phong's lobe, written out here: the camera above a plane, the light turned by 0.025 rad per pixel about
+/// it.
 std::shared_ptr<FrameSamples> blinnPhongSamples(int frame, double m) {
   auto samples = std::make_shared<FrameSamples>();
   samples->frame = frame;

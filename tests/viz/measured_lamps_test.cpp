@@ -112,8 +112,8 @@ TEST(MeasuredLamps, WhatIsHiddenUnknownOrExactIsSaidOrLeftOut) {
   EXPECT_EQ(scene.layer({broken}).drawn.size(), 1U);  // its place alone
 }
 
-/// The light of one limit angle stands on the shipped ellipsoid 16 cm from its lamp with a standard deviation of 8 mm: what it leaves out must stand
-/// beside it.
+/// The light of one limit angle stands on the shipped ellipsoid 16 cm from its lamp with a standard deviation of 8 mm: what it
+/// leaves out must stand beside it.
 TEST(EstimatedLight, SaysThatItsDeviationIsOfNoiseAloneAndHowFarTheLampOfALobeIs) {
   const test::TemporaryFolder folder;
   const auto inspection = test::smallInspection(folder.path());

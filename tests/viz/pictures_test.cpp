@@ -22,7 +22,7 @@ using test::isNear;
 using test::smallInspection;
 using test::TemporaryFolder;
 
-/// Of texts about what failed, on the panel of dark pictures.
+/// Colour of texts about what failed, on the panel of dark pictures.
 const Colour kFailedText = draw::readableOn({0.15, 0.16, 0.18}, kFailed);
 
 int countOfColour(const Image& image, const Colour& colour, double tolerance = 0.08) {

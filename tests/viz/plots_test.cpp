@@ -324,7 +324,8 @@ TEST(Plots, SamplesOfAFrameOnTheSphere) {
   EXPECT_FALSE(frameSamples(*smallInspection(folder.path()), 77, "canonical").failure.empty());
 }
 
-/// As contours in photographs, lines of the timeline and ellipsoids: what a poor fit says is pale, named so, and dashed where it is a line.
+/// As contours in photographs, lines of the timeline and ellipsoids: what a poor fit says is pale, named so, and dashed where it
+/// is a line.
 TEST(Plots, WhatIsPoorIsPaleDashedAndNamedSo) {
   const TemporaryFolder folder;
   const auto inspection = smallInspection(folder.path());

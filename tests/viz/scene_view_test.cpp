@@ -116,7 +116,7 @@ TEST_F(SceneViewPicture, TheHorizonStaysLevelWhereCamerasLookDownSteeply) {
     pose.translation() = -(pose.linear() * (1.7 * back));
     scene->frames[i].camera.camFromWorld = pose;
   }
-  // Also where z is downwards: all of it turned over, or all cameras about their own axes. (What finds the upright axis gives it
+  // Even if z is downwards: all of it turned over, or all cameras about their own axes. (What finds the upright axis gives it
   // with an arbitrary sign; among these are cases of either.)
   const auto half = [](const Eigen::Vector3d& axis) { return Eigen::Isometry3d(Eigen::AngleAxisd(std::numbers::pi, axis)); };
   const Eigen::Isometry3d same = Eigen::Isometry3d::Identity(), rolled = half(Eigen::Vector3d::UnitZ()),

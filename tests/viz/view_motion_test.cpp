@@ -21,7 +21,8 @@ ViewPoint someView() {
   return v;
 }
 
-/// Where a point is in the picture, in units of its half height; parallel views are as high as a perspective one at the focal point.
+/// Where a point is in the picture, in units of its half height; parallel views are as high as a perspective one at the focal
+/// point.
 Eigen::Vector2d inPicture(const ViewPoint& v, const Eigen::Vector3d& point) {
   const Eigen::Vector3d ahead = (v.focalPoint - v.position).normalized();
   const Eigen::Vector3d right = ahead.cross(v.up).normalized(), up = right.cross(ahead), d = point - v.position;

@@ -78,7 +78,7 @@ std::vector<Shape> shapesOf(const LayerContent& content) {
   }
   return shapes;
 }
-/// Of one width and colour, the nth.
+/// The nth shape of one width and colour.
 const Shape* shapeOf(const std::vector<Shape>& shapes, double width, const Colour& colour, int nth = 0) {
   for (const Shape& s : shapes)
     if (s.width == width && s.colour == colour && nth-- == 0) return &s;
@@ -91,7 +91,7 @@ Eigen::Vector3d halfAt(const Eigen::Vector3d& p, const Eigen::Vector3d& eye) {
   return ((eye - p).normalized() + (kLamp - p).normalized()).normalized();
 }
 
-/// Of the walk's trail and what stands at its end, whichever surface it is on.
+/// The walk's trail and what stands at its end, whichever surface it is on.
 struct Expected {
   bool onSurface;
   Eigen::Vector3d lift, start;

@@ -27,8 +27,8 @@ LayerContent canonicalEllipsesLayer(const LayerInput& in) {
     if (!in.solo && failedFor(*in.inspection, canonicalModel().id(), view->highlight.light)) continue;  // fitted to nothing
     add(view->camera, view->seen->tangentPlane, *view->canonical->ellipse, view->frame == in.selection.frame, view->frame, "");
   }
-  // Of the selected frame alone: what was observed in it, whether it trains or not. A predicted ellipse beside it would look as
-  // if both came from the one contour.
+  // Shows the selected frame alone: what was observed in it, whether it trains or not. A predicted ellipse beside it would look
+  // as if both came from the one contour.
   if (in.solo) {
     for (const TrainingView& view : in.ownWalks())
       if (view.canonical->ellipse) add(view.camera, view.seen->tangentPlane, *view.canonical->ellipse, true, view.frame, "");

@@ -34,7 +34,7 @@ std::optional<Cone> coneOf(const TrainingView& view, const HighlightModel& model
 
 void addCone(LayerContent& content, const LayerInput& in, const Cone& cone, const Ellipsoid& target, const Colour& colour,
              bool strong, const Picked& info) {
-  // From the tangent plane, where camera and virtual camera see the same ellipse, to a little beyond the ellipsoid; a camera's
+  // A cone runs from the tangent plane, where both cameras see the same ellipse, to a little beyond the ellipsoid; a camera's
   // own cone from halfway, because its ellipsoid lies about the tangent planes.
   std::vector<Pixel> pixels = cone.ellipse.sample(kAround);
   const Eigen::Vector3d axis = (target.centre() - cone.apex).normalized();

@@ -111,7 +111,7 @@ const Highlight* selectedHighlight(const LayerInput& in, const std::string& ligh
   return nullptr;
 }
 
-/// Which models miss an observed highlight of the selected frame; "" where none does.
+/// Which models miss an observed highlight of the selected frame; "" if none does.
 std::string modelsThatMiss(const LayerInput& in, int observed) {
   std::string names;
   const std::set<std::string> shown(in.models.begin(), in.models.end());

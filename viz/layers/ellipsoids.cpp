@@ -29,7 +29,7 @@ std::vector<Segment> dashesOf(const std::vector<Points>& curves) {
   return dashes;
 }
 
-/// A Q* that is no ellipsoid: a wire dashed in the colour of failures, named where it stands and in the notes.
+/// A Q* that is no ellipsoid: a wire dashed in the colour of failures, named at its place and in the notes.
 void addDegenerate(LayerContent& content, const LayerInput& in, const ModelFit& fit, const EllipsoidFit& fitted) {
   const Eigen::Vector3d centre = in.scale.sceneBox.center();
   const Eigen::Vector3d half = Eigen::Vector3d::Constant(0.45 * in.scale.sceneSize);

@@ -12,7 +12,7 @@
 namespace glint::viz {
 namespace {
 
-constexpr double kFarLamp = 4;       ///< in scene sizes, as of estimates: beyond, an arrow shows the direction
+constexpr double kFarLamp = 4;       ///< in scene sizes, as for estimates: beyond, an arrow shows the direction
 constexpr double kWideCone = 0.25;   ///< radians: a wider one is drawn by its rim alone, or it would cover the scene
 constexpr int kConeLines = 12;       ///< along a cone: it reads as one, and what lies inside stays visible
 constexpr double kLeastAxis = 1e-3;  ///< of the longest: a thinner ellipsoid has no normals to be lit by
@@ -48,7 +48,7 @@ void addRegion(LayerContent& content, const LampAnswer& lamp, const Picked& info
     for (const double side : {-1.0, 1.0}) content.extent.push_back(c + side * a.col(i));
 }
 
-/// An arrow from the object towards the lamp, and the cone that holds the true direction with 95 %, where it is wider than the arrow.
+/// An arrow from the object towards the lamp, and the cone that holds the true direction with 95 %, if wider than the arrow.
 void addArrow(LayerContent& content, const LayerInput& in, const LampAnswer& lamp, const std::string& label, const Picked& info,
               double width) {
   const Eigen::Vector3d middle = in.scale.surfaceBox.center();

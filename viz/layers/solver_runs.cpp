@@ -9,7 +9,7 @@
 namespace glint::viz {
 namespace {
 
-constexpr double kFarPlace = 4;  ///< in scene sizes, as of estimates: beyond, an arrow shows the direction
+constexpr double kFarPlace = 4;  ///< in scene sizes, as for estimates: beyond, an arrow shows the direction
 
 /// A place of a run: itself, or for one that is far or at infinity a place beside the scene in its direction.
 struct Shown {

@@ -9,8 +9,8 @@ namespace {
 
 constexpr double kPlanePx = 2;  // see Drawn::nearerPx: below what lies on the plane
 
-/// What the plane has to reach: three highlights, and where it is looked at alone the canonical contour, which lies on it and is several
-/// times as large where the surface bulges. Of all frames together such planes would hide the surface.
+/// What the plane has to reach: three highlights, and where it is looked at alone the canonical contour, which lies on it and is
+/// several times as large where the surface bulges. The planes of all frames together would hide the surface.
 double radiusOf(const LayerInput& in, const Camera& camera, const Plane& plane, const Eigen::Vector3d& at,
                 const std::vector<Pixel>& contour, const std::optional<CanonicalContour>& canonical) {
   const double own = planeRadius(camera, plane, at, contour, in.scale);

@@ -102,7 +102,8 @@ def prepared(options):
     kind, _, count = options.train.partition(":")
     settings.training, settings.count = {"first": "FIRST", "spread": "SPREAD"}[kind], int(count)
     bpy.ops.glint.run(shows=False)
-    bpy.ops.glint.import_results(filepath=os.path.join(options.work, "evaluation.json"), kinds={"LIGHTS", "MATERIAL"}, overlays=False)
+    bpy.ops.glint.import_results(filepath=os.path.join(options.work, "evaluation.json"), kinds={"LIGHTS", "MATERIAL"},
+                                 overlays=False)
     lamps = [o for o in scene.objects if o.type == "LIGHT"]
     material = next(m for m in bpy.data.materials if "glint_roughness" in m)
     return scene, [o for o in scene.objects if "glint_surface" in o], lamps, material

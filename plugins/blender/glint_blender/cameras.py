@@ -47,7 +47,8 @@ def same_state(a, b):
 
 
 def evaluated(scene, camera):
-    return camera.evaluated_get(bpy.context.evaluated_depsgraph_get() if scene == bpy.context.scene else bpy.context.view_layer.depsgraph)
+    return camera.evaluated_get(bpy.context.evaluated_depsgraph_get() if scene == bpy.context.scene
+                                else bpy.context.view_layer.depsgraph)
 
 
 def exact_entry(scene, camera):
@@ -58,7 +59,7 @@ def exact_entry(scene, camera):
         if entry and same_state(entry["state"], state_of(scene, evaluated(scene, camera))):
             return entry
     except (ValueError, KeyError, TypeError, AttributeError):
-        pass  # somebody has edited the property: the camera that Blender shows counts
+        pass  # the property was edited: the camera that Blender shows counts
     return None
 
 
@@ -94,7 +95,8 @@ def glint_camera(scene, camera, world, use_exact=True):
     shown = evaluated(scene, camera)
     lens, render = shown.data, scene.render
     width, height = image_size(scene)
-    view = views.calibration(width, height, lens.lens, lens.sensor_width, lens.sensor_height, lens.sensor_fit, lens.shift_x, lens.shift_y,
+    view = views.calibration(width, height, lens.lens, lens.sensor_width, lens.sensor_height, lens.sensor_fit, lens.shift_x,
+                             lens.shift_y,
                              render.pixel_aspect_x, render.pixel_aspect_y)
     try:
         return views.camera_from_world(shown.matrix_world, world), view, False, ""

@@ -44,7 +44,8 @@ def pictures_of(scene, request):
     if request.pictures == "FOLDER":
         found = images.in_folder(bpy.path.abspath(request.folder))
         if len(found) != len(request.frames):
-            raise InputError(request.folder, "", f"holds {len(found)} pictures for {len(request.frames)} frames; there must be one for each")
+            raise InputError(request.folder, "",
+                             f"holds {len(found)} pictures for {len(request.frames)} frames; there must be one for each")
         return dict(zip(request.frames, found))
     if request.pictures == "RENDER":
         return {f: images.rendered(scene, f) for f in request.frames}
@@ -52,7 +53,7 @@ def pictures_of(scene, request):
 
 
 def picture_of(scene, request, pictures, frame):
-    """(path of the picture to copy or None, why there is none). A .blend file may come from others, and the export may be passed on: what it
+    """(path of the picture to copy or None, why it is missing). A .blend file may come from others, and the export may be passed on: what it
     names is copied only where it is a picture and lies in the folder of the .blend file, or where the user says that it may lie anywhere."""
     path = images.behind(scene.camera, frame) if request.pictures == "BACKGROUND" else pictures.get(frame)
     if not path:
@@ -198,18 +199,23 @@ class GLINT_OT_export_scene(bpy.types.Operator, ExportHelper):
     bl_options = {"PRESET"}
     filename_ext = ".json"
     filter_glob: StringProperty(default="*.json", options={"HIDDEN"})
-    scale: FloatProperty(name="Metres per Unit", description="Length of one Blender unit in metres, on top of the scene's unit scale", default=1.0,
+    scale: FloatProperty(name="Metres per Unit",
+                         description="Length of one Blender unit in metres, on top of the scene's unit scale", default=1.0,
                          min=1e-6, max=1e6, soft_min=0.001, soft_max=1000)
     surfaces: EnumProperty(name="Surface", description="What the glossy surface is", items=SURFACES, default="SELECTED")
-    pictures: EnumProperty(name="Pictures", description="Where the pictures of the frames are; they are copied beside the scene", items=IMAGES,
+    pictures: EnumProperty(name="Pictures", description="Where the pictures of the frames are; they are copied beside the scene",
+                           items=IMAGES,
                            default="RENDER")
     folder: StringProperty(name="Folder", description="Folder of the pictures", subtype="DIR_PATH")
-    whole_range: BoolProperty(name="Whole Frame Range", description="Frames of the scene, from its start to its end by its step", default=True)
+    whole_range: BoolProperty(name="Whole Frame Range", description="Frames of the scene, from its start to its end by its step",
+                              default=True)
     first: IntProperty(name="First", description="First frame", default=1)
     last: IntProperty(name="Last", description="Last frame", default=1)
     step: IntProperty(name="Step", description="Every how many frames", default=1, min=1)
-    lights: BoolProperty(name="Lamps", description="Write lamps as the truth that results are compared with; no fit reads them", default=True)
-    exact: BoolProperty(name="Exact Cameras", description="Use the exact numbers of cameras that came from a Glint scene and have not moved",
+    lights: BoolProperty(name="Lamps", description="Write lamps as the truth that results are compared with; no fit reads them",
+                         default=True)
+    exact: BoolProperty(name="Exact Cameras",
+                        description="Use the exact numbers of cameras that came from a Glint scene and have not moved",
                         default=True)
 
     @classmethod
@@ -221,10 +227,12 @@ class GLINT_OT_export_scene(bpy.types.Operator, ExportHelper):
 
     def execute(self, context):
         scene = context.scene
-        frames = range(scene.frame_start, scene.frame_end + 1, scene.frame_step) if self.whole_range else range(self.first, self.last + 1, self.step)
+        frames = range(scene.frame_start, scene.frame_end + 1,
+                       scene.frame_step) if self.whole_range else range(self.first, self.last + 1, self.step)
         try:
             world = world_from(scene, self.axis_forward, self.axis_up, self.scale)
-            request = Request(surface_objects(context, self.surfaces, scene.glint.surface), frames, world, self.pictures, self.folder, self.lights,
+            request = Request(surface_objects(context, self.surfaces, scene.glint.surface), frames, world, self.pictures,
+                              self.folder, self.lights,
                               self.exact, named=True)
             document, rows, warnings = write_scene(context, self.filepath, request)
         except InputError as e:

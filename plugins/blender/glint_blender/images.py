@@ -10,7 +10,8 @@ PICTURES = {".png", ".jpg", ".jpeg", ".tif", ".tiff", ".exr", ".bmp", ".webp", "
 
 
 # How files of these formats begin: a name says nothing about what is copied.
-BEGINNINGS = (b"\x89PNG\r\n\x1a\n", b"\xff\xd8\xff", b"II*\0", b"MM\0*", b"II+\0", b"MM\0+", b"v/1\x01", b"BM", b"#?RADIANCE", b"#?RGBE")
+BEGINNINGS = (b"\x89PNG\r\n\x1a\n", b"\xff\xd8\xff", b"II*\0", b"MM\0*", b"II+\0", b"MM\0+", b"v/1\x01", b"BM", b"#?RADIANCE",
+              b"#?RGBE")
 
 
 def is_picture(path):
@@ -38,7 +39,7 @@ def may_copy(path):
 
 
 class GLINT_OT_trust_pictures(bpy.types.Operator):
-    """Copy pictures that this .blend file names outside of its folder, until Blender ends. A .blend file from somebody else may name any picture"""
+    """Copy pictures that this .blend file names outside of its folder, until Blender ends. A .blend file of others may name any picture"""
     bl_idname = "glint.trust_pictures"
     bl_label = "Allow Pictures from Other Folders"
 
@@ -99,7 +100,8 @@ def colour_warning(scene, paths):
     if all(key_for(p) == "radiance" for p in paths):
         return ""
     view = scene.view_settings
-    if view.view_transform not in ("Standard", "Raw") or view.look not in ("None", "") or view.gamma != 1.0 or view.use_curve_mapping:
+    if view.view_transform not in ("Standard", "Raw") or view.look not in ("None",
+                                                                           "") or view.gamma != 1.0 or view.use_curve_mapping:
         return (f"the pictures may have been rendered with the view transform {view.view_transform}, which Glint cannot undo: contours lie at "
                 "other levels then; render OpenEXR, or with the view transform Standard")
     return ""

@@ -18,7 +18,8 @@ def frame_numbers(scene, found):
     """Blender's frame of every frame of the results; refused where the scene's own frames are others."""
     items = scene.glint.frames
     if [f.frame_id for f in items] != [f["id"] for f in found.frames]:
-        raise InputError(scene.glint.input, "frames", f"has {len(found.frames)} frames, but this Blender scene was exported or imported with "
+        raise InputError(scene.glint.input, "frames",
+                         f"has {len(found.frames)} frames, but this Blender scene was exported or imported with "
                                                       f"{len(items)} others; export or import it again")
     return [f.frame for f in items]
 
@@ -74,13 +75,16 @@ class GLINT_OT_import_results(bpy.types.Operator, ImportHelper):
     bl_options = {"REGISTER", "UNDO", "PRESET"}
     filename_ext = ".json"
     filter_glob: StringProperty(default="*.json", options={"HIDDEN"})
-    scene_file: StringProperty(name="Scene", description="Scene file that the results are of; empty: the one of the Glint panel", subtype="FILE_PATH")
+    scene_file: StringProperty(name="Scene", description="Scene file that the results are of; empty: the one of the Glint panel",
+                               subtype="FILE_PATH")
     kinds: EnumProperty(name="Show", description="What to make objects of", items=show.KINDS, options={"ENUM_FLAG"},
                         default={"ELLIPSOIDS", "LIGHTS", "PLANES", "CONTOURS", "MATERIAL"})
     model: StringProperty(name="Model", description="Only this model; empty: all")
-    own_frame: BoolProperty(name="Only in Their Frame", description="Show what belongs to one frame in that frame alone (keys of the visibility)",
+    own_frame: BoolProperty(name="Only in Their Frame",
+                            description="Show what belongs to one frame in that frame alone (keys of the visibility)",
                             default=True)
-    overlays: BoolProperty(name="Overlays", description="Write pictures of the contours into the folder `overlays` of the run, and show them in the cameras' views", default=True)
+    overlays: BoolProperty(name="Overlays",
+                           description="Write pictures of the contours into the folder `overlays` of the run, and show them in the cameras' views", default=True)
 
     @classmethod
     def poll(cls, context):
@@ -100,7 +104,8 @@ class GLINT_OT_import_results(bpy.types.Operator, ImportHelper):
         try:
             if not evaluation and not predictions:
                 raise InputError(folder, "", "has no evaluation.json and no predictions.json")
-            made, warnings = show_results(context, evaluation, predictions, scene_path, self.kinds, {self.model} if self.model else None,
+            made, warnings = show_results(context, evaluation, predictions, scene_path, self.kinds,
+                                          {self.model} if self.model else None,
                                           self.own_frame, folder if self.overlays else "")
         except InputError as e:
             self.report({"ERROR"}, str(e))

@@ -96,7 +96,8 @@ def surfaces_of(document, path, world, size, warnings):
             found[name] = [meshes.mesh_object(name, *made, world, pose)]
         elif surface.get("mesh") is not None:
             units = surface.get("units", 1.0)
-            factor = {"m": 1.0, "cm": 0.01, "mm": 0.001}.get(units) if isinstance(units, str) else scene_file.number(units, path, f"{place}.units")
+            factor = {"m": 1.0, "cm": 0.01,
+                      "mm": 0.001}.get(units) if isinstance(units, str) else scene_file.number(units, path, f"{place}.units")
             if not factor or factor < 0:
                 raise InputError(path, f"{place}.units", "must be m, cm, mm or a number of metres")
             file = scene_file.inside(folder, surface["mesh"], path, f"{place}.mesh")
@@ -151,7 +152,8 @@ class Importer:
         rows = []
         for i, light in enumerate(results.objects(self.document.get("lights") or [], self.path, "lights")):
             place = f"lights[{i}]"
-            row = {"id": str(light.get("id", "")), "radius": scene_file.number(light.get("radius") or 0, self.path, f"{place}.radius")}
+            row = {"id": str(light.get("id", "")),
+                   "radius": scene_file.number(light.get("radius") or 0, self.path, f"{place}.radius")}
             for key in ("position", "direction"):
                 if light.get(key) is not None:
                     row[key] = scene_file.vector(light[key], 3, self.path, f"{place}.{key}")
@@ -165,7 +167,7 @@ class Importer:
         return rows
 
     def _picture(self, frame):
-        """Path of the picture of a frame, None where there is none (or none to show)."""
+        """Path of the picture of a frame, None without one (or without one to show)."""
         for key in ("image", "radiance"):
             if isinstance(frame[key], str) and frame[key]:
                 file = scene_file.inside(os.path.dirname(os.path.abspath(self.path)), frame[key], self.path, f"frames.{key}")
@@ -281,10 +283,12 @@ class GLINT_OT_import_scene(bpy.types.Operator, ImportHelper):
     bl_options = {"REGISTER", "UNDO", "PRESET"}
     filename_ext = ".json"
     filter_glob: StringProperty(default="*.json", options={"HIDDEN"})
-    scale: FloatProperty(name="Metres per Unit", description="Length of one Blender unit in metres, on top of the scene's unit scale", default=1.0,
+    scale: FloatProperty(name="Metres per Unit",
+                         description="Length of one Blender unit in metres, on top of the scene's unit scale", default=1.0,
                          min=1e-6, max=1e6)
     cameras: EnumProperty(name="Cameras", description="How the cameras of the frames become objects",
-                          items=[("EACH", "One for Each Frame", "A camera object for each frame, bound to markers of the timeline"),
+                          items=[("EACH", "One for Each Frame",
+                                  "A camera object for each frame, bound to markers of the timeline"),
                                  ("ONE", "One Animated", "One camera object with keys at each frame")], default="EACH")
     first: IntProperty(name="First Frame", description="Blender's frame that shows the first frame of the file", default=1)
     photographs: BoolProperty(name="Photographs", description="Show the photographs behind the cameras' views", default=True)

@@ -33,7 +33,8 @@ def light_of(object_, depsgraph, world, warnings):
     if sides[long_one] >= LONG * sides[1 - long_one]:
         half = linear.scaled(linear.unit(world.direction_to_glint(linear.column(m, long_one))), sides[long_one] / 2)
         warnings.append(f"{object_.name}: an area light; written as a tube of its length")
-        return {"id": object_.name, "segment": [linear.difference(place, half), linear.difference(place, linear.scaled(half, -1))],
+        return {"id": object_.name, "segment": [linear.difference(place, half),
+                                                linear.difference(place, linear.scaled(half, -1))],
                 "radius": sides[1 - long_one] / 2}
     warnings.append(f"{object_.name}: an area light; written as a ball of the same area")
     return {"id": object_.name, "position": place, "radius": (sides[0] * sides[1] / linear.math.pi) ** 0.5}

@@ -47,7 +47,8 @@ def triangles_of(object_, depsgraph, world):
     places = places.reshape(-1, 3).astype(numpy.float64)
     places = (places @ matrix[:3, :3].T + matrix[:3, 3]) @ turn.T * world.scale
     a, b, c = matrix[:3, :3]
-    cofactors = numpy.array([numpy.cross(b, c), numpy.cross(c, a), numpy.cross(a, b)])  # carry normals as the matrix carries points
+    cofactors = numpy.array([numpy.cross(b, c), numpy.cross(c, a),
+                             numpy.cross(a, b)])  # carry normals as the matrix carries points
     mirrored = numpy.linalg.det(matrix[:3, :3]) < 0
     # A vertex is its place and its normal, rounded to what single precision holds of it.
     keys = numpy.concatenate([of_corner[:, None], numpy.round(normals * 2**20).astype(numpy.int64)], axis=1)
@@ -72,7 +73,8 @@ def joined(parts):
 def ply_bytes(vertices, normals, triangles):
     """A binary PLY with double coordinates."""
     head = ("ply\nformat binary_little_endian 1.0\ncomment written by the Glint add-on for Blender\n"
-            f"element vertex {len(vertices)}\n" + "".join(f"property double {name}\n" for name in ("x", "y", "z", "nx", "ny", "nz")) +
+            f"element vertex {len(vertices)}\n"
+            + "".join(f"property double {name}\n" for name in ("x", "y", "z", "nx", "ny", "nz")) +
             f"element face {len(triangles)}\nproperty list uchar int vertex_indices\nend_header\n")
     faces = numpy.empty(len(triangles), dtype=[("count", "u1"), ("corners", "<i4", 3)])
     faces["count"] = 3
@@ -136,7 +138,7 @@ def ball(radii, steps=192):
 
 
 def sheet_point(curvature, length, width):
-    """Of the sheet k (x^2 + z^2) + 2 z = 0 around the origin: s along the arc, t along y."""
+    """A function of s along the arc and t along y: points of the sheet k (x^2 + z^2) + 2 z = 0 around the origin."""
     def point(s, t):
         arc = (s - 0.5) * length
         if abs(curvature) < 1e-12:  # flatter than any sheet that a file means: the plane itself
@@ -166,7 +168,8 @@ def analytic(kind, value, size, file, place):
         return ball(radii)
     if kind == "cylinder":
         r = of("radius")
-        return grid(lambda s, t: (r * math.sin(2 * math.pi * s), (t - 0.5) * size, r * math.cos(2 * math.pi * s)), 192, 8, True, False)
+        return grid(lambda s, t: (r * math.sin(2 * math.pi * s), (t - 0.5) * size, r * math.cos(2 * math.pi * s)), 192, 8, True,
+                    False)
     if kind == "sheet":
         k = number(value.get("curvature"), file, f"{place}.curvature")
         arc = of("length") if value.get("length") is not None else min(size, math.pi / abs(k) if k else size)

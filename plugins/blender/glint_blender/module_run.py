@@ -15,7 +15,8 @@ def module():
     try:
         found = importlib.import_module("glint")
     except ImportError as e:
-        raise InputError("module glint", "", f"cannot be imported: {e}; switch off Use the Python Module in the add-on's preferences") from None
+        raise InputError("module glint", "",
+                         f"cannot be imported: {e}; switch off Use the Python Module in the add-on's preferences") from None
     if not all(hasattr(found, name) for name in ("open", "inspect", "CannotAnswer", "InputError", "Stopped")):
         raise InputError("module glint", "", "is another module of this name")
     return found
@@ -32,14 +33,15 @@ def predictions_of(inspection, models):
             highlights = [{"peak": h.brightest_point.pixel.tolist(), "brightest_point": h.brightest_point.position.tolist(),
                            "normal": h.brightest_point.normal.tolist(), "coverage": h.coverage, "contour": h.contour.tolist(),
                            "gaps": [list(gap) for gap in h.gaps]} for h in prediction.highlights]
-            rows.append({"index": found.frame, "id": ids[found.frame], "light": found.light, "status": "failed" if prediction.failure else "ok",
+            rows.append({"index": found.frame, "id": ids[found.frame], "light": found.light,
+                         "status": "failed" if prediction.failure else "ok",
                          "reason": prediction.failure or "", "highlights": highlights})
     return document
 
 
 def write(path, text):
     """A file, whole or not at all."""
-    # In a folder that is new and this user's alone: nobody has put a link in its place.
+    # In a folder that is new and this user's alone: no one has put a link in its place.
     with tempfile.TemporaryDirectory(prefix=".glint-", suffix=".tmp", dir=os.path.dirname(path)) as work:
         unfinished = os.path.join(work, os.path.basename(path))
         with open(unfinished, "w", encoding="utf-8") as file:

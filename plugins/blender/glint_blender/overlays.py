@@ -58,7 +58,7 @@ def save(path, picture):
     image = bpy.data.images.new("Glint overlay", width, height, alpha=True)
     try:
         image.pixels.foreach_set(picture[::-1].astype(numpy.float32).ravel())
-        # In a folder that is new and this user's alone: nobody has put a link in its place.
+        # In a folder that is new and this user's alone: no one has put a link in its place.
         with tempfile.TemporaryDirectory(prefix=".glint-", suffix=".tmp", dir=os.path.dirname(path)) as work:
             unfinished = os.path.join(work, os.path.basename(path))
             image.filepath_raw, image.file_format = unfinished, "PNG"

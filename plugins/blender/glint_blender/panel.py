@@ -42,7 +42,8 @@ class GLINT_OT_preset_add(AddPresetBase, bpy.types.Operator):
     preset_menu = "GLINT_MT_presets"
     preset_subdir = "glint/run"
     preset_defines = ["settings = bpy.context.scene.glint"]
-    preset_values = ["settings.models", "settings.training", "settings.count", "settings.source", "settings.level", "settings.more"]
+    preset_values = ["settings.models", "settings.training", "settings.count", "settings.source", "settings.level",
+                     "settings.more"]
 
 
 class GLINT_PT_presets(PresetPanel, bpy.types.Panel):
@@ -136,4 +137,5 @@ class GLINT_PT_world(InSidebar, bpy.types.Panel):
             layout.prop(settings, name)
 
 
-classes = (GLINT_UL_frames, GLINT_MT_presets, GLINT_OT_preset_add, GLINT_PT_presets, GLINT_PT_main, GLINT_PT_frames, GLINT_PT_world)
+classes = (GLINT_UL_frames, GLINT_MT_presets, GLINT_OT_preset_add, GLINT_PT_presets, GLINT_PT_main, GLINT_PT_frames,
+           GLINT_PT_world)

@@ -11,7 +11,8 @@ class GlintPreferences(bpy.types.AddonPreferences):
     bl_idname = __package__
     program: StringProperty(name="Program", description="The program glint; empty: the one on PATH", subtype="FILE_PATH")
 
-    use_module: BoolProperty(name="Use the Python Module", description="Run in Blender's own process by the Python module glint, where Python finds it; "
+    use_module: BoolProperty(name="Use the Python Module",
+                             description="Run in Blender's own process by the Python module glint, where Python finds it; "
                              "the program is not needed then", default=False)
 
     def draw(self, context):

@@ -32,7 +32,8 @@ def find(path=""):
 def version_of(program):
     """The version as three numbers; refuses a program that is another one, or too old."""
     try:
-        done = subprocess.run([program, "--version"], capture_output=True, text=True, timeout=20, stdin=subprocess.DEVNULL, check=False)
+        done = subprocess.run([program, "--version"], capture_output=True, text=True, timeout=20, stdin=subprocess.DEVNULL,
+                              check=False)
     except (OSError, subprocess.TimeoutExpired) as e:
         raise InputError(program, "", f"cannot be run: {e}") from None
     found = re.fullmatch(r"glint (\d+)\.(\d+)\.(\d+)\S*", done.stdout.strip())
@@ -62,7 +63,8 @@ class Job:
             pass
         try:
             self.process = subprocess.Popen(command, cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                                            stderr=theirs if theirs is not None else subprocess.PIPE, start_new_session=os.name == "posix",
+                                            stderr=theirs if theirs is not None else subprocess.PIPE,
+                                            start_new_session=os.name == "posix",
                                             env=dict(os.environ, NO_COLOR="1"))  # the lines are read, not looked at
         except OSError as e:
             if own_end is not None:

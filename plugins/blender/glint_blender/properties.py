@@ -3,7 +3,8 @@
 import json
 
 import bpy
-from bpy.props import (BoolProperty, CollectionProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty, StringProperty)
+from bpy.props import (BoolProperty, CollectionProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty,
+                       StringProperty)
 from bpy_extras.io_utils import axis_conversion
 
 from . import views
@@ -83,35 +84,43 @@ class GlintSettings(bpy.types.PropertyGroup):
                          items=[("BLENDER", "This Blender Scene", "Export this scene before each run"),
                                 ("FILE", "Scene File", "The scene.json that was imported, as it is")], default="BLENDER")
     input: StringProperty(name="Input", description="Scene file that Glint reads", subtype="FILE_PATH")
-    folder: StringProperty(name="Folder", description="Where the run writes its files: scene, session, predictions, evaluation", subtype="DIR_PATH")
+    folder: StringProperty(name="Folder", description="Where the run writes its files: scene, session, predictions, evaluation",
+                           subtype="DIR_PATH")
     surfaces: EnumProperty(name="Surface", description="What the glossy surface is",
                            items=[("SELECTED", "Selected Objects", "The selected objects, together"),
                                   ("VISIBLE", "All Rendered Objects", "Every object with faces that a render shows"),
                                   ("COLLECTION", "A Collection", "All objects with faces of a collection")], default="SELECTED")
     surface: PointerProperty(name="Collection", description="Collection of the glossy surface", type=bpy.types.Collection)
-    pictures: EnumProperty(name="Pictures", description="Where the pictures of the frames are; they are copied into the folder of the run",
+    pictures: EnumProperty(name="Pictures",
+                           description="Where the pictures of the frames are; they are copied into the folder of the run",
                            items=[("RENDER", "Render Output", "Files that a render of this scene writes"),
                                   ("FOLDER", "Folder", "Pictures of a folder, in the order of their names"),
-                                  ("BACKGROUND", "Camera Background", "The background image of each frame's camera")], default="RENDER")
+                                  ("BACKGROUND", "Camera Background", "The background image of each frame's camera")],
+                           default="RENDER")
     pictures_folder: StringProperty(name="Pictures From", description="Folder of the pictures", subtype="DIR_PATH")
-    axis_forward: EnumProperty(name="Forward", description="Blender's forward (Y) becomes this axis of Glint's world", items=AXES, default="Y")
+    axis_forward: EnumProperty(name="Forward", description="Blender's forward (Y) becomes this axis of Glint's world",
+                               items=AXES, default="Y")
     axis_up: EnumProperty(name="Up", description="Blender's up (Z) becomes this axis of Glint's world", items=UPS, default="Z")
-    scale: FloatProperty(name="Metres per Unit", description="Length of one Blender unit in metres, on top of the scene's unit scale", default=1.0,
+    scale: FloatProperty(name="Metres per Unit",
+                         description="Length of one Blender unit in metres, on top of the scene's unit scale", default=1.0,
                          min=1e-6, max=1e6)
     models: EnumProperty(name="Models", description="Models to fit; several with Shift", items=MODELS, options={"ENUM_FLAG"},
                          default={"limit-angle", "canonical"})
     training: EnumProperty(name="Training", description="Frames that the models are fitted to", items=TRAINING, default="SPREAD")
     count: IntProperty(name="Frames", description="How many training frames", default=6, min=1, soft_max=50)
     source: EnumProperty(name="Highlights In", description="Which pictures are searched, where frames have both",
-                         items=[("radiance", "Radiance", "Linear pictures, where a frame has one"), ("image", "Image", "What a camera captured")],
+                         items=[("radiance", "Radiance", "Linear pictures, where a frame has one"),
+                                ("image", "Image", "What a camera captured")],
                          default="radiance")
-    level: FloatProperty(name="Level", description="Level of the contours, as a fraction of the peak above the background", default=0.5, min=0.05,
+    level: FloatProperty(name="Level", description="Level of the contours, as a fraction of the peak above the background",
+                         default=0.5, min=0.05,
                          max=0.95)
     more: StringProperty(name="Settings", description="More settings, KEY=VALUE with blanks between; `glint settings` lists them")
     shown_model: EnumProperty(name="Show", description="Model whose errors and objects are shown", items=shown_models,
                               update=lambda self, context: show_model(self.id_data))
     frames: CollectionProperty(name="Frames", description="Frames of the scene file, in its order", type=GlintFrame)
-    active: IntProperty(name="Frame", description="Row of the list; choosing one shows its frame", default=0, update=step_to_chosen)
+    active: IntProperty(name="Frame", description="Row of the list; choosing one shows its frame", default=0,
+                        update=step_to_chosen)
     models_with_results: StringProperty(default="[]", options={"HIDDEN"})
     stage: StringProperty(name="Stage", options={"HIDDEN", "SKIP_SAVE"})
     part: FloatProperty(name="Part", description="Part of the run that is done", min=0, max=100, subtype="PERCENTAGE",

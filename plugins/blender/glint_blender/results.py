@@ -37,8 +37,10 @@ def frames_of(document, file):
         if not isinstance(frame.get("id"), str) or not frame["id"]:
             raise InputError(file, f"{place}.id", "must be a text")
         own = frame.get("camera") if frame.get("camera") is not None else document.get("camera")
-        frames.append({"id": frame["id"], "pose": scene_file.pose(frame.get("camera_from_world"), file, f"{place}.camera_from_world"),
-                       "camera": scene_file.camera(own, file, f"{place}.camera"), "surface": frame.get("surface"), "image": frame.get("image"),
+        frames.append({"id": frame["id"],
+                       "pose": scene_file.pose(frame.get("camera_from_world"), file, f"{place}.camera_from_world"),
+                       "camera": scene_file.camera(own, file, f"{place}.camera"), "surface": frame.get("surface"),
+                       "image": frame.get("image"),
                        "radiance": frame.get("radiance")})
     if not frames:
         raise InputError(file, "frames", "is empty")
@@ -109,7 +111,8 @@ def read(scene_path, evaluation_path=None, predictions_path=None):
                          for j, h in enumerate(objects(row.get("highlights", []), predictions_path, f"{place}.highlights"))]
                 results.predictions[name].append({"index": index, "light": str(row.get("light", "")), "status": row.get("status"),
                                                   "reason": str(row.get("reason", "")), "highlights": found})
-    points = [h["brightest_point"] for rows in results.predictions.values() for r in rows for h in r["highlights"] if h["brightest_point"]]
+    points = [h["brightest_point"] for rows in results.predictions.values() for r in rows for h in r["highlights"]
+              if h["brightest_point"]]
     if points:
         results.middle = [sum(p[i] for p in points) / len(points) for i in range(3)]
     assert count == len(results.frames)
@@ -125,7 +128,7 @@ def check_index(row, frames, file, place):
 
 
 def fit_for(results, model, light, surface):
-    """The fit that predicts a light on a surface; None where there is none."""
+    """The fit that predicts a light on a surface; None without one."""
     rows = [f for f in results.fits.get(model, []) if f["light"] == light and f["status"] in ("ok", "poor")]
     own = [f for f in rows if f["surface"] == surface and surface is not None]
     return (own or [f for f in rows if f["surface"] is None] or [None])[0]
@@ -141,13 +144,15 @@ def errors_of(results, model):
     for index, rows in table.items():
         px = [r["contour_error_px"] for r in rows if isinstance(r.get("contour_error_px"), (int, float))]
         pct = [r["contour_error_pct"] for r in rows if isinstance(r.get("contour_error_pct"), (int, float))]
-        reasons = [f"{r.get('status')}: {r['reason']}" if r.get("reason") else str(r.get("status")) for r in rows if r.get("status") != "ok"]
+        reasons = [f"{r.get('status')}: {r['reason']}" if r.get("reason") else str(r.get("status")) for r in rows
+                   if r.get("status") != "ok"]
         answer[index] = {"role": "held out", "px": sum(px) / len(px) if px else None, "pct": sum(pct) / len(pct) if pct else None,
                          "reason": "; ".join(reasons)}
     for fit in document.get("fits", []):
         for index, residual in zip(fit.get("training_frames", []), fit.get("residual_px", [])):
             if index not in answer:
-                answer[index] = {"role": "training", "px": residual if isinstance(residual, (int, float)) else None, "pct": None, "reason": ""}
+                answer[index] = {"role": "training", "px": residual if isinstance(residual, (int, float)) else None, "pct": None,
+                                 "reason": ""}
     return answer
 
 

@@ -40,7 +40,8 @@ def export_for_run(context, folder):
     settings = context.scene.glint
     scene = context.scene
     request = export_scene.Request(
-        export_scene.surface_objects(context, settings.surfaces, settings.surface), range(scene.frame_start, scene.frame_end + 1, scene.frame_step),
+        export_scene.surface_objects(context, settings.surfaces, settings.surface),
+        range(scene.frame_start, scene.frame_end + 1, scene.frame_step),
         settings.world(), settings.pictures, settings.pictures_folder)
     path = os.path.join(folder, "scene.json")
     _, rows, warnings = export_scene.write_scene(context, path, request)
@@ -77,7 +78,8 @@ def commands(program_file, settings, scene_path, folder):
     without_bands = [] if "predict.band" in values else ["--set", "predict.band=false"]
     return [("Fit", [program_file, "reconstruct", "--model", models, *common, "-o", session, "--", scene_path], {0}),
             ("Predict", [program_file, "predict", *without_bands, "--out", predictions, "--", session], {0, NO_HIGHLIGHT}),
-            ("Evaluate", [program_file, "evaluate", "--models", models, *common, "--json", evaluation, "--", session], {0, NO_HIGHLIGHT})]
+            ("Evaluate", [program_file, "evaluate", "--models", models, *common, "--json", evaluation, "--", session],
+             {0, NO_HIGHLIGHT})]
 
 
 class GLINT_OT_run(bpy.types.Operator):
@@ -122,7 +124,9 @@ class GLINT_OT_run(bpy.types.Operator):
         self.folder, self.scene_path = folder, path
         if found is None:
             models, values = asked_of(settings)
-            self.sequence = module_run.InProcess(path, folder, {"models": models, "train": settings.train_spec(), "source": settings.source, **values})
+            self.sequence = module_run.InProcess(path, folder,
+                                                 {"models": models, "train": settings.train_spec(), "source": settings.source,
+                                                  **values})
         else:
             self.sequence = program.Sequence(commands(found, settings, path, folder))
         export_scene.told(self, warnings)
@@ -137,8 +141,10 @@ class GLINT_OT_run(bpy.types.Operator):
         export_scene.told(self, list(dict.fromkeys(self.sequence.warnings)))
         predictions = os.path.join(self.folder, "predictions", "predictions.json")
         try:
-            made, warnings = import_results.show_results(context, os.path.join(self.folder, "evaluation.json"), predictions, self.scene_path,
-                                                         DEFAULT_KINDS if self.shows else set(), overlays=self.folder if self.shows else "")
+            made, warnings = import_results.show_results(context, os.path.join(self.folder, "evaluation.json"), predictions,
+                                                         self.scene_path,
+                                                         DEFAULT_KINDS if self.shows else set(),
+                                                         overlays=self.folder if self.shows else "")
         except InputError as e:
             settings.message = str(e)
             self.report({"ERROR"}, str(e))

@@ -19,7 +19,8 @@ KINDS = [("ELLIPSOIDS", "Ellipsoids", "The ellipsoids that models fitted"),
          ("PLANES", "Tangent Planes", "Tangent planes at the brightest points, with the canonical ellipses"),
          ("CONTOURS", "Contours", "Predicted contours as curves on the surface"),
          ("MATERIAL", "Material", "The fitted lobe and roughness as a material (model reflectance)")]
-COLOURS = {"ellipsoid": (0.95, 0.55, 0.1, 0.35), "plane": (0.2, 0.5, 0.95, 0.25), "ellipse": (0.1, 0.3, 0.9, 1.0), "contour": (0.9, 0.1, 0.5, 1.0)}
+COLOURS = {"ellipsoid": (0.95, 0.55, 0.1, 0.35), "plane": (0.2, 0.5, 0.95, 0.25), "ellipse": (0.1, 0.3, 0.9, 1.0),
+           "contour": (0.9, 0.1, 0.5, 1.0)}
 
 
 def collection(parent, name):
@@ -128,7 +129,8 @@ def splines_on_surface(caster, frame, highlight):
     """Pieces of a contour on the surface: (points of Blender's world, closed), and how many points hit it. Cut at gaps and where rays miss."""
     hits, gaps = caster.hits(frame, highlight["contour"]), highlight["gaps"]
     count = len(hits)
-    joins = [hits[i] is not None and hits[(i + 1) % count] is not None and (i, (i + 1) % count) not in gaps and ((i + 1) % count, i) not in gaps
+    joins = [hits[i] is not None and hits[(i + 1) % count] is not None and (i, (i + 1) % count) not in gaps
+             and ((i + 1) % count, i) not in gaps
              for i in range(count)]
     if count > 2 and all(joins):
         return [(hits, True)], count
@@ -190,7 +192,8 @@ class Shower:
             if place is None:
                 continue
             name = f"Lamp {fit['light']}"
-            numbers = {"light": fit["light"], "light_position": place, "light_radius": fit["light_radius"], "light_segment": fit["light_segment"]}
+            numbers = {"light": fit["light"], "light_position": place, "light_radius": fit["light_radius"],
+                       "light_segment": fit["light_segment"]}
             if fit["light_segment"]:
                 object_ = lamps.tube(name, fit["light_segment"], fit["light_radius"] or 0.0, self.world, self.found.middle)
             elif abs(place[3]) < 1e-12:  # a light at infinity; Glint writes 0 or 1
@@ -212,7 +215,8 @@ class Shower:
         for row, frame, highlight, name in self._each_highlight():
             pose = views.mirrored_pose(frame["pose"], highlight["brightest_point"], highlight["normal"])
             # The inverse of a mirrored pose: a mirror is its own inverse.
-            back = linear.product(linear.reflection(highlight["brightest_point"], highlight["normal"]), linear.inverse_rigid(frame["pose"]))
+            back = linear.product(linear.reflection(highlight["brightest_point"], highlight["normal"]),
+                                  linear.inverse_rigid(frame["pose"]))
             m = linear.product(back, views.FLIP)
             world = linear.with_translation(linear.product(linear.transposed(self.world.axes), linear.block3(m)),
                                             self.world.to_blender(linear.column(m, 3)))
@@ -221,7 +225,8 @@ class Shower:
             data.display_size = self.size / self.world.scale
             object_ = bpy.data.objects.new(f"Virtual {name}", data)
             object_.matrix_world = Matrix(world)
-            self._put(object_, "virtual camera", {"light": row["light"], "index": row["index"], "camera_from_world": pose}, row["index"])
+            self._put(object_, "virtual camera", {"light": row["light"], "index": row["index"], "camera_from_world": pose},
+                      row["index"])
 
     def planes(self):
         for row, frame, highlight, name in self._each_highlight():
@@ -233,15 +238,18 @@ class Shower:
                 ellipse = views.canonical_ellipse(frame["pose"], point, normal, fit["q_dual"])
             half = 1.5 * linear.length(ellipse[1]) if ellipse else self.size
             u, v = linear.frame_around(normal)
-            corners = [[point[i] + half * (a * u[i] + b * v[i]) for i in range(3)] for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+            corners = [[point[i] + half * (a * u[i] + b * v[i]) for i in range(3)]
+                       for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
             object_ = meshes.mesh_object(f"Tangent plane {name}", corners, [(0, 1, 2, 3)], self.world, smooth=False)
             object_.data.materials.append(materials.plain("Glint plane", COLOURS["plane"]))
-            self._put(object_, "tangent plane", {"light": row["light"], "index": row["index"], "point": point, "normal": normal}, row["index"])
+            self._put(object_, "tangent plane", {"light": row["light"], "index": row["index"], "point": point, "normal": normal},
+                      row["index"])
             if ellipse:
                 centre, first, second = ellipse
                 points = [[centre[i] + math.cos(t) * first[i] + math.sin(t) * second[i] for i in range(3)]
                           for t in (2 * math.pi * k / 96 for k in range(96))]
-                object_ = curve(f"Canonical ellipse {name}", [([self.world.to_blender(p) for p in points], True)], self.width, "ellipse")
+                object_ = curve(f"Canonical ellipse {name}", [([self.world.to_blender(p) for p in points], True)], self.width,
+                                "ellipse")
                 numbers = {"light": row["light"], "index": row["index"], "centre": centre, "half_axes": [first, second]}
                 self._put(object_, "canonical ellipse", numbers, row["index"])
 
@@ -261,7 +269,8 @@ class Shower:
                     continue
                 name = f"Contour {frame['id']} {row['light']}" + (f" {number + 1}" if number else "")
                 object_ = curve(name, pieces, self.width, "contour")
-                self._put(object_, "contour", {"light": row["light"], "index": row["index"], "points": len(highlight["contour"]), "hits": hits},
+                self._put(object_, "contour",
+                          {"light": row["light"], "index": row["index"], "points": len(highlight["contour"]), "hits": hits},
                           row["index"])
         if self.scene.frame_current != before:
             self.scene.frame_set(before)
@@ -280,7 +289,8 @@ class Shower:
             return
 
     def show(self, kinds):
-        for kind, make in (("ELLIPSOIDS", self.ellipsoids), ("LIGHTS", self.lights), ("CAMERAS", self.cameras), ("PLANES", self.planes),
+        for kind, make in (("ELLIPSOIDS", self.ellipsoids), ("LIGHTS", self.lights), ("CAMERAS", self.cameras),
+                           ("PLANES", self.planes),
                            ("CONTOURS", self.contours), ("MATERIAL", self.material)):
             if kind in kinds:
                 make()

@@ -56,7 +56,8 @@ def camera_from_world(matrix_world, world):
 def matrix_world_of(pose, world):
     """The inverse of `camera_from_world`: 4x4 of the Blender object, in double precision."""
     m = linear.product(linear.inverse_rigid(pose), FLIP)
-    return linear.with_translation(linear.product(linear.transposed(world.axes), linear.block3(m)), world.to_blender(linear.column(m, 3)))
+    return linear.with_translation(linear.product(linear.transposed(world.axes), linear.block3(m)),
+                                   world.to_blender(linear.column(m, 3)))
 
 
 def calibration_matrix(camera):

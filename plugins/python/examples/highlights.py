@@ -78,7 +78,8 @@ if "--pictures" in sys.argv:
 # %%
 fig, axes = plt.subplots(figsize=(8, 3.4))
 for name, result in inspection.models.items():
-    points = [(c.frame, row.metrics.contour_error_pct) for c in result.frames if c.frame in inspection.held_out for row in c.rows if row.metrics]
+    points = [(c.frame, row.metrics.contour_error_pct) for c in result.frames if c.frame in inspection.held_out for row in c.rows
+              if row.metrics]
     axes.semilogy(*np.transpose(points), ".-", color=glint.model(name).colour, label=name)
 axes.set_xlabel("frame")
 axes.set_ylabel("contour error, %")

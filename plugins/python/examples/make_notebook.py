@@ -11,7 +11,7 @@ from nbconvert.preprocessors import ExecutePreprocessor
 
 
 def cells_of(script):
-    """The cells of a script in "percent" form; what stands before the first is not part of the notebook."""
+    """The cells of a script in "percent" form; what precedes the first is not part of the notebook."""
     for kind, body in re.findall(r"^# %%( \[markdown\])?\n(.*?)(?=^# %%|\Z)", script, re.M | re.S):
         if kind:
             yield nbformat.v4.new_markdown_cell(re.sub(r"^# ?", "", body, flags=re.M).strip())
@@ -25,7 +25,8 @@ def main():
     for number, cell in enumerate(notebook.cells):
         cell["id"] = f"cell-{number}"  # the same in every run
     notebook.metadata["kernelspec"] = {"display_name": "Python 3", "language": "python", "name": "python3"}
-    ExecutePreprocessor(timeout=300, kernel_name="python3", record_timing=False).preprocess(notebook, {"metadata": {"path": str(here)}})
+    ExecutePreprocessor(timeout=300, kernel_name="python3",
+                        record_timing=False).preprocess(notebook, {"metadata": {"path": str(here)}})
     nbformat.write(notebook, here / "highlights.ipynb")
 
 

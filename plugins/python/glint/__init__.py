@@ -75,11 +75,15 @@ from ._glint import (
 
 __all__ = [
     "BrightestPoint", "Camera", "CannotAnswer", "CanonicalContour", "ComparisonRow", "ContourMetrics", "Ellipse", "Ellipsoid",
-    "Error", "FitResult", "Frame", "FrameComparison", "FrameEvidence", "Highlight", "Hits", "InputError", "Inspection", "Lamp", "Lamps",
-    "Light", "LightEstimate", "Mesh", "Model", "ModelFit", "ModelResult", "Plane", "PredictedHighlight", "Prediction", "Predictor",
-    "Replay", "Request", "Retextured", "Scene", "Session", "Setting", "Stopped", "Surface", "Tradeoff", "TradeoffPoint", "TrainingView",
+    "Error", "FitResult", "Frame", "FrameComparison", "FrameEvidence", "Highlight", "Hits", "InputError", "Inspection", "Lamp",
+    "Lamps",
+    "Light", "LightEstimate", "Mesh", "Model", "ModelFit", "ModelResult", "Plane", "PredictedHighlight", "Prediction",
+    "Predictor",
+    "Replay", "Request", "Retextured", "Scene", "Session", "Setting", "Stopped", "Surface", "Tradeoff", "TradeoffPoint",
+    "TrainingView",
     "__version__", "compare_contours", "conventions", "depth_map", "detect", "estimate_light", "fit", "inspect", "iou", "lights",
-    "lights_of_balls", "load_plugin", "mesh", "model", "models", "open", "plugins", "predict", "report", "retexture", "scene", "set_limit", "settings", "synth",
+    "lights_of_balls", "load_plugin", "mesh", "model", "models", "open", "plugins", "predict", "report", "retexture", "scene",
+    "set_limit", "settings", "synth",
     "tradeoff", "write_labels",
 ]
 
@@ -165,7 +169,7 @@ def mesh(vertices: ArrayLike, triangles: ArrayLike, normals: Optional[ArrayLike]
     triangles : (m, 3) whole numbers
         Indices of vertices. Winding may differ; degenerate triangles are ignored but keep their index.
     normals : (n, 3) real numbers
-        Of the vertices; None, or a zero: the mean of the triangles around.
+        Normals of the vertices; None, or a zero: the mean of the triangles around.
     **settings
         `surface_normals="facet"`, "interpolated" or "curved"; `surface_rays`.
     """
@@ -180,7 +184,7 @@ def depth_map(depth: ArrayLike, camera: Camera, **settings: Any) -> Surface:
     depth : (height, width) real numbers
         Along the optical axis, metres; 0, negative or not finite: none. Single precision is kept.
     camera : Camera
-        Of the same size; its lens distortion is removed.
+        A picture of the same size; its lens distortion is removed.
     **settings
         `surface_depth_smoothing`, `surface_depth_normals`, `surface_depth_radius`, `surface_depth_fill` and those of `mesh`.
 
@@ -189,7 +193,8 @@ def depth_map(depth: ArrayLike, camera: Camera, **settings: Any) -> Surface:
     return Surface._depth_map(depth, camera, settings)
 
 
-def scene(frames: _abc.Sequence[Frame], surfaces: _abc.Mapping[str, Union[Path, _abc.Mapping[str, Any]]], name: str = "") -> Scene:
+def scene(frames: _abc.Sequence[Frame], surfaces: _abc.Mapping[str, Union[Path, _abc.Mapping[str, Any]]],
+          name: str = "") -> Scene:
     """A scene from memory.
 
     Parameters
@@ -307,7 +312,7 @@ def inspect(scene: Union[Scene, Session], models: Union[None, str, _abc.Sequence
     good_enough_pct : float
         With "auto": contour error in percent that is good enough.
     previous : Inspection
-        Of the same scene: what did not change is taken from it.
+        An earlier result of the same scene: what did not change is taken from it.
     progress : function (stage, done, total)
         Called from the threads of the work; returns False to stop. What it raises comes out.
 
@@ -322,7 +327,8 @@ def inspect(scene: Union[Scene, Session], models: Union[None, str, _abc.Sequence
     choose = models == "auto"
     wanted = None if models is None or choose else [models] if isinstance(models, str) else list(models)
     result = _glint._inspect(where, request, wanted, choose, good_enough_pct, _spec(train), _spec(exclude),
-                             None if level is None else str(level), source, noise_px, seed, "" if truth is None else _os.fspath(truth),
+                             None if level is None else str(level), source, noise_px, seed,
+                             "" if truth is None else _os.fspath(truth),
                              settings, previous, progress)
     if result._failure is not None and (choose or result.request.models):
         _raise(result._failure, inspection=result)
@@ -331,7 +337,8 @@ def inspect(scene: Union[Scene, Session], models: Union[None, str, _abc.Sequence
 
 def retexture(source: Union[Session, Scene, Inspection], frame: Union[int, str], *, texture: Union[None, Path, ArrayLike] = None,
               background: Union[None, Path, ArrayLike] = None, remove: bool = False, model: str = "", light: str = "",
-              mapping: str = "natural", shading: str = "auto", repeat: float = 1.0, albedo: Optional[float] = None, margin_px: float = 4.0,
+              mapping: str = "natural", shading: str = "auto", repeat: float = 1.0, albedo: Optional[float] = None,
+              margin_px: float = 4.0,
               progress: Optional[Progress] = None, **settings: Any) -> Retextured:
     """Puts a frame's predicted highlight over another texture or background, or removes the observed one, as `glint retexture`.
 
@@ -357,7 +364,7 @@ def retexture(source: Union[Session, Scene, Inspection], frame: Union[int, str],
     repeat : float
         Textures in place of one, in both directions.
     albedo : float
-        Of the surface as it was, above 0, at most 1; None: the texture's mean takes the place of it.
+        Albedo of the surface as it was, above 0, at most 1; None: the texture's mean takes its place.
     margin_px : float
         How far beyond its visible part a highlight is removed, px.
 
@@ -405,13 +412,13 @@ def tradeoff(scene: Union[Scene, Session], models: Union[None, str, _abc.Sequenc
     Parameters
     ----------
     scene, models, train, exclude, level, source
-        As of `inspect`; without models the session's are compared, of a scene all.
+        The parameters of `inspect`. Without models, compares those of the session, or all of them for a scene.
     budget_us : float
         Choose the most accurate setting within this many microseconds per frame.
     max_error_pct : float
         Choose the fastest setting with at most this contour error in percent.
     repeats : int
-        Of each timed prediction.
+        How often each prediction is timed.
     max_trials : int
         Settings tried on a few frames.
     **settings
@@ -421,7 +428,8 @@ def tradeoff(scene: Union[Scene, Session], models: Union[None, str, _abc.Sequenc
     """
     where, request = (scene.scene, scene.request) if isinstance(scene, Session) else (scene, None)
     wanted = None if models is None else [models] if isinstance(models, str) else list(models)
-    result: Tradeoff = _glint._tradeoff(where, request, wanted, _spec(train), _spec(exclude), None if level is None else str(level), source,
+    result: Tradeoff = _glint._tradeoff(where, request, wanted, _spec(train), _spec(exclude),
+                                        None if level is None else str(level), source,
                                         budget_us, max_error_pct, repeats, max_trials, settings, progress)
     if result._failure is not None:
         _raise(result._failure, tradeoff=result)
@@ -470,14 +478,15 @@ def lights(scene: Union[Scene, Session], *, exclude: Optional[Frames] = None, so
 
 
 def lights_of_balls(folder: Path, balls: Union[str, _abc.Sequence[str]], *, ball_radius: Optional[float] = None,
-                    camera: Union[None, str, _abc.Sequence[float]] = None, exclude: Optional[Frames] = None, outlines: str = "fitted",
+                    camera: Union[None, str, _abc.Sequence[float]] = None, exclude: Optional[Frames] = None,
+                    outlines: str = "fitted",
                     outline_sigma: float = 1.0, response: str = "", progress: Optional[Progress] = None) -> Lamps:
     """Where the lamps of photographs of mirror balls are, one lamp in each photograph, the camera at the origin.
 
     Parameters
     ----------
     folder : path
-        Of the photographs.
+        The folder of the photographs.
     balls : list of "[DIR:]CX,CY,R[@X0,Y0]"
         Outlines, px, as `glint lights --ball` takes them.
     ball_radius : float
@@ -486,10 +495,11 @@ def lights_of_balls(folder: Path, balls: Union[str, _abc.Sequence[str]], *, ball
         fx, fy, cx, cy[, k1, k2, p1, p2, k3], px; None: what EXIF data say, else a distant one.
     outlines : "fitted", "edges" or "given"
     outline_sigma : float
-        Of a given outline's centre and radius, px.
+        Standard deviation of a given outline's centre and radius, px.
     """
     return _answered(_glint._lights_of_balls(_os.fspath(folder), [balls] if isinstance(balls, str) else list(balls), ball_radius,
-                                             "" if camera is None else _text(camera), _spec(exclude) or "", outlines, outline_sigma,
+                                             "" if camera is None else _text(camera), _spec(exclude) or "", outlines,
+                                             outline_sigma,
                                              response, progress))
 
 

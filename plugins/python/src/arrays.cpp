@@ -122,7 +122,7 @@ py::array viewOf(const py::dtype& type, std::vector<py::ssize_t> shape, const vo
     strides[i] = step;
     step *= shape[i];
   }
-  // Of no values there may be no address either, and pybind11 would then make memory of its own: which is right, too.
+  // Without values there may be no address; pybind11 then makes memory of its own, which is right, too.
   py::array view(type, std::move(shape), std::move(strides), data, owner);
   view.attr("setflags")(py::arg("write") = false);
   return view;

@@ -13,8 +13,8 @@
 
 #include "core/base/image.h"
 
-// NumPy arrays in and out. What comes in is checked: its shape, its type of number and, unless said otherwise, that it is finite. What goes out
-// is a view of memory that an object of Glint owns, read-only, and keeps that object alive; small matrices are copied.
+// NumPy arrays in and out. Input is checked: its shape, its type of number and, unless said otherwise, that it is finite. Output
+// is a read-only view of memory that an object of Glint owns, and keeps that object alive; small matrices are copied.
 namespace glint::python {
 
 namespace py = pybind11;
@@ -28,11 +28,11 @@ class ArrayLike : public py::object {
 /// A caller's array as doubles in row order: the array itself where it is that already, else a copy.
 using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
-/// @param shape  -1 = any number. TypeError unless the values are real numbers; ValueError for another shape, or a value that is not finite.
+/// @param shape  -1 = any. TypeError unless the values are real numbers; ValueError for another shape or values not finite.
 Doubles doublesFrom(py::handle given, const std::vector<py::ssize_t>& shape, const std::string& name, bool finite = true);
 /// Whole numbers of 32 bits, N x 3. TypeError for other numbers; ValueError for another shape, or a number that does not fit.
 std::vector<Eigen::Vector3i> trianglesFrom(py::handle given, const std::string& name);
-/// H x W or H x W x C. Not finite where `finite` is false: depth maps say so where there is none.
+/// H x W or H x W x C. Not finite where `finite` is false: depth maps mark pixels without depth so.
 Image imageFrom(py::handle given, const std::string& name, bool finite);
 
 template <int N>
@@ -59,7 +59,7 @@ Eigen::Matrix<double, Rows, Columns> matrixFrom(py::handle given, const std::str
 /// What stands for a number that there is not.
 inline constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
-/// A rigid pose from a 4 x 4 matrix; ValueError where it is none.
+/// A rigid pose from a 4 x 4 matrix; ValueError for any other matrix.
 Eigen::Isometry3d poseFrom(py::handle given, const std::string& name);
 
 /// Memory of `owner`, which lives as long as the array; read-only.

@@ -169,7 +169,7 @@ void declareCameras(py::module_& module) {
           [](const Camera& c, const ArrayLike& pixels) {
             return eachPixel(pixels, [&](const Pixel& p) { return c.undistorted(p); });
           },
-          py::arg("pixels"), "(n, 2) ideal pixels of (n, 2) measured ones; NaN where there are none.")
+          py::arg("pixels"), "(n, 2) ideal pixels of (n, 2) measured ones; NaN where no such pixel exists.")
       .def(
           "virtual", [](const Camera& c, const Plane& plane) { return copyOf(virtualCamera(c, plane).matrix); }, py::arg("plane"),
           "(3, 4) projection of the virtual camera, which sees the world through the plane as a mirror: P M. Its left block has "

@@ -9,13 +9,14 @@
 
 namespace glint::python {
 
-/// A request as a caller of Python states it: what is None is the session's, else the default. Parameters as of inspectAsAsked().
+/// A request from Python: None means the session's value, else the default. The parameters are those of inspectAsAsked().
 InspectionRequest requestAsAsked(const SceneHandle& scene, const RequestHandle* request,
                                  const std::optional<std::vector<std::string>>& models, const std::optional<std::string>& train,
                                  const std::optional<std::string>& exclude, const std::optional<std::string>& level,
                                  const std::optional<std::string>& source, py::handle settings);
 
-/// With the level "auto": puts the one into the request that its training frames choose, and says why. Else "". CannotAnswer, InputError.
+/// For the level "auto": puts the level that training frames choose into the request; says why. Else "". CannotAnswer,
+/// InputError.
 std::string chooseLevelIfAsked(const Scene& scene, const std::optional<std::string>& level, InspectionRequest& request,
                                const ProgressFn& progress);
 

@@ -28,7 +28,7 @@ Highlight highlightFrom(const ArrayLike& contour, const ArrayLike& peak, const s
   h.peak = vectorFrom<2>(peak, "peak");
   const double area = signedArea(h.contour);
   if (!(std::abs(area) > 0)) throw py::value_error("contour: has no area");
-  // One orientation for all contours, whoever wrote them; the first point stays first.
+  // One orientation for all contours, whatever their origin; the first point stays first.
   if (area < 0) std::reverse(h.contour.points.begin() + 1, h.contour.points.end());
   h.areaPx2 = std::abs(area);
   if (Outcome<Ellipse> ellipse = fitEllipse(h.contour.points)) h.ellipse = *ellipse;
@@ -103,7 +103,7 @@ void declareFrameEvidence(py::module_& module) {
       .def_readonly("highlights", &FrameEvidence::highlights, "List of Highlight.")
       .def_property_readonly(
           "failure", [](const FrameEvidence& e) { return messageOrNone(e.failure ? &*e.failure : nullptr); },
-          "Why there are none, or None.")
+          "Why they are missing, or None.")
       .def_property_readonly(
           "rejected",
           [](const FrameEvidence& e) {

@@ -9,8 +9,9 @@
 
 #include "core/base/outcome.h"
 
-// The three kinds of failure (docs/architecture.md, "Failures") as Python's exceptions: the caller's bug is a ValueError or TypeError, data that
-// cannot answer are glint.CannotAnswer, the outside world is glint.InputError. Both are glint.Error, and so is glint.Stopped.
+// The three kinds of failure (docs/architecture.md, "Failures") as Python's exceptions: a caller's bug is a ValueError or
+// TypeError, data that cannot answer are glint.CannotAnswer, the outside world is glint.InputError. Both are glint.Error, and so
+// is glint.Stopped.
 namespace glint::python {
 
 namespace py = pybind11;

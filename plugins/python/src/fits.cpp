@@ -28,7 +28,7 @@ void declareLobe(py::class_<ModelFit>& fit) {
           "m of the lobe, or None.")
       .def_property_readonly(
           "light_radius", [](const ModelFit& f) { return f.lamp() ? std::optional(radiusOf(*f.lamp())) : std::nullopt; },
-          "Of a spherical lamp, world units; 0 for a point or a tube; or None of models without a lobe.")
+          "Radius of a spherical lamp, world units; 0 for a point or a tube; None for models without a lobe.")
       .def_property_readonly(
           "light_segment",
           [](const ModelFit& f) {
@@ -75,7 +75,7 @@ void declareFit(py::module_& module) {
             return c ? arrayOrNone(c->extent) : std::nullopt;
           },
           "(3, 3) second moment of an extended light, squared world units, of limit-angle; else None.")
-      .def_readonly("condition", &ModelFit::condition, "Of the linear system, or of the rays that fix the light.")
+      .def_readonly("condition", &ModelFit::condition, "Condition of the linear system, or of the rays that fix the light.")
       .def_property_readonly(
           "residual_px", [](py::object self) { return viewOf(self.cast<const ModelFit&>().residualPx, self); },
           "(n,) RMS contour distance of each training view, px.")
@@ -117,7 +117,7 @@ void declarePrediction(py::module_& module) {
       .def_property_readonly("highlights", &Prediction::highlights, "List of PredictedHighlight; empty where there is a failure.",
                              py::return_value_policy::reference_internal)
       .def_property_readonly(
-          "failure", [](const Prediction& p) { return messageOrNone(p.failure()); }, "Why there are none, or None.")
+          "failure", [](const Prediction& p) { return messageOrNone(p.failure()); }, "Why they are missing, or None.")
       .def_readonly("time_us", &Prediction::timeUs, "Microseconds.")
       .def("__len__", [](const Prediction& p) { return p.highlights().size(); })
       .def(

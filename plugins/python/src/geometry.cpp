@@ -58,15 +58,16 @@ void declareEllipse(py::module_& module) {
       .def(py::init(&ellipseFrom), py::arg("centre"), py::arg("semi_axes"), py::arg("angle") = 0.0,
            "Parameters\n----------\ncentre : (2,) array, px\nsemi_axes : (2,) array, px\n    The longer one first.\nangle : "
            "float, rad\n    "
-           "Of the longer axis, from +x towards +y (down), in (-pi/2, pi/2].")
+           "Angle of the longer axis, from +x towards +y (down), in (-pi/2, pi/2].")
       .def_static(
           "from_conic", [](const ArrayLike& conic) { return valueOf(toEllipse(Conic{matrixFrom<3, 3>(conic, "conic")})); },
           py::arg("conic"),
-          "Of the point conic x^T C x = 0, (3, 3), of any scale and sign.\n\nRaises CannotAnswer: \"not an ellipse\", \"rank "
+          "The ellipse of the point conic x^T C x = 0, (3, 3), of any scale and sign.\n\nRaises CannotAnswer: \"not an "
+          "ellipse\", \"rank "
           "deficient\".")
       .def_static(
           "from_dual", [](const ArrayLike& dual) { return valueOf(toEllipse(DualConic{matrixFrom<3, 3>(dual, "dual")})); },
-          py::arg("dual"), "Of the line conic l^T C* l = 0, (3, 3). Raises CannotAnswer as from_conic.")
+          py::arg("dual"), "The ellipse of the line conic l^T C* l = 0, (3, 3). Raises CannotAnswer as from_conic.")
       .def_static(
           "fit", [](const ArrayLike& points) { return valueOf(fitEllipse(pointsFrom<2>(points, "points"))); }, py::arg("points"),
           "Direct least-squares ellipse through (n, 2) points, n >= 5 (Halir and Flusser, 1998).\n\nRaises CannotAnswer: \"too "
@@ -76,7 +77,7 @@ void declareEllipse(py::module_& module) {
           "centre", [](const Ellipse& e) { return copyOf(e.centre); }, "(2,) px.")
       .def_property_readonly(
           "semi_axes", [](const Ellipse& e) { return copyOf(e.semiAxes); }, "(2,) px, the longer one first.")
-      .def_readonly("angle", &Ellipse::angle, "Of the longer axis, rad, from +x towards +y (down).")
+      .def_readonly("angle", &Ellipse::angle, "Angle of the longer axis, rad, from +x towards +y (down).")
       .def_property_readonly("area", &Ellipse::area, "px^2.")
       .def_property_readonly(
           "conic", [](const Ellipse& e) { return copyOf(e.conic().matrix); },
@@ -108,7 +109,8 @@ void declareEllipsoid(py::module_& module) {
       .def_static(
           "from_dual",
           [](const ArrayLike& q) { return valueOf(Ellipsoid::fromDual(DualQuadric{matrixFrom<4, 4>(q, "q_dual")})); },
-          py::arg("q_dual"), "Of the dual quadric Q*, (4, 4), of any scale. Raises CannotAnswer: \"not an ellipsoid\".")
+          py::arg("q_dual"),
+          "The ellipsoid of the dual quadric Q*, (4, 4), of any scale. Raises CannotAnswer: \"not an ellipsoid\".")
       .def_property_readonly(
           "centre", [](const Ellipsoid& e) { return copyOf(e.centre()); }, "(3,) world.")
       .def_property_readonly(
@@ -138,13 +140,13 @@ void declareLight(py::module_& module) {
   py::class_<Light>(module, "Light", "A point light, at a finite place or at infinity.")
       .def_static(
           "at", [](const ArrayLike& position) { return Light::at(vectorFrom<3>(position, "position")); }, py::arg("position"),
-          "At a world point, (3,).")
+          "The light at a world point, (3,).")
       .def_static(
           "towards", [](const ArrayLike& direction) { return Light::towards(vectorFrom<3>(direction, "direction")); },
           py::arg("direction"), "At infinity. direction : (3,) world vector from the scene to the light, not zero.")
       .def_static(
           "from_homogeneous", [](const ArrayLike& lw) { return Light::homogeneous(vectorFrom<4>(lw, "light")); },
-          py::arg("light"), "Of (4,) homogeneous coordinates (l, w): at l / w, or at infinity towards l where w is 0.")
+          py::arg("light"), "The light of (4,) homogeneous coordinates (l, w): at l / w, or at infinity towards l where w is 0.")
       .def_property_readonly(
           "homogeneous", [](const Light& l) { return copyOf(l.homogeneous()); }, "(4,) homogeneous, of length 1, w >= 0.")
       .def_property_readonly("at_infinity", &Light::atInfinity, "Whether it has no place.")

@@ -110,7 +110,7 @@ void declareRequest(py::module_& module) {
       .def_property_readonly(
           "noise_px", [](const RequestHandle& r) { return r.request.noisePx; }, "Noise added to training contours, px.")
       .def_property_readonly(
-          "seed", [](const RequestHandle& r) { return r.request.seed; }, "Of the noise.")
+          "seed", [](const RequestHandle& r) { return r.request.seed; }, "Seed of the noise.")
       .def_property_readonly(
           "truth", [](const RequestHandle& r) { return r.request.truthFolder; },
           "Folder of true contours; empty = own detection.");
@@ -179,7 +179,7 @@ void declareParts(py::class_<InspectionHandle>& inspection) {
           },
           "ModelResult by the model's id.")
       .def("lights", &lightsOf, py::arg("frame") = 0,
-           "By light id: the LightEstimate that serves a frame, or why there is none, in words. It is the light with which one "
+           "By light id: the LightEstimate that serves a frame, or why it is missing, in words. It is the light with which one "
            "limit angle\n"
            "explains the contours best; on wide highlights that is not the lamp's place: `glint.lights` measures lamps.");
 }

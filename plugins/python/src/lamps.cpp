@@ -74,13 +74,14 @@ void declareLamp(py::module_& module) {
           "direction", [](const LampAnswer& l) { return arrayOrNone(l.failure ? std::nullopt : std::optional(l.direction)); },
           "(3,) unit vector from `origin` towards the lamp, or None.")
       .def_property_readonly(
-          "direction_sigma_deg", [](const LampAnswer& l) { return l.directionSigma * 180 / M_PI; }, "Of the direction, degrees.")
+          "direction_sigma_deg", [](const LampAnswer& l) { return l.directionSigma * 180 / M_PI; },
+          "Standard deviation of the direction, degrees.")
       .def_property_readonly(
           "origin", [](const LampAnswer& l) { return arrayOrNone(l.from); },
           "(3,) middle of the object; None without a focal length.")
       .def_readonly("residual_px", &LampAnswer::residualPx, "Root mean square over its highlights, px.")
       .def_readonly("highlights", &LampAnswer::highlights, "How many were used.")
-      .def_readonly("solver", &LampAnswer::solver, "Of a scene: \"pixels\", \"contours\", \"bundle\", ...")
+      .def_readonly("solver", &LampAnswer::solver, "For lamps of a scene: \"pixels\", \"contours\", \"bundle\", ...")
       .def_readonly("remarks", &LampAnswer::remarks, "What makes the answer doubtful, in words.")
       .def("__repr__", [](const LampAnswer& l) { return "<glint.Lamp " + l.id + (l.failure ? ", not known>" : ">"); });
 }

@@ -69,7 +69,7 @@ void declareMetrics(py::module_& module) {
                     "The same in percent of the observed equivalent diameter.")
       .def_readonly("ellipse_error_pct", &ContourMetrics::ellipseErrorPct, "The same between ellipses; NaN without one.")
       .def_readonly("hausdorff_px", &ContourMetrics::hausdorffPx, "Largest distance, px.")
-      .def_readonly("iou", &ContourMetrics::iou, "Of the filled contours, 0 .. 1.")
+      .def_readonly("iou", &ContourMetrics::iou, "Overlap of the filled contours, 0 .. 1.")
       .def_readonly("centre_offset_px", &ContourMetrics::centreOffsetPx, "Between area centroids, px.")
       .def_readonly("axis_ratio_error", &ContourMetrics::axisRatioError, "Difference of the ellipses' axis ratios.")
       .def_readonly("angle_error_deg", &ContourMetrics::angleErrorDeg, "Between the longer axes, 0 .. 90 degrees.")

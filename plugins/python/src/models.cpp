@@ -114,7 +114,7 @@ void declareModels(py::module_& module) {
       "All models, from simple to rich.");
   module.def(
       "model", [](const std::string& id) { return ModelHandle{&modelByName(id)}; }, py::arg("id"),
-      "The model of this name. InputError, with the known names, when there is none.");
+      "The model of this name. InputError, with the known names, if it is unknown.");
   py::class_<LightEstimate>(module, "LightEstimate", "The light of some views, with what the contours say of it.")
       .def(py::init(&knownLight), py::arg("light"), py::arg("limit_angle") = 0.0,
            "A light that is known already. limit_angle : rad, of its contours.")
@@ -123,8 +123,9 @@ void declareModels(py::module_& module) {
           "covariance", [](const LightEstimate& e) { return arrayOrNone(e.covariance); },
           "(3, 3) of the position, squared world units; None where it is not known.")
       .def_readonly("limit_angle", &LightEstimate::limitAngle, "rad: robust mean over all contour points.")
-      .def_readonly("condition", &LightEstimate::condition, "Of the triangulation, in (0, 1]; small = rays nearly parallel.")
-      .def_readonly("rms_px", &LightEstimate::rmsPx, "Of the bundle's residuals, px; 0 when triangulated.")
+      .def_readonly("condition", &LightEstimate::condition,
+                    "Condition of the triangulation, in (0, 1]; small = rays nearly parallel.")
+      .def_readonly("rms_px", &LightEstimate::rmsPx, "RMS of the bundle's residuals, px; 0 when triangulated.")
       .def_property_readonly(
           "residual_px", [](py::object self) { return viewOf(self.cast<const LightEstimate&>().residualPx, self); },
           "(n,) px, of the views that were used.")

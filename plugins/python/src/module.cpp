@@ -13,7 +13,7 @@ namespace {
 
 namespace py = pybind11;
 
-/// pybind11 aborts the process where Python's old protocols of pickle make an object without its constructor, so each class says no itself.
+/// pybind11 aborts if Python's old pickle protocols make an object without its constructor, so each class refuses itself.
 void refusePickling(const py::module_& module) {
   const py::handle ours(reinterpret_cast<PyObject*>(py::detail::get_internals().default_metaclass));
   for (const auto& [name, value] : py::reinterpret_borrow<py::dict>(module.attr("__dict__"))) {

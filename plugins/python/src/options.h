@@ -10,7 +10,7 @@ namespace glint::python {
 namespace py = pybind11;
 
 /// Sets what a dictionary says: names as `--set` takes them ("predict.directions"), or with an underscore for the point
-/// ("predict_directions"), as keyword arguments must be written. InputError as of the command line.
+/// ("predict_directions"), as keyword arguments must be written. InputError, as on the command line.
 void applySettings(py::handle dictionary, Settings& settings);
 Settings settingsFrom(py::handle dictionary);
 /// Every setting with its value in force, by dotted name.

@@ -14,8 +14,8 @@
 
 namespace glint::python {
 
-/// Reports of long work to a Python function, from whichever thread they come, and the ways to stop it: the function returns False or raises,
-/// or a signal arrives (Ctrl-C).
+/// Reports of long work to a Python function, from whichever thread they come, and the ways to stop it: the function returns
+/// False or raises, or a signal arrives (Ctrl-C).
 class Progress {
  public:
   /// @param callback  None, or called with (stage, done, total). TypeError for anything else.

@@ -128,7 +128,7 @@ SceneHandle sceneFrom(const std::vector<Frame>& frames, const std::map<std::stri
   for (const auto& [id, file] : meshes) {
     SurfaceSource source;
     source.mesh = std::filesystem::absolute(file).lexically_normal();
-    std::error_code ignored;  // what cannot be asked about is not there
+    std::error_code ignored;  // unreadable counts as missing
     if (!std::filesystem::is_regular_file(*source.mesh, ignored))
       throw InputError(file, "surfaces." + id, "there is no such mesh file");
     scene->surfaces[id] = source;
@@ -260,7 +260,7 @@ void declareScenes(py::module_& module) {
           "How it was read, such as \"scene\", \"colmap\" or \"nerfstudio\".")
       .def_property_readonly(
           "file", [](const SceneHandle& s) { return s.scene->file.string(); }, "As opened; empty for a scene from memory.")
-      .def_readonly("input", &SceneHandle::input, "As the caller named it.")
+      .def_readonly("input", &SceneHandle::input, "The input as the caller named it.")
       .def_property_readonly(
           "frames",
           [](const SceneHandle& s) {

@@ -67,7 +67,7 @@ void declareReplay(py::module_& module) {
       .def_readonly("first_changed", &Replay::firstChanged, "The first stage whose results differ, in words; empty = none.")
       .def_readonly("digest_agrees", &Replay::digestAgrees, "Whether all results are the same to the last bit.")
       .def_readonly("compared", &Replay::compared, "Number of key results.")
-      .def_readonly("largest_difference", &Replay::largestDifference, "Of a key result, relative.");
+      .def_readonly("largest_difference", &Replay::largestDifference, "Largest difference of a key result, relative.");
 }
 
 /// A predictor with the scene that it is of.

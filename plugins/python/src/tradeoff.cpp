@@ -17,14 +17,14 @@
 namespace glint::python {
 namespace {
 
-constexpr int kMostRepeats = 1000;  // as of the command line
+constexpr int kMostRepeats = 1000;  // the command line's limit
 
 struct TradeoffHandle {
   Tradeoff tradeoff;
   std::optional<Failure> failure;  ///< why nothing was chosen
 };
 
-/// Why nothing was chosen; nothing where something was.
+/// Why nothing was chosen; nothing if something was.
 std::optional<Failure> whyNothingChosen(const Tradeoff& t, const SceneHandle& scene, InspectionRequest request,
                                         const ProgressFn& report) {
   if (!t.points.empty()) return t.chosen ? std::nullopt : std::optional(Failure{Reason::NotReached, t.reason});
@@ -68,7 +68,7 @@ void declarePoint(py::module_& module) {
       .def_property_readonly(
           "settings", [](const TradeoffPoint& p) { return dictOf(p.settings); }, "Every setting by its dotted name.")
       .def_readonly("frames", &TradeoffPoint::frames, "Frames with an observed highlight.")
-      .def_readonly("predicted", &TradeoffPoint::predicted, "Of them, those with a prediction.")
+      .def_readonly("predicted", &TradeoffPoint::predicted, "How many of them have a prediction.")
       .def_readonly("matched", &TradeoffPoint::matched, "Highlights that a prediction was compared with.")
       .def_readonly("missed", &TradeoffPoint::missed, "Observed highlights without a prediction.")
       .def_readonly("spurious", &TradeoffPoint::spurious, "Predictions without an observed highlight.")

@@ -32,7 +32,7 @@ struct SceneHandle {
   std::shared_ptr<const Scene> scene;
   std::shared_ptr<const SurfaceCache> surfaces;  ///< of queries; an inspection has its own
   std::string input;                             ///< as the caller named it
-  /// InputError where there is no such frame.
+  /// InputError if there is no such frame.
   int frameOf(py::handle indexOrId) const;
 };
 
@@ -47,7 +47,7 @@ struct InspectionHandle {
   std::optional<Failure> failure;  ///< why no model answered
 };
 
-/// A part of `owner`, which it keeps alive; None where there is no such part.
+/// A part of `owner`, which it keeps alive; None if there is no such part.
 template <class T>
 py::object partOrNone(const T* part, py::handle owner) {
   return part ? py::cast(part, py::return_value_policy::reference_internal, owner) : py::none();

@@ -68,7 +68,8 @@ def main():
             "surfaces": {"vase": {"mesh": "waist.ply"}},
             "lights": [{"id": "lamp", "position": [round(v, 3) for v in around(-70, 22, 2.2)]}],
             "path": {"cameras": cameras}, "contour": "limit-angle", "limit_angle_deg": 4.7703,
-            "render": {"reflectance": "torrance-sparrow", "roughness": 0.1, "specular": 0.2, "diffuse": [0.9, 0.8, 0.7], "bits": 8, "samples": 2, "seed": 1}}
+            "render": {"reflectance": "torrance-sparrow", "roughness": 0.1, "specular": 0.2, "diffuse": [0.9, 0.8, 0.7],
+                       "bits": 8, "samples": 2, "seed": 1}}
     with open(folder + "/spec.json", "w") as out:
         out.write("{\n" + ",\n".join(f"  {json.dumps(k)}: {json.dumps(v)}" for k, v in spec.items()) + "\n}\n")
 

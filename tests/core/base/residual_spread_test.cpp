@@ -98,7 +98,8 @@ TEST(RmsWithoutTail, BoundsAFewByHand) {
   EXPECT_NEAR(rmsWithoutTail({9, 1, 1, 9, 1}), std::sqrt(33.0), tolerance::kExact);
 }
 
-// 0.967 sigma bounds two thirds of a normal, so that the cut is at c = 1.935: sqrt(P(|x| < c) - 2 c phi(c) + c^2 P(|x| > c)) = 0.953.
+// 0.967 sigma bounds two thirds of a normal, so that the cut is at c = 1.935: sqrt(P(|x| < c) - 2 c phi(c) + c^2 P(|x| > c)) =
+// 0.953.
 TEST(RmsWithoutTail, OfNormalNoiseIsFivePercentLess) {
   std::mt19937 random(3);
   std::normal_distribution<double> normal(0, 0.25);

@@ -337,7 +337,7 @@ TEST(BopCapture, DamagedEntriesAreNamed) {
            Row{"scene_camera.json", "\"depth_scale\": 0.1", "\"depth_scale\": 0", "3.depth_scale: must be positive"},
            Row{"scene_camera.json", "\"3\"", "\"three\"", "three: is not the number of an image"},
            Row{"scene_camera.json", "\"3\"", "\"-3\"", "-3: is not the number of an image"},
-           Row{"scene_camera.json", "\"3\"", "\"012\"", "image 12 stands twice"},
+           Row{"scene_camera.json", "\"3\"", "\"012\"", "image 12 is in the file twice"},
            Row{"scene_camera.json", "\"3\"", "\"4\"", "scene_gt.json: 3: has no camera in scene_camera.json"},
            Row{"scene_camera.json", "{\"3\"", "{{\"3\"", "scene_camera.json"},
            Row{"scene_gt.json", kBopTurned, "[0, -1, 0, 1, 0, 0, 0, 0, 1.01]", "3[1].cam_R_m2c: is not a rotation"},

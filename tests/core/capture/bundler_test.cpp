@@ -130,7 +130,7 @@ TEST(Bundler, MeasurementsAreFromTheMiddleYUp) {
   const BundlerRead read = readBundlerText(folder, smallBundle());
   ASSERT_EQ(read.tracks.size(), 1u);
   EXPECT_EQ(read.tracks[0].point, Eigen::Vector3d(1, 2, -5));
-  ASSERT_EQ(read.tracks[0].seen.size(), 2u);  // that of the image that is not registered is none
+  ASSERT_EQ(read.tracks[0].seen.size(), 2u);  // without that of the image that is not registered
   EXPECT_EQ(read.tracks[0].seen[0].view, 1);
   EXPECT_EQ(read.tracks[0].seen[0].measured, Pixel(31.5 + 20, 23.5 - 40));
   EXPECT_EQ(read.tracks[0].seen[1].view, 0);
@@ -268,7 +268,7 @@ TEST(Bundler, IsRecognisedByItsFirstLineAndItsList) {
   EXPECT_EQ(reader->recognise(folder.write("any.txt", smallBundle())), folder / "any.txt");
   EXPECT_EQ(reader->recognise(folder.write("other.out", "3 1\n100 0 0\n")), fs::path());
   folder.write("bundle.out", smallBundle());
-  EXPECT_EQ(reader->recognise(folder.path()), fs::path());  // without a list it is none
+  EXPECT_EQ(reader->recognise(folder.path()), fs::path());  // without a list it is not recognised
   folder.write("list.txt", smallList());
   EXPECT_EQ(reader->recognise(folder.path()), folder / "bundle.out");
   folder.write("bundle.out", "something else");
@@ -362,7 +362,7 @@ INSTANTIATE_TEST_SUITE_P(
         BundleCase{"seen by nobody", "3 0 7", "3 3 7", "line 20: ", "there is no camera 3, there are 3"},
         BundleCase{"seen by less than nobody", "3 0 7", "3 -1 7", "line 20: ", "there is no camera -1"},
         BundleCase{"measurement too far away", "0.5 -0.25", "0.5 1e30", "line 20: ", "larger than"},
-        BundleCase{"measurement that is none", "0.5 -0.25", "0.5 nan", "line 20: ", "'nan' is not a number"}));
+        BundleCase{"measurement that is no number", "0.5 -0.25", "0.5 nan", "line 20: ", "'nan' is not a number"}));
 
 TEST(Bundler, NumbersThatAreNotFiniteCostTheirImage) {
   const TemporaryFolder folder;

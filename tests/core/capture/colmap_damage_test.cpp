@@ -390,7 +390,7 @@ TEST(ColmapRigs, WhatCannotBeComparedIsAWarning) {
   folder.write("frames.txt", "a later version\n");
   EXPECT_THAT(folder.read().warnings, Contains(HasSubstr("are not understood")));
   fs::remove(folder / "frames.txt");
-  EXPECT_THAT(folder.read().warnings, Contains(HasSubstr("rigs.txt stands alone")));
+  EXPECT_THAT(folder.read().warnings, Contains(HasSubstr("rigs.txt has no counterpart")));
 }
 
 }  // namespace

@@ -276,7 +276,7 @@ TEST(ColmapProject, SmallerCopiesStandInForAFolderThatIsMissing) {
   EXPECT_EQ(imageOf(0), folder / "images_4/a.jpg");
   EXPECT_EQ(imageOf(1), folder / "images_4/left/B.JPG");
   EXPECT_THAT(readColmap(folder.path()).warnings,
-              Contains("the photographs are those of the folder images_4: there are none in images"));
+              Contains("the photographs are those of the folder images_4: images has no such files"));
   fs::create_directories(folder / "images");
   EXPECT_EQ(imageOf(0), folder / "images_4/a.jpg");
   folder.write("images_2/a.jpg", "x");  // the larger one

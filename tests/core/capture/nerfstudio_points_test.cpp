@@ -27,8 +27,8 @@ TEST(Nerfstudio, PointsAreThoseOfThePlyFile) {
   EXPECT_TRUE(tracks[0].seen.empty());
 }
 
-/// saved = 4 (A original), A: (x, y, z) -> (y, -x, z) and a shift by (1, 2, 3): the original of (4, -2, 1.5) is found by hand. Divided
-/// by 4: (1, -0.5, 0.375); less the shift: (0, -2.5, -2.625); y = 0, -x = -2.5.
+/// saved = 4 (A original), A: (x, y, z) -> (y, -x, z) and a shift by (1, 2, 3): the original of (4, -2, 1.5) is found by hand.
+/// Divided by 4: (1, -0.5, 0.375); less the shift: (0, -2.5, -2.625); y = 0, -x = -2.5.
 TEST(Nerfstudio, PointsMoveToTheOriginalWorldWithTheCameras) {
   const TemporaryFolder folder;
   folder.write("sparse_pc.ply", kTwoPoints);
@@ -67,7 +67,7 @@ TEST(Nerfstudio, PointsThatCannotBeReadAreNamed) {
                 testing::AllOf(HasSubstr("p.ply: "), HasSubstr(d.reason)))
         << d.to;
   }
-  folder.write("p.ply", with(kTwoPoints, "4 -2", "nan -2"));  // one point that is none costs that point
+  folder.write("p.ply", with(kTwoPoints, "4 -2", "nan -2"));  // a point without a place costs that point
   EXPECT_EQ(nerfstudioReader().tracks(readText(folder, text), {}).size(), 1u);
   EXPECT_THAT(inputErrorOf([&] { readText(folder, with(text, "p.ply", "../p.ply")); }), HasSubstr("ply_file_path: "));
 }

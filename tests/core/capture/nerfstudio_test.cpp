@@ -443,7 +443,7 @@ TEST(Nerfstudio, ImagesWithoutEndingAreFound) {
   const TemporaryFolder dotted;  // what follows a dot need not be an ending
   dotted.write("IMG.0001.jpg", picture(64, 48));
   EXPECT_EQ(readText(dotted, with(minimalTransforms(), "images/a.png", "IMG.0001")).views[0].image, dotted / "IMG.0001.jpg");
-  const TemporaryFolder elsewhere;  // also where a person says that the photographs are
+  const TemporaryFolder elsewhere;  // the place of the photographs that a person names
   elsewhere.write("r_0.png", picture(64, 48));
   CaptureOptions options;
   options.photographs = {elsewhere.path()};

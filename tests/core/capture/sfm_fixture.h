@@ -17,7 +17,7 @@ inline std::filesystem::path writeBlackImage(const TemporaryFolder& folder, cons
                                 std::string(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), '\0'));
 }
 
-/// The view of this name; a test failure where there is none.
+/// The view of this name; a test failure if it is missing.
 inline const CaptureView& viewNamed(const Capture& capture, const std::string& name) {
   const auto found =
       std::find_if(capture.views.begin(), capture.views.end(), [&](const CaptureView& v) { return v.name == name; });

@@ -12,7 +12,7 @@ namespace glint::testing_support {
 /// The grey value of picture i of a written video, 0 .. 250.
 inline int greyOf(int i) { return i * 37 % 251; }
 
-/// Writes a video of uniform grey pictures (greyOf). False where the encoder is not there.
+/// Writes a video of uniform grey pictures (greyOf). False if the encoder is missing.
 inline bool writeVideo(const std::filesystem::path& file, const char (&codec)[5], int pictures, double perSecond, int width = 64,
                        int height = 48) {
   const QuietLibraries quiet;

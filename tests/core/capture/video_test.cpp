@@ -103,7 +103,7 @@ TEST(Video, AnotherVideoInItsPlaceIsNoticed) {
   const TemporaryFolder folder;
   ASSERT_TRUE(writeVideo(folder / "a.avi", "MJPG", 20, 10));
   expectPicture(folder / "a.avi", 5, 0.5);
-  const Outcome<cv::Mat> other = videoPicture(folder / "a.avi", {5, 0.2});  // as of 25 per second
+  const Outcome<cv::Mat> other = videoPicture(folder / "a.avi", {5, 0.2});  // at 25 per second
   ASSERT_FALSE(other);
   EXPECT_EQ(other.failure().reason, Reason::FrameUnreadable);
   EXPECT_THAT(other.failure().detail, HasSubstr("picture 5 is of 0.500 s, not of 0.200 s"));

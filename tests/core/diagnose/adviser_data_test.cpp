@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Real and path-traced sequences: the verdict names what the table of held-out errors shows best, quickly, and no remedy is worse than what is there.
+// Real and path-traced sequences: the verdict names what the table of held-out errors shows best, quickly, and no remedy is worse
+// than what is there.
 #include <gtest/gtest.h>
 
 #include <ctime>
@@ -17,7 +18,8 @@ double processorSeconds() { return double(std::clock()) / CLOCKS_PER_SEC; }
 
 class AdviserData : public testing::TestWithParam<const char*> {};
 
-/// The best of each by `glint evaluate`, whose table is computed apart from the adviser: mean contour errors over held-out highlights.
+/// The best of each by `glint evaluate`, whose table is computed apart from the adviser: mean contour errors over held-out
+/// highlights.
 TEST_P(AdviserData, NamesTheBestHeldOutModelAtOnce) {
   const std::filesystem::path file = std::filesystem::path(GLINT_SOURCE_DIR) / GetParam() / "scene.json";
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "no data in " << file;

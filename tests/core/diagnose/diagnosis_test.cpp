@@ -88,8 +88,8 @@ TEST(Diagnosis, AMovedContourIsNamedAndItsExclusionIsARemedy) {
   EXPECT_LT(left->after.pct(), kExactPct) << "what is left is exact";
 }
 
-/// The bound of the whole: whatever is on screen, no remedy leaves the table of errors worse than it is, and the one that stands first leaves the
-/// smallest error of all models as they are, or a smaller one.
+/// The bound of the whole: whatever is on screen, no remedy leaves the table of errors worse than it is, and the one that stands
+/// first leaves the smallest error of all models as they are, or a smaller one.
 TEST(Diagnosis, RemediesAreWhatTheTableThenShows) {
   const Inspection inspection = inspected(withMovedContour(2), {"primal", "dual", "canonical", "limit-angle"});
   std::string least;
@@ -265,7 +265,8 @@ TEST(Diagnosis, LeavingAFrameOutOfTheScoreIsNoRemedy) {
                           [](const std::string& c) { return c.find("held-out frame v7 off by ") != std::string::npos; }));
 }
 
-/// Somebody waits: what the computed models tell comes before anything is measured, steps are counted, and each word adds to those before.
+/// Somebody waits: what the computed models tell comes before anything is measured, steps are counted, and each word adds to
+/// those before.
 TEST(Diagnosis, TheFirstWordComesAtOnceAndStepsAreCounted) {
   const Inspection inspection = inspected(withMovedContour(2), {"primal", "limit-angle"});
   DiagnoseOptions options = quick("primal");
@@ -306,7 +307,8 @@ TEST(Diagnosis, StopsWhenAskedAndHasToldWhatItKnew) {
   EXPECT_THROW(diagnose(inspection, {}, [](const StageEvent&) { return false; }), Stopped);
 }
 
-/// The longest steps are fits without a view: a stop does not wait for the end of one. The second time that it asks is within the first fit.
+/// The longest steps are fits without a view: a stop does not wait for the end of one. The second time that it asks is within the
+/// first fit.
 TEST(Diagnosis, AStopEndsAFitInItsMiddle) {
   const Inspection inspection = inspected(withMovedContour(2), {"reflectance"});
   std::vector<Fold> folds = foldsOf(inspection, LeaveOut::Place);
@@ -354,7 +356,8 @@ TEST(Diagnosis, TheAutomaticChoiceIsNamedWhereItDiffers) {
   if (said) EXPECT_NE(d.notes.back().find(choice.model.empty() ? "no model" : choice.model), std::string::npos);
 }
 
-/// By hand: 10 for one matched, 100 for one that is off by 250 %, 100 for a missed one, 3 x 0.1 for the spurious ones; of three observed.
+/// By hand: 10 for one matched, 100 for one that is off by 250 %, 100 for a missed one, 3 x 0.1 for the spurious ones; of three
+/// observed.
 TEST(WrongPct, CountsWhatHasNoContourError) {
   ComparisonTally tally;
   tally.matched = 2;
@@ -401,7 +404,8 @@ TEST(IsBetter, FewerSpuriousHighlightsAndNoWorseContours) {
   EXPECT_LT(with({0.01, 0.01, 0.01}, 30).pct(), with({2, 2, 2}, 0).pct());
 }
 
-/// Other training frames leave other frames to be scored: over those of both it must be better, and the number on screen must not be larger.
+/// Other training frames leave other frames to be scored: over those of both it must be better, and the number on screen must not
+/// be larger.
 TEST(IsBetter, OverOtherFramesNeitherByChanceNorByChoice) {
   UnseenError other = errorsOf({4, 4, 4, 4, 1, 1, 1});
   other.views.erase(other.views.begin(), other.views.begin() + 4);

@@ -12,8 +12,8 @@
 
 namespace glint::testing_support {
 
-/// A ball with three small balls on it, as one mesh: on each of those a prediction finds a speck of a highlight, smaller than detection takes. The
-/// contours that are given are the exact ones of the large ball.
+/// A ball with three small balls on it, as one mesh: on each of those a prediction finds a speck of a highlight, smaller than
+/// detection takes. The contours that are given are the exact ones of the large ball.
 class EaredBall {
  public:
   EaredBall() {

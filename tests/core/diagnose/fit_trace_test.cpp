@@ -107,7 +107,8 @@ TEST(FitTrace, WhatIsLeftIsTheNoise) {
   const FitTrace fit = traced(noisyScene(kSigma), "limit-angle").at(0);
   const SolverRun* const run = answerOf(fit, "light with one limit angle");
   ASSERT_TRUE(run);
-  // Across the contour, of 432 points resampled from noisy ones: between half of the noise (neighbours are averaged) and all of it.
+  // Across the contour, of 432 points resampled from noisy ones: between half of the noise (neighbours are averaged) and all of
+  // it.
   const double noise = kViews * kPointsPerView * kSigma * kSigma;
   EXPECT_GT(run->rounds.back().back(), 0.25 * noise);
   EXPECT_LT(run->rounds.back().back(), 1.5 * noise);

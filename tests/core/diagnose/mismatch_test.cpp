@@ -114,8 +114,8 @@ TEST_F(Mismatch, MissedSaysWhereTheNearestPredictionIs) {
   EXPECT_THAT(whyUnmatched(*inspection_, c, row), HasSubstr("no walk ended"));
 }
 
-/// A point of the ball whose normal leans by a known angle from the view ray, beside the ball's centre in the image. The lamp is where the camera
-/// is: what one sees is lit.
+/// A point of the ball whose normal leans by a known angle from the view ray, beside the ball's centre in the image. The lamp is
+/// where the camera is: what one sees is lit.
 TEST_F(Mismatch, AtGrazingIncidenceSaysTheAngle) {
   Inspection lit = *inspection_;
   const Camera& camera = lit.scene->frames[7].camera;

@@ -182,7 +182,8 @@ Highlight disc(const Pixel& middle, double radius) {
   return h;
 }
 
-/// A lamp on a wall beside the body, and a window that it mirrors elsewhere: the lamp that all frames share counts, its cameras are checked.
+/// A lamp on a wall beside the body, and a window that it mirrors elsewhere: the lamp that all frames share counts, its cameras
+/// are checked.
 TEST(CameraCheck, OtherHighlightsInTheFrames) {
   Scene scene = orbit(ellipsoid());
   for (std::size_t i = 0; i < scene.frames.size(); ++i) {

@@ -123,7 +123,8 @@ TEST(LobeComparison, SaysWhatTheNoiseHides) {
     }
 }
 
-/// Three standard deviations of one number: chi squared of a lobe, in units of the best one's noise, is at most 9 above that of the best.
+/// Three standard deviations of one number: chi squared of a lobe, in units of the best one's noise, is at most 9 above that of
+/// the best.
 TEST(LobeComparison, AsGoodIsWithinThreeStandardDeviations) {
   int near = 0;
   for (const double noise : {0.05, 0.06, 0.08, 0.1, 0.12, 0.15, 0.2, 0.3}) {

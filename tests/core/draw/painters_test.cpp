@@ -196,7 +196,8 @@ TEST(OverlayPainter, MarksOutsideTheirBoxAreNotPainted) {
   EXPECT_THAT(svg, Not(HasSubstr("outside")));
 }
 
-/// Figures of the Web Content Accessibility Guidelines: 21 : 1 is the most there is, and #767676 the brightest grey that is text on white.
+/// Figures of the Web Content Accessibility Guidelines: 21 : 1 is the most there is, and #767676 the brightest grey that is text
+/// on white.
 TEST(Contrast, IsThatOfTheGuidelines) {
   EXPECT_NEAR(contrast({0, 0, 0}, {1, 1, 1}), 21, 1e-12);
   EXPECT_NEAR(contrast({1, 0, 0}, {1, 1, 1}), 3.998, 5e-4);

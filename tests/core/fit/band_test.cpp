@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Bands of predictions: the estimator of what whole views are off by against simulated residuals whose variances are known, and the whole
-// pipeline against exact contours of scenes in which poses, scale and peaks are wrong.
+// Bands of predictions: the estimator of what whole views are off by against simulated residuals whose variances are known, and
+// the whole pipeline against exact contours of scenes in which poses, scale and peaks are wrong.
 #include <gtest/gtest.h>
 
 #include <Eigen/QR>
@@ -139,8 +139,8 @@ double insideOnBumps(int views, double noise, double shift, int trials, bool pla
   return in / (double(trials) * kPoints);
 }
 
-// With some of these seeds (1 and 5) round-off once made a shift that all views share, which no residual can show, the likeliest: nothing was left
-// for single views.
+// With some of these seeds (1 and 5) round-off once made a shift that all views share, which no residual can show, the likeliest:
+// nothing was left for single views.
 TEST(ViewEffects, FindsTheSizesOfNoiseAndOfShifts) {
   for (unsigned seed = 1; seed <= 12; ++seed) {
     const ViewEffects e(simulated(60, 0.3, 0.5, seed).views, 10);
@@ -171,7 +171,7 @@ TEST(ViewEffects, NoiseAloneIsNoErrorOfViews) {
 }
 
 TEST(ViewEffects, BandsHoldAViewWhosePoseIsOff) {
-  // Of few views, pretests and the share that the parameters took keep it below 95 %.
+  // With few views, pretests and the share that the parameters took keep it below 95 %.
   EXPECT_GT(inside(20, 0.1, 0.3, 100), 0.90);
   EXPECT_GT(inside(6, 0.1, 0.3, 100), 0.86);
   EXPECT_LT(inside(6, 0.1, 0.3, 100), 0.99);
@@ -185,9 +185,11 @@ TEST(ViewEffects, BandsHoldAViewFarAwayOnABumpySurface) {
   EXPECT_GT(insideOnBumps(20, 0.1, 0.3, 100, true), 0.88);
 }
 
-// --- how far errors go together ---------------------------------------------------------------------------------------------------
+// --- how far errors go together
+// ---------------------------------------------------------------------------------------------------
 
-/// Views along a line, two shapes each, whose errors follow the recursion of an autoregressive process of order 1, no parameters to take any.
+/// Views along a line, two shapes each, whose errors follow the recursion of an autoregressive process of order 1, no parameters
+/// to take any.
 std::vector<ViewCoefficients> line(int views, double sigma, double alike, double noise, unsigned seed) {
   std::mt19937_64 engine(seed);
   std::normal_distribution<double> gauss;
@@ -278,7 +280,8 @@ TEST(ViewEffects, DegenerateInputsStayFinite) {
   EXPECT_THROW(ViewEffects({}, 1), std::invalid_argument);
 }
 
-// --- the whole pipeline -----------------------------------------------------------------------------------------------------------
+// --- the whole pipeline
+// -----------------------------------------------------------------------------------------------------------
 
 InspectionRequest request(double noise) {
   InspectionRequest q;

@@ -43,15 +43,17 @@ inline Paint waves(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double le
   };
 }
 
-/// A path-traced sequence (data/cycles) as photographs of the same object under other paint. The sequences' diffuse part is Lambert's: what it shows is the
-/// irradiance times one known colour. So the irradiance is the photograph less the given specular radiance, divided by that colour; it is multiplied by the new paint,
-/// averaged over each pixel, and the specular part is added under a yellowish lamp. Then 8-bit sRGB. The contours of the specular radiance stay the truth.
+/// A path-traced sequence (data/cycles) as photographs of the same object under other paint. The sequences' diffuse part is
+/// Lambert's: what it shows is the irradiance times one known colour. So the irradiance is the photograph less the given specular
+/// radiance, divided by that colour; it is multiplied by the new paint, averaged over each pixel, and the specular part is added
+/// under a yellowish lamp. Then 8-bit sRGB. The contours of the specular radiance stay the truth.
 struct ColouredCycles {
   testing_support::TemporaryFolder folder;
   std::shared_ptr<Scene> scene;
   std::string truth;  ///< folder of contours
 
-  /// @param every  of how many frames one is taken. @param diffuse  brightest diffuse light of an albedo of 1, of the clip value. @param noise  of a pixel's channel, of the clip value
+  /// @param every  of how many frames one is taken. @param diffuse  brightest diffuse light of an albedo of 1, of the clip value.
+  ///               @param noise  of a pixel's channel, of the clip value
   ColouredCycles(const std::filesystem::path& sequence, const Paint& paint, double diffuse, double noise = 0, int every = 1) {
     truth = (sequence / "contours").string();
     auto read = std::make_shared<Scene>(readScene(sequence / "scene.json"));

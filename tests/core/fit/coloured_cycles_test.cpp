@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// detect.background = colours on path-traced sequences under other paint: contours against those of the specular radiance, which another program traced, and
-// models that are fitted on them. docs/make_real.py reads the printed rows.
+// detect.background = colours on path-traced sequences under other paint: contours against those of the specular radiance, which
+// another program traced, and models that are fitted on them. docs/make_real.py reads the printed rows.
 #include "tests/core/fit/coloured_cycles.h"
 
 #include <algorithm>
@@ -81,8 +81,8 @@ struct Contours {
 };
 
 struct Compared {
-  int frames = 0, parted = 0;
-  Contours smooth, smoothThere, coloursThere;  ///< all frames; those that were parted
+  int frames = 0, separated = 0;
+  Contours smooth, smoothThere, coloursThere;  ///< all frames; those that were separated
   std::map<std::string, int> reasons;
 };
 Compared compare(const test::ColouredCycles& c) {
@@ -92,12 +92,12 @@ Compared compare(const test::ColouredCycles& c) {
                         colours = evidenceFor(*c.scene, f, requestFor(c, "colours"));
     ++r.frames;
     r.smooth.add(smooth);
-    if (colours.notParted.empty() && !colours.highlights.empty()) {
-      ++r.parted;
+    if (colours.notSeparated.empty() && !colours.highlights.empty()) {
+      ++r.separated;
       r.smoothThere.add(smooth);
       r.coloursThere.add(colours);
     } else {
-      std::string why = colours.notParted.empty() ? "no highlight was detected" : colours.notParted;
+      std::string why = colours.notSeparated.empty() ? "no highlight was detected" : colours.notSeparated;
       why = std::regex_replace(why.substr(0, why.find_first_of("(:")), std::regex(", to [0-9.]+ degrees|^[0-9]+ |[ ]+$"), "");
       ++r.reasons[why];
     }
@@ -116,20 +116,20 @@ TEST_P(ColouredCyclesTest, ContoursOnTheSpecularPart) {
     const Compared r = compare(c);
     std::string why;
     for (const auto& [reason, n] : r.reasons) why += (why.empty() ? "" : "; ") + std::to_string(n) + ": " + reason;
-    std::printf("coloured cycles: %s|%s|%d|%d|%s|%s|%s|%s\n", GetParam(), row.name, r.frames, r.parted, r.smooth.text().c_str(),
-                r.smoothThere.text().c_str(), r.coloursThere.text().c_str(), why.c_str());
+    std::printf("coloured cycles: %s|%s|%d|%d|%s|%s|%s|%s\n", GetParam(), row.name, r.frames, r.separated,
+                r.smooth.text().c_str(), r.smoothThere.text().c_str(), r.coloursThere.text().c_str(), why.c_str());
     std::fflush(stdout);
     EXPECT_EQ(r.coloursThere.missed, 0) << row.name;
     if (row.parts == Parts::Always) {
-      // With noise half of the eight vases are parted (docs/real.md), of the three that CI takes one.
-      EXPECT_GE(r.parted, (row.noise > 0 ? 0.3 : 0.5) * r.frames) << row.name;
+      // With noise half of the eight vases are separated (docs/real.md), of the three that CI takes one.
+      EXPECT_GE(r.separated, (row.noise > 0 ? 0.3 : 0.5) * r.frames) << row.name;
       if (row.noise == 0) {
         EXPECT_LT(r.coloursThere.mean(), 0.2) << row.name;
         EXPECT_GT(r.smoothThere.mean(), r.coloursThere.mean()) << row.name;
       }
     }
     if (row.parts == Parts::Never) {
-      EXPECT_EQ(r.parted, 0) << row.name;
+      EXPECT_EQ(r.separated, 0) << row.name;
     }
   }
 }

@@ -13,7 +13,8 @@
 
 namespace glint::test {
 
-/// A frame of a lobe on coloured (or grey) paint under a soft shadow, seen through a lens: the truth is the lobe's contour in ideal pixels.
+/// A frame of a lobe on coloured (or grey) paint under a soft shadow, seen through a lens: the truth is the lobe's contour in
+/// ideal pixels.
 struct Coloured {
   testing_support::TemporaryFolder folder;
   Scene scene;

@@ -161,7 +161,8 @@ TEST(HighlightMotion, ATurningObjectUnderALampThatStandsWithTheCamera) {
   EXPECT_GE(j.count(true, Kind::Texture), j.all(true) - 2);
 }
 
-/// A turntable between camera and lamp: the highlight on its axis stays on its point, and a lamp that stood still in the object's frame would move it.
+/// A turntable between camera and lamp: the highlight on its axis stays on its point, and a lamp that stood still in the object's
+/// frame would move it.
 TEST(HighlightMotion, AHighlightOnTheAxisOfATurntable) {
   Painted p = paintedBall();
   p.paint.clear();
@@ -200,7 +201,7 @@ TEST(HighlightMotion, APatternOfSpotsWhoseTracksCross) {
   EXPECT_GT(j.count(true, Kind::Texture), 0);
 }
 
-/// What is found there by chance is not there in most views.
+/// What is found there by chance is missing in most views.
 TEST(HighlightMotion, ViewsThatDoNotFindItSpeakAgainstIt) {
   Painted p = paintedBall();
   p.paint = {{onBall(0, 0.2), 0.04, 1.0}};

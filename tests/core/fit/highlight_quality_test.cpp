@@ -8,7 +8,8 @@
 
 #include "tests/core/highlight/highlight_images.h"
 
-/// Uncertainties of the contour of a round Gaussian lobe h exp(-r^2 / a^2), whose slope at radius r is 2 r v / a^2 in closed form, and flags on a sphere.
+/// Uncertainties of the contour of a round Gaussian lobe h exp(-r^2 / a^2), whose slope at radius r is 2 r v / a^2 in closed
+/// form, and flags on a sphere.
 namespace glint::highlight_quality_tests {
 namespace {
 

@@ -85,7 +85,7 @@ TEST(PaintedInspection, TextureTrainsNoModelAndTheFitSaysSo) {
     const Inspection off = inspect(scene, request(train, "off")), all = inspect(scene, request(train));
     EXPECT_GT(off.views.size(), 6u) << train;
     EXPECT_EQ(all.views.size(), 6u) << train;
-    EXPECT_LT(lampOffBy(all), 0.2) << train;  // contours of a level of radiance are none of a limit angle
+    EXPECT_LT(lampOffBy(all), 0.2) << train;  // contours of a level of radiance follow no limit angle
     EXPECT_GT(lampOffBy(off), 2 * lampOffBy(all)) << train;
     EXPECT_GE(textures(all), 16u);
     const ModelResult::Fit& fit = all.models.at("limit-angle").fits.at(0);

@@ -55,7 +55,8 @@ class RefinedNormalsTest : public testing::Test {
   TemporaryFolder folder_;
 };
 
-// The truth is the ball's own contours. Measured: limit-angle 1.85 -> 0.11 %, canonical 1.92 -> 0.58 %, reflectance 2.10 -> 0.11 %.
+// The truth is the ball's own contours. Measured: limit-angle 1.85 -> 0.11 %, canonical 1.92 -> 0.58 %, reflectance 2.10 -> 0.11
+// %.
 TEST_F(RefinedNormalsTest, HeldOutFramesGainForEveryModel) {
   const auto scene = bumpy();
   InspectionRequest without = request(false), with = request(true);

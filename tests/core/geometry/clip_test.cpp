@@ -23,7 +23,8 @@ Polyline disc(const Pixel& centre, double radius, int points = 7200) {
 double areaOf(const Polyline& line) { return std::abs(signedArea(line)); }
 
 TEST(ClippedTo, CutsADiscToItsSegments) {
-  // Half of it beyond the left edge; and the segment of height h = r / 2 beyond it: r^2 (acos((r - h) / r)) - (r - h) sqrt(2 r h - h^2).
+  // Half of it beyond the left edge; and the segment of height h = r / 2 beyond it: r^2 (acos((r - h) / r)) - (r - h) sqrt(2 r h
+  // - h^2).
   EXPECT_NEAR(areaOf(clippedTo(kBox, disc({0, 3}, 2))), M_PI * 2, 1e-5);  // 7200 chords: r^2 pi (2 pi / 7200)^2 / 6
   const double lost = 4 * std::acos(0.5) - std::sqrt(3.0);
   EXPECT_NEAR(areaOf(clippedTo(kBox, disc({1, 3}, 2))), M_PI * 4 - lost, 1e-5);

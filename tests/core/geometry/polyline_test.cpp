@@ -69,7 +69,8 @@ TEST(Polyline, ResampleIsEquallySpacedInArcLength) {
   EXPECT_THROW(resample(Polyline{}, 3), std::invalid_argument);
 }
 
-// A circle whose points crowd on one side: what is left are points of it, to the last bit, about as far from each other as they can be.
+// A circle whose points crowd on one side: what is left are points of it, to the last bit, about as far from each other as they
+// can be.
 TEST(Polyline, ThinnedKeepsItsOwnPoints) {
   Polyline circle{{}, true};
   for (int i = 0; i < 200; ++i) {

@@ -50,7 +50,8 @@ Measured measured(const Blob& b) {
           50 * std::abs(std::sqrt(h.areaPx2 / M_PI) / kRadius - 1)};
 }
 
-// The contour of a long-tailed lobe comes out too small, and the figure that is said covers the error without being many times it.
+// The contour of a long-tailed lobe comes out too small, and the figure that is said covers the error without being many times
+// it.
 TEST(BackgroundUncertainty, CoversTheErrorOfALongTail) {
   for (const double slope : {0.0, 0.1}) {
     const Measured m = measured({true, slope, 0});

@@ -6,11 +6,12 @@
 #include <functional>
 #include <optional>
 
-#include "core/highlight/clipped_skirt.h"
+#include "core/highlight/clipped_flank.h"
 #include "core/highlight/highlight.h"
 #include "highlight_images.h"
 
-/// Does the truth lie in the band that is stated around the contour of a clipped core? Lobes by their formulas over the angle, drawn here pixel by pixel.
+/// Does the truth lie in the band that is stated around the contour of a clipped core? Lobes by their formulas over the angle,
+/// drawn here pixel by pixel.
 namespace glint::clipped_band_tests {
 namespace {
 
@@ -63,14 +64,14 @@ std::optional<BandCase> bandCase(const Lobe& lobe, double share, unsigned seed) 
   DetectOptions options;
   options.clipValue = static_cast<float>(0.07 + share);
   const Outcome<std::vector<Highlight>> highlights = detectHighlights(clippedLobe(lobe, blob, share, seed), nullptr, options);
-  if (!highlights || !highlights->front().skirt) return std::nullopt;
+  if (!highlights || !highlights->front().flank) return std::nullopt;
   const Highlight& h = highlights->front();
-  return BandCase{h.skirt->outsideCore, std::sqrt(h.areaPx2 / M_PI) - std::sqrt(std::log(2.0) * blob.a * blob.b),
-                  h.skirt->sigmaPx};
+  return BandCase{h.flank->outsideCore, std::sqrt(h.areaPx2 / M_PI) - std::sqrt(std::log(2.0) * blob.a * blob.b),
+                  h.flank->sigmaPx};
 }
 
-/// What docs/real.md shows. Errors of a lobe's shape are the same in every picture of it, so each lobe must lie within two standard deviations everywhere, and
-/// all of them together within one as often as a standard deviation says.
+/// What docs/real.md shows. Errors of a lobe's shape are the same in every picture of it, so each lobe must lie within two
+/// standard deviations everywhere, and all of them together within one as often as a standard deviation says.
 TEST(ClippedBand, NoiseTheTruthLiesInItAtTheStatedProbability) {
   constexpr unsigned kSeeds = 4;
   int cases = 0, withinOne = 0;
@@ -113,18 +114,18 @@ TEST(ClippedBand, DegenerateAStarBurstIsNoLobe) {
   DetectOptions options;
   options.clipValue = 0.6F;
   const Outcome<std::vector<Highlight>> burst = detectHighlights(raysAround(0.15, 5), nullptr, options);
-  ASSERT_TRUE(burst && burst->front().skirt);
-  const ClippedSkirt& skirt = *burst->front().skirt;
-  EXPECT_FALSE(skirt.trusted);
-  EXPECT_NE(inWords(skirt).find("star burst"), std::string::npos) << inWords(skirt);
+  ASSERT_TRUE(burst && burst->front().flank);
+  const ClippedFlank& flank = *burst->front().flank;
+  EXPECT_FALSE(flank.trusted);
+  EXPECT_NE(inWords(flank).find("star burst"), std::string::npos) << inWords(flank);
   // 0.15 / sqrt(2) in the mean
-  for (const SkirtLevel& level : skirt.levels) EXPECT_NEAR(level.outOfRound, 0.106, 0.02);
+  for (const FlankLevel& level : flank.levels) EXPECT_NEAR(level.outOfRound, 0.106, 0.02);
   // Nothing is known of the place of the level asked for, and the band says so.
-  EXPECT_NEAR(skirt.sigmaPx, std::sqrt(burst->front().areaPx2 / M_PI / 3), 1e-9);
+  EXPECT_NEAR(flank.sigmaPx, std::sqrt(burst->front().areaPx2 / M_PI / 3), 1e-9);
   // As little as bent surfaces do is no burst.
   const Outcome<std::vector<Highlight>> egg = detectHighlights(raysAround(0.06, 3), nullptr, options);
-  ASSERT_TRUE(egg && egg->front().skirt);
-  EXPECT_TRUE(egg->front().skirt->trusted) << inWords(*egg->front().skirt);
+  ASSERT_TRUE(egg && egg->front().flank);
+  EXPECT_TRUE(egg->front().flank->trusted) << inWords(*egg->front().flank);
 }
 
 }  // namespace

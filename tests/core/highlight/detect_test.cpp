@@ -3,7 +3,7 @@
 
 #include <limits>
 
-#include "core/highlight/clipped_skirt.h"
+#include "core/highlight/clipped_flank.h"
 #include "core/highlight/highlight.h"
 #include "highlight_images.h"
 
@@ -54,7 +54,8 @@ TEST(DetectHighlights, Nominal) {
   }
 }
 
-/// Lights of unequal strength: each contour lies at the level of its own peak, the weaker of two peaks of one light at that of the stronger.
+/// Lights of unequal strength: each contour lies at the level of its own peak, the weaker of two peaks of one light at that of
+/// the stronger.
 TEST(DetectHighlights, SeparatePeaksHaveTheirOwnLevels) {
   Blob strong, weak, weaker;
   strong.centre = {70, 80};
@@ -132,8 +133,8 @@ TEST(DetectHighlights, Noise) {
   EXPECT_LT(peak, 0.3);
 }
 
-// Noise turns cells of the grid into saddles. A contour through one was lost, and the highlight with it. The area is that of the exact level set: noise
-// of 3 % moves the contour to and fro by about 1 px, and its area by far less than 3 %.
+// Noise turns cells of the grid into saddles. A contour through one was lost, and the highlight with it. The area is that of the
+// exact level set: noise of 3 % moves the contour to and fro by about 1 px, and its area by far less than 3 %.
 TEST(DetectHighlights, AContourThroughSaddlesIsOneContour) {
   Blob blob;
   blob.a = blob.b = 26;
@@ -230,8 +231,8 @@ TEST(DetectHighlights, ClippedIsFlaggedWithTheEllipseCentre) {
   EXPECT_LT((found->front().peak - blob.centre).norm(), 0.01);
   EXPECT_EQ(found->front().peakValue, 0);
   // The contour is at the level asked for, of the peak that the slope continues.
-  ASSERT_TRUE(found->front().skirt && found->front().skirt->outsideCore);
-  EXPECT_LT(meanDistance(found->front().contour, blob.levelSet(0.5)), 2 * found->front().skirt->sigmaPx);
+  ASSERT_TRUE(found->front().flank && found->front().flank->outsideCore);
+  EXPECT_LT(meanDistance(found->front().contour, blob.levelSet(0.5)), 2 * found->front().flank->sigmaPx);
 }
 
 TEST(DetectHighlights, MaskHidesWhatIsNotGlossy) {

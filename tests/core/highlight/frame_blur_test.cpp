@@ -9,7 +9,8 @@
 
 #include "highlight_images.h"
 
-/// Blur of edges against images that OpenCV blurred at eight times the resolution: a Gaussian of known width and a path of known length.
+/// Blur of edges against images that OpenCV blurred at eight times the resolution: a Gaussian of known width and a path of known
+/// length.
 namespace glint::frame_blur_test {
 namespace {
 

@@ -11,8 +11,8 @@
 #include "core/highlight/highlight.h"
 #include "tests/shared_data.h"
 
-/// Photographs of a ball in daylight: the large clipped highlight at levels that differ by 10 %. The bounds are those of an ideal Gaussian lobe,
-/// as docs/make_real.py has them.
+/// Photographs of a ball in daylight: the large clipped highlight at levels that differ by 10 %. The bounds are those of an ideal
+/// Gaussian lobe, as docs/make_real.py has them.
 namespace glint::gymball_test {
 namespace {
 

@@ -59,7 +59,7 @@ inline std::vector<Highlight> exactContours(const AnalyticSpec& spec, const Came
   options.kind = ContourKind::LimitAngle;
   options.limitAngle = limitAngle;
   options.sagittaPx = 5e-3;
-  options.marginPx = 300;  // whole contours, also where the image ends
+  options.marginPx = 300;  // whole contours, even beyond the image
   const Outcome<std::vector<Highlight>> found = exactHighlights(*makeAnalytic(spec), camera, truth, Material{}, options);
   if (!found) return {};
   std::vector<Highlight> highlights = *found;

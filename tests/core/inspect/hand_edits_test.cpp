@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Highlights ignored, merged, split and grown by hand, against circles, hulls and Gaussian spots whose shapes are known in closed form.
+// Highlights ignored, merged, split and grown by hand, against circles, hulls and Gaussian spots whose shapes are known in closed
+// form.
 #include "core/inspect/hand_edits.h"
 
 #include <gmock/gmock.h>

@@ -103,8 +103,8 @@ TEST(LivePredictor, WhatIsNotKnownIsNamed) {
   EXPECT_TRUE(LivePredictor(dark, levelSets()).failure());
 }
 
-/// 1.96 sigma hold the exact contour of a camera that is in no scene, in nine of ten vertices or more over several draws of the noise: correlated
-/// along a contour, so a single draw says little.
+/// 1.96 sigma hold the exact contour of a camera that is in no scene, in nine of ten vertices or more over several draws of the
+/// noise: correlated along a contour, so a single draw says little.
 TEST(LivePredictor, BandsHoldTheExactContour) {
   const AnalyticSpec spec = sphere(1.0);
   InspectionRequest request = levelSets();

@@ -126,7 +126,7 @@ TEST(BesideObservation, HighlightsMovedByHandStayMoved) {
   const Inspection earlier = inspect(scene, observationRequest());
   InspectionRequest q = observationRequest(kLow);
   q.whatIf.highlights[{kFrame, 0}].contourBy = {3, -4};
-  q.whatIf.highlights[{kFrame, 7}].contourBy = {100, 0};  // of a highlight that is not there
+  q.whatIf.highlights[{kFrame, 7}].contourBy = {100, 0};  // of a highlight that is missing
   q.whatIf.highlights[{0, 0}].contourBy = {100, 0};       // of another frame
   const std::optional<Observation> seen = observeFrame(scene, q, kFrame, {}, &earlier);
   ASSERT_TRUE(seen);

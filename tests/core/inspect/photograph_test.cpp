@@ -36,7 +36,7 @@ Pixel brightest(const Image& image) {
   return best;
 }
 
-// Of a narrow lobe, where masking and falloff do not count, the peak is the mirror point: on the plane z = 0 the point that the
+// The peak of a narrow lobe, where masking and falloff do not count, is the mirror point: on the plane z = 0 the point that the
 // camera sees in the direction of the mirrored lamp.
 TEST(SynthesisedPhotograph, NominalPeakIsTheMirroredLampOfThePlane) {
   InspectionRequest q = synthetic(0.005);

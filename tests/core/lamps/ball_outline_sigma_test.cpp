@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whether the standard deviation of a ball's outline covers its error, over many balls whose rims are faint, blurred, hidden in part, or beside a reflection.
+// Whether the standard deviation of a ball's outline covers its error, over many balls whose rims are faint, blurred, hidden in
+// part, or beside a reflection.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -184,7 +185,8 @@ TEST(BallOutlineSigma, BlurredOrHidden) {
   expectCovered("hidden, circle inside", with(ringed(0.5, 0.95), hidden), 40, 53);
 }
 
-/// A ball of 60 px whose rim mirrors what is behind it: the circle inside, at 59.1 px, replaced the true outline at a stated 0.005 px.
+/// A ball of 60 px whose rim mirrors what is behind it: the circle inside, at 59.1 px, replaced the true outline at a stated
+/// 0.005 px.
 TEST(BallOutlineSigma, AnOutlineInsideOfTheGivenOneSaysHowFar) {
   Random random(7);
   Case c = ringed(1, 1)(random);

@@ -81,7 +81,8 @@ TEST(BallOutline, NoiseIsWhatTheCovarianceSays) {
   EXPECT_LT(normalised, 3);
 }
 
-/// Of a wide lens, far from its axis: an ellipse. Its edge points lie on the cone that touches the ball, sin(alpha) = 1 / distance.
+/// Far from the axis of a wide lens the outline is an ellipse. Its edge points lie on the cone that touches the ball, sin(alpha)
+/// = 1 / distance.
 TEST(BallOutline, ASphereUnderPerspectiveIsItsCone) {
   Scene scene = blackBall({{0, 0}, 100});
   scene.focal = 900;
@@ -119,7 +120,8 @@ TEST(BallOutline, ASphereUnderPerspectiveIsItsCone) {
   EXPECT_TRUE(!circle || circle->residualPx > 3 * found->residualPx);
 }
 
-/// A mirror shows the background behind it along its edge, so that no single photograph shows all of the outline; all together do.
+/// A mirror shows the background behind it along its edge, so that no single photograph shows all of the outline; all together
+/// do.
 TEST(BallOutline, PhotographsUnderSeveralLampsAreUsedTogether) {
   const BallOutline truth{{250.3, 251.8}, 180.5};
   Scene scene = blackBall(truth);

@@ -15,7 +15,8 @@
 #include "core/base/image.h"
 #include "core/lamps/observation.h"
 
-/// Photographs of mirror balls, traced ray by ray, so that outlines and reflections have an exact truth that shares no code with core.
+/// Photographs of mirror balls, traced ray by ray, so that outlines and reflections have an exact truth that shares no code with
+/// core.
 namespace glint::ball_pictures {
 
 /// Balls of radius 1 before a pinhole at the origin that looks along z.
@@ -75,7 +76,8 @@ inline cv::Mat render(const Scene& scene, const Eigen::Vector2d& corner, int wid
   return image;
 }
 
-/// What a camera makes of linear light: blur, sRGB (IEC 61966-2-1), noise in codes, clipping, and where a quality is given a JPEG.
+/// What a camera makes of linear light: blur, sRGB (IEC 61966-2-1), noise in codes, clipping, and where a quality is given a
+/// JPEG.
 inline Image photograph(const cv::Mat& linear, double blurPx, double noise = 0, unsigned seed = 1, int jpeg = 0) {
   cv::Mat blurred = linear.clone();  // OpenCV would blur a shared picture in its place
   if (blurPx > 0) cv::GaussianBlur(linear, blurred, {}, blurPx);

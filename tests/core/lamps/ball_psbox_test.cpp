@@ -18,7 +18,7 @@ namespace glint::ball_psbox_tests {
 
 constexpr int kShots = 12;
 const std::string kFolder = GLINT_SHARED_DIR "/data/psbox/";
-/// Of the cut-outs in the shot: 2750 px apart in x; their lower rows are the same, 1000 and 950 rows high.
+/// Corners of the cut-outs in the shot: 2750 px apart in x; their lower rows agree, 1000 and 950 rows high.
 const std::array<Eigen::Vector2d, 2> kCorner{Eigen::Vector2d(0, 0), Eigen::Vector2d(2750, 50)};
 /// The middle of what is known of the shot; its size is not.
 const Eigen::Vector2d kMiddle(1850, 500);
@@ -70,8 +70,9 @@ struct Mirror {
       centre << c / o.radius, 0;
       return;
     }
-    // The outline's points in the plane through the optical axis and the ball lie at tan(theta -+ alpha); half their distance and the half axis across
-    // give its mean radius. Solved by a fixed point: the circle of these two half axes has the radius measured.
+    // The outline's points in the plane through the optical axis and the ball lie at tan(theta -+ alpha); half their distance and
+    // the half axis across give its mean radius. Solved by a fixed point: the circle of these two half axes has the radius
+    // measured.
     double alpha = std::atan(o.radius / f), theta = std::atan(c.norm() / f);
     for (int i = 0; i < 50; ++i) {
       const double far = f * std::tan(theta + alpha), near = f * std::tan(theta - alpha);
@@ -99,8 +100,8 @@ struct Mirror {
   }
 };
 
-/// By how many pixels of the first ball the two rays miss each other: (p2 - p1).(d1 x d2) over its gradient by the first peak. It does not depend
-/// on how far the lamp is. The whole difference is put on one peak: with equal errors each has 0.7 of it.
+/// By how many pixels of the first ball the two rays miss each other: (p2 - p1).(d1 x d2) over its gradient by the first peak. It
+/// does not depend on how far the lamp is. The whole difference is put on one peak: with equal errors each has 0.7 of it.
 double across(const Mirror& a, const Mirror& b, const Eigen::Vector2d& peakA, const Eigen::Vector2d& peakB) {
   const auto miss = [&](const Eigen::Vector2d& p) {
     const auto [p1, d1] = a.ray(p);
@@ -174,7 +175,8 @@ TEST(BallPsbox, ThePeaksOfTheTwoBallsAgreeAcrossTheirLine) {
   const Agreement published = agreement(balls.clicked, balls.published, 0);
   EXPECT_NEAR(published.rms, 3.5, 0.1);
   EXPECT_NEAR(published.rest, 1.7, 0.1);
-  // The focal length is not known: one unknown, so 11 degrees of freedom are left of 12. Measured 0.64 px at 27300 px, 1.16 px for a distant camera.
+  // The focal length is not known: one unknown, so 11 degrees of freedom are left of 12. Measured 0.64 px at 27300 px, 1.16 px
+  // for a distant camera.
   double best = 1e300, bestFocal = 0;
   for (double focal = 8000; focal < 200000; focal *= 1.02)
     if (const double rms = agreement(refined, peaks, focal).rms; rms < best) best = rms, bestFocal = focal;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Mirror balls before a camera, in 64-bit long doubles and by Fermat's principle: the light takes the shortest way. It shares nothing with
-// the reflection law that the program solves.
+// Mirror balls before a camera, in 64-bit long doubles and by Fermat's principle: the light takes the shortest way. It shares
+// nothing with the reflection law that the program solves.
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -25,7 +25,8 @@ struct Target {
   bool distant = false;
 };
 
-/// Point of the ball at which the way from eye to lamp is stationary. Bisection of the way's derivative over the angle in their plane.
+/// Point of the ball at which the way from eye to lamp is stationary. Bisection of the way's derivative over the angle in their
+/// plane.
 inline Eigen::Vector3d mirrorPoint(const Eigen::Vector3d& centre, double radius, const Target& eye, const Target& lamp) {
   const Vector c = centre.cast<Real>();
   const auto towards = [&](const Target& t) { return Vector(t.distant ? t.at.cast<Real>() : Vector(t.at.cast<Real>() - c)); };
@@ -54,7 +55,8 @@ inline Camera camera() {
 
 inline Pixel seenBy(const Camera& c, const Eigen::Vector3d& p) { return Eigen::Vector3d(c.pixelFromRay * p).hnormalized(); }
 
-/// The exact outline under perspective: rays that touch the ball. Its circle is a rough one; the covariance is that of independent points.
+/// The exact outline under perspective: rays that touch the ball. Its circle is a rough one; the covariance is that of
+/// independent points.
 inline RefinedOutline outlineOf(const Camera& c, const Eigen::Vector3d& centre, double radius, double sigmaPx, int points = 120) {
   RefinedOutline o;
   const Eigen::Vector3d axis = centre.normalized(), u = axis.unitOrthogonal(), v = axis.cross(u);

@@ -109,7 +109,8 @@ TEST(BallLamps, ParallaxWithoutAFocalLength) {
   const auto fit = fitBallLamps(p);
   ASSERT_TRUE(fit);
   ASSERT_TRUE(fit->lamps[0].parallax);
-  // Seen from the middle of the two mirror points, which are as high and as near; half the angle is atan(half the distance over the lamp's).
+  // Seen from the middle of the two mirror points, which are as high and as near; half the angle is atan(half the distance over
+  // the lamp's).
   EXPECT_NEAR(fit->lamps[0].parallax->acrossDeg, 0, 1e-6);
   EXPECT_LT(fit->lamps[0].parallax->alongDeg, -10);
   EXPECT_LT((fit->lamps[0].direction - (lamp - Eigen::Vector3d(1500, 900, 0)).normalized()).norm(), kExact);
@@ -139,7 +140,8 @@ TEST(BallLamps, LengthsAreInRadiiWithoutOne) {
   EXPECT_LT((*fit->lamps[0].position * a.radius - a.lamps[0].at).norm(), kExact);
 }
 
-// The squared error over its covariance has mean 3 and variance 6 for a position: over 200 x 4 of them the mean lies within 3 +- 0.26 with near certainty.
+// The squared error over its covariance has mean 3 and variance 6 for a position: over 200 x 4 of them the mean lies within 3 +-
+// 0.26 with near certainty.
 TEST(BallLamps, NoiseHasThePromisedSpread) {
   Arrangement a;
   a.peakPx = 0.1;

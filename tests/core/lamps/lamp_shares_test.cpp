@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What each ball's highlights leave free, and what each photograph says of the outlines. Truths: noise that is drawn here, and identities of least squares.
+// What each ball's highlights leave free, and what each photograph says of the outlines. Truths: noise that is drawn here, and
+// identities of least squares.
 #include <gmock/gmock.h>
 
 #include "core/lamps/lamp_fit.h"
@@ -91,8 +92,8 @@ TEST(BallShares, Scale) {
   for (std::size_t i = 0; i < a->lamps.size(); ++i) EXPECT_NEAR(*a->lamps[i].outlineShare, *b->lamps[i].outlineShare, kSame);
 }
 
-// The squared residuals of a ball over the variance of its noise are as many as its degrees of freedom: over 400 draws of about 10 and 2 of them the mean
-// spreads by 2 and 5 %.
+// The squared residuals of a ball over the variance of its noise are as many as its degrees of freedom: over 400 draws of about
+// 10 and 2 of them the mean spreads by 2 and 5 %.
 TEST(BallShares, NoiseLeavesWhatTheDegreesOfFreedomSay) {
   const Circles a;
   std::vector<double> squares(2), promised(2);

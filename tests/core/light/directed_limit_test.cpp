@@ -18,7 +18,8 @@ Eigen::Vector3d tilted(double azimuth) {
   return {std::sin(0.05) * std::cos(azimuth), std::sin(0.05) * std::sin(azimuth), std::cos(0.05)};
 }
 
-// L = V = H = z: a light moved by d sideways moves H by d / (2 r). The limit becomes an ellipse of semi-axes a and hypot(a, s / (2 r)).
+// L = V = H = z: a light moved by d sideways moves H by d / (2 r). The limit becomes an ellipse of semi-axes a and hypot(a, s /
+// (2 r)).
 TEST(DirectedLimit, IsAnEllipseUnderALightStraightAbove) {
   const double r = 2.5, s = 0.3, longer = std::hypot(kDirectedLimit, s / (2 * r));
   for (const double scale : {1e-6, 1.0, 1e6}) {
@@ -93,7 +94,7 @@ void expectDerivatives(double limit, const Vector6& extent, const Eigen::Vector3
                   (2 * de);
   }
   EXPECT_LT((d.byExtent - byExtent).norm(),
-            kDifference * byExtent.norm() + 1e-12 / limit);  // none where the limit is held at its least
+            kDifference * byExtent.norm() + 1e-12 / limit);  // none if the limit is held at its least
 }
 
 TEST(DirectedLimit, DerivativesAreThoseOfTheAngle) {

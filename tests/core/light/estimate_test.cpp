@@ -244,8 +244,8 @@ TEST(BundleLight, NoiseIsBetterThanTriangulation) {
   EXPECT_LT(medianOf(normalised), 4.8);
 }
 
-// From about 2 px on the bundle tries other starts. What it says of the best one is what the noise leaves along the normals, 432 points of it:
-// a standard error of 4 %. It held corrections that a start far off had left, and then said 25 px.
+// From about 2 px on the bundle tries other starts. What it says of the best one is what the noise leaves along the normals, 432
+// points of it: a standard error of 4 %. It held corrections that a start far off had left, and then said 25 px.
 TEST(BundleLight, WhatIsLeftIsTheNoiseWhicheverStartsWereTried) {
   for (const double noise : {1.0, 2.0, 3.0})
     for (unsigned seed = 0; seed < 10; ++seed) {
@@ -281,7 +281,8 @@ class Faceted : public TestSphere {
   double radius_;
 };
 
-// Every contour is exact but for a facet around its eighth point that holds about a fifth of it. The other points lie on their level set.
+// Every contour is exact but for a facet around its eighth point that holds about a fifth of it. The other points lie on their
+// level set.
 TEST(BundleLight, PointsWhereAlphaIsFlatAreNotWhatIsLeft) {
   Scene s = makeScene(Light::at(kLight), 6, 2.0);
   std::vector<Faceted> surfaces;

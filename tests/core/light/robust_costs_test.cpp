@@ -41,7 +41,7 @@ constexpr double kScale = 0.7, kFactor = 1.5;
 
 std::vector<Point> scattered(double spread) {
   std::mt19937_64 engine(7);
-  std::normal_distribution<double> noise(0, 1);  // a standard deviation of zero is none
+  std::normal_distribution<double> noise(0, 1);  // zero is no legal standard deviation
   std::vector<Point> points;
   for (int i = 0; i < 40; ++i) points.push_back({0.1 * i, 1 + 2 * (0.1 * i) + spread * noise(engine)});
   return points;

@@ -13,7 +13,8 @@
 /// Photogrammetry's meshes: right but for smooth bumps.
 namespace glint::test {
 
-/// A mesh of an analytic shape, its vertices moved along the shape's normals by a sum of waves. The mesh's normals are its own: those of the bumps.
+/// A mesh of an analytic shape, its vertices moved along the shape's normals by a sum of waves. The mesh's normals are its own:
+/// those of the bumps.
 /// @param slope   RMS slope of the bumps in one direction, rad. @param length  their wavelength over two pi, m.
 inline TriangleMesh bumpyMesh(const AnalyticSpec& spec, double slope, double length, unsigned seed, int resolution = 160) {
   TriangleMesh mesh = makeAnalytic(spec)->tessellate(Eigen::AlignedBox3d(), resolution);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What no fit may pass as an answer: a light behind the surface, a contour smaller than detection resolves, training contours left unexplained.
+// What no fit may pass as an answer: a light behind the surface, a contour smaller than detection resolves, training contours
+// left unexplained.
 #include "core/model/plausible.h"
 
 #include <gmock/gmock.h>
@@ -213,8 +214,8 @@ TEST(Plausible, EllipsoidsOfContoursThatContradictEachOtherArePoorOrRefused) {
     }
 }
 
-/// Every second contour smaller by `share` of its radius, the others larger, and the light of these. Plain least squares: a robust scale in
-/// pixels would leave open where between the two sizes the limit angle lies.
+/// Every second contour smaller by `share` of its radius, the others larger, and the light of these. Plain least squares: a
+/// robust scale in pixels would leave open where between the two sizes the limit angle lies.
 FitInput inTwoSizes(double share, Settings& settings) {
   settings.set("light.robust_px", 100.0);
   FitInput input = fitInput(ellipsoidScene(), settings);
@@ -225,8 +226,9 @@ FitInput inTwoSizes(double share, Settings& settings) {
   return input;
 }
 
-// Alpha grows about linearly from the brightest point. A limit angle of x times the true one leaves |x - (1 - s)| / (1 - s) of the small
-// contours' radius and |x - (1 + s)| / (1 + s) of the large ones'. Least squares in pixels end near x = 1: with s = 0.06 some 6 % of both.
+// Alpha grows about linearly from the brightest point. A limit angle of x times the true one leaves |x - (1 - s)| / (1 - s) of
+// the small contours' radius and |x - (1 + s)| / (1 + s) of the large ones'. Least squares in pixels end near x = 1: with s =
+// 0.06 some 6 % of both.
 TEST(Plausible, LimitAngleAnswersWhereContoursDifferALittle) {
   Settings settings;
   const Outcome<ModelFit> fit = modelByName("limit-angle").fit(inTwoSizes(0.06, settings), settings);
@@ -235,7 +237,8 @@ TEST(Plausible, LimitAngleAnswersWhereContoursDifferALittle) {
   EXPECT_THAT(fit->remarks[0], HasSubstr("explains its training views poorly"));
 }
 
-// With s = 0.2 no x leaves less than 10 % of both (x < 0.88, x > 1.08), so that half of the views are poor; with s = 0.3 even more so.
+// With s = 0.2 no x leaves less than 10 % of both (x < 0.88, x > 1.08), so that half of the views are poor; with s = 0.3 even
+// more so.
 TEST(Plausible, LimitAngleIsNeverOkOnContoursThatContradictEachOther) {
   for (const char* solver : {"bundle", "triangulated"})
     for (const double share : {0.2, 0.3}) {
@@ -257,8 +260,8 @@ TEST(Plausible, LimitAngleIsNeverOkOnContoursThatContradictEachOther) {
     }
 }
 
-// A tenth of every contour runs twice as far out, as along a reflection beside the highlight. The rest is exact, and the fit keeps to it; the
-// RMS of all points is more than a tenth of the radius.
+// A tenth of every contour runs twice as far out, as along a reflection beside the highlight. The rest is exact, and the fit
+// keeps to it; the RMS of all points is more than a tenth of the radius.
 TEST(Plausible, LimitAngleAnswersWhereATenthOfTheContourIsWild) {
   Settings settings;
   settings.set("light.bundle_points", 72);
@@ -304,8 +307,8 @@ TEST(Plausible, LimitAngleKnowsItsResidualsAndTheConditionOfItsLight) {
   }
 }
 
-// Noise of 2 px makes the bundle try other starts. What it says of the best one is what the noise leaves across the contours, 72 points a view:
-// it held corrections that a start far off had left, and then said 25 px.
+// Noise of 2 px makes the bundle try other starts. What it says of the best one is what the noise leaves across the contours, 72
+// points a view: it held corrections that a start far off had left, and then said 25 px.
 TEST(Plausible, LimitAngleLeavesTheNoiseWhicheverStartsWereTried) {
   for (const int views : {4, 5, 6})
     for (const double noise : {1.0, 2.0, 3.0})

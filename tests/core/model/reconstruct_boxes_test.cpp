@@ -89,8 +89,8 @@ bool mentions(const BoxReconstruction& r, const std::string& words) {
                      [&](const std::string& t) { return t.find(words) != std::string::npos; });
 }
 
-// Mean over the sphere by a product of a fine midpoint rule in z and in longitude: the normal equations of the least squares hold at the
-// ellipsoid of the closed form.
+// Mean over the sphere by a product of a fine midpoint rule in z and in longitude: the normal equations of the least squares hold
+// at the ellipsoid of the closed form.
 TEST(EqCuboid, IsTheNearestInSquaredSupportOverAllDirections) {
   const Eigen::Vector3d a(0.4, 1.0, 2.5), m = ellipsoidOfCuboid(a);
   Eigen::Vector3d moment = Eigen::Vector3d::Zero();
@@ -134,8 +134,8 @@ TEST(ReconstructFromBoxes, ScaleOfTheWorldDoesNotMatter) {
     }
 }
 
-// Measured, 40 sets each, 8 views, 0.5 px per side, object of 0.3 m at 2 m: median centre error 0.60 mm of either; mean of d^T C^-1 d
-// (3 were ideal) 2.9 of the ellipsoid, 2.8 of the cuboid; the solid is right every time.
+// Measured, 40 sets each, 8 views, 0.5 px per side, object of 0.3 m at 2 m: median centre error 0.60 mm of either; mean of d^T
+// C^-1 d (3 were ideal) 2.9 of the ellipsoid, 2.8 of the cuboid; the solid is right every time.
 TEST(ReconstructFromBoxes, Noise) {
   for (const BoxSolid solid : {BoxSolid::Ellipsoid, BoxSolid::Cuboid}) {
     std::vector<double> off;
@@ -300,9 +300,9 @@ std::vector<BoxView> realBoxes(int object) {
   return views;
 }
 
-// Objects 0 to 3 are packs that lie tilted: an ellipsoid leaves 1.8 to 2.9 px of their boxes, a cuboid 0.3 to 0.6. Objects 4 and 5 are upright bottles; the centre
-// of the given ellipsoids lies 14 to 16 mm below what their boxes show (4 px in every view, the published code's too), because
-// those ellipsoids enclose the points of a model whose neck is narrower than its body.
+// Objects 0 to 3 are packs that lie tilted: an ellipsoid leaves 1.8 to 2.9 px of their boxes, a cuboid 0.3 to 0.6. Objects 4 and
+// 5 are upright bottles; the centre of the given ellipsoids lies 14 to 16 mm below what their boxes show (4 px in every view, the
+// published code's too), because those ellipsoids enclose the points of a model whose neck is narrower than its body.
 TEST(ReconstructFromBoxes, RealBoxesBeatThePublishedOverlap) {
   GLINT_NEEDS_SHARED_DATA();
   for (int object = 0; object < 6; ++object) {

@@ -67,7 +67,7 @@ void addNoise(std::vector<ConicView>& views, double sigma, unsigned seed) {
     v.ellipse = *fitEllipse(v.points);
   }
 }
-/// The reason of a failure; nothing when there was an answer.
+/// The reason of a failure; nothing if there was an answer.
 std::optional<Reason> reasonOf(const Outcome<Reconstruction>& r) { return r ? std::nullopt : std::optional(r.failure().reason); }
 double medianOf(std::vector<double> v) {
   std::sort(v.begin(), v.end());

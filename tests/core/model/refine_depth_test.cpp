@@ -14,8 +14,8 @@ namespace {
 
 using namespace test;
 
-/// What a depth camera with a smooth error reports of a shape: along each of its view rays the stored depth is the true one divided by the correction.
-/// Normals are those of the reported depth, by differences. Knows only rays from its own camera.
+/// What a depth camera with a smooth error reports of a shape: along each of its view rays the stored depth is the true one
+/// divided by the correction. Normals are those of the reported depth, by differences. Knows only rays from its own camera.
 class WrongDepth : public Surface {
  public:
   WrongDepth(std::shared_ptr<const Surface> truth, const Camera& camera, const DepthCorrection& error)
@@ -76,7 +76,7 @@ struct Case {
 constexpr double kError = 1e-2;  // of the depth, at the image's border
 constexpr double kPrior = 1e-2;
 
-/// Of second and third degree: a millimetre or two where the highlights are, invisible on the depth itself.
+/// An error of second and third degree: a millimetre or two where the highlights are, invisible on the depth itself.
 DepthCorrection error(double size) {
   DepthCorrection c;
   c.coefficients(3) = size;         // x^2
@@ -115,8 +115,9 @@ TEST(RefineDepth, Scale) {
   }
 }
 
-// Measured on six seeds, error 2 %: the light's error 3.7 % -> 0.7 % with 0.1 px noise, 3.5 % -> 1.6 % with 0.3 px, 3.3 % -> 3.2 % with 0.5 px. The scale of the depth
-// trades with the light's distance: with noise the contours say less about it than about its curvature.
+// Measured on six seeds, error 2 %: the light's error 3.7 % -> 0.7 % with 0.1 px noise, 3.5 % -> 1.6 % with 0.3 px, 3.3 % -> 3.2
+// % with 0.5 px. The scale of the depth trades with the light's distance: with noise the contours say less about it than about
+// its curvature.
 TEST(RefineDepth, Noise) {
   double before = 0, after = 0;
   DepthCorrection::Terms open = DepthCorrection::Terms::Zero();

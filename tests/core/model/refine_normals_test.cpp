@@ -39,7 +39,8 @@ struct Case {
     }
   }
   Light start() const { return Light::at(1.05 * *scene.light.position); }
-  /// RMS angle between the true shape's normals and a mesh's along the contours, each pixel's own: what a highlight there is off by.
+  /// RMS angle between the true shape's normals and a mesh's along the contours, each pixel's own: what a highlight there is off
+  /// by.
   double normalsOff(const Surface& other) const {
     const std::shared_ptr<const Surface> truth = makeAnalytic(scene.surface);
     double sum = 0, count = 0;
@@ -113,7 +114,8 @@ TEST(RefineNormals, Scale) {
     const Case c(moved(ellipsoidScene(8), Eigen::Isometry3d::Identity(), scale), kSlope, scale);
     const Outcome<NormalRefinement> r = refineNormals(c.views, c.start(), kPrior);
     ASSERT_TRUE(r) << scale;
-    // The contours are traced anew at every scale, to 1e-9 px; where a centre is chosen among near equals the sum is the same, not its parts.
+    // The contours are traced anew at every scale, to 1e-9 px; where a centre is chosen among near equals the sum is the same,
+    // not its parts.
     EXPECT_NEAR(r->slope, reference->slope, 1e-3 * reference->slope) << scale;
     EXPECT_NEAR(r->correction.length / scale, reference->correction.length, 1e-6) << scale;
     EXPECT_LT((r->light.position() / scale - reference->light.position()).norm(), 1e-3) << scale;
@@ -149,7 +151,8 @@ TEST(RefineNormals, ACleanMeshStaysAsItIs) {
   }
 }
 
-// Contours of another angle in every second view: a model that expects them explains all there is, so that nothing is left for the normals.
+// Contours of another angle in every second view: a model that expects them explains all there is, so that nothing is left for
+// the normals.
 TEST(RefineNormals, WhatTheModelExpectsBendsNothing) {
   constexpr double kMore = 0.01;  // rad
   Case c(ellipsoidScene(8), 0);

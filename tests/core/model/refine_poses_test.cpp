@@ -59,8 +59,8 @@ Errors lightErrors(const Synthetic& s, double poseSigma, double noise, int seeds
   return {plain[seeds / 2], refined[seeds / 2]};
 }
 
-// Measured, 15 seeds, poses off by 0.5 px: the light's median error on the ellipsoid 2.2 % with the given poses, 0.5 % with refined ones.
-// A sphere may turn with light and cameras, so its contours cannot tell: 4.2 % and 4.8 %.
+// Measured, 15 seeds, poses off by 0.5 px: the light's median error on the ellipsoid 2.2 % with the given poses, 0.5 % with
+// refined ones. A sphere may turn with light and cameras, so its contours cannot tell: 4.2 % and 4.8 %.
 TEST(RefinePoses, GainsWherePosesAreOff) {
   const Errors ellipsoid = lightErrors(ellipsoidScene(6), 0.5, 0.1, 15, 0.5),
                sphere = lightErrors(sphereScene(6), 0.5, 0.1, 15, 0.5);

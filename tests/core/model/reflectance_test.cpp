@@ -99,8 +99,9 @@ TEST(Reflectance, FindsANarrowPhongLobeAtGrazingIncidence) {
   EXPECT_LT(reflectanceErrorPct(s, *fit, s.geometry.cameras[11]), kPredictedPct);
 }
 
-// The peak of a wide Beckmann lobe lies far from the mirror point: the first guess of the light is off, and a cosine power may converge
-// where the right lobe does not. Highlights are 100 px wide and more, so the chords' share of them is a thousandth of a percent.
+// The peak of a wide Beckmann lobe lies far from the mirror point: the first guess of the light is off, and a cosine power may
+// converge where the right lobe does not. Highlights are 100 px wide and more, so the chords' share of them is a thousandth of a
+// percent.
 TEST(Reflectance, FindsWideBeckmannLobes) {
   constexpr double kWidePct = 1.5e-3;
   for (const bool round : {false, true})
@@ -118,8 +119,8 @@ TEST(Reflectance, FindsWideBeckmannLobes) {
       }
 }
 
-// Contours at 0.3, 0.5 and 0.7 with independent noise of one pixel, the peak's once, tell a microfacet lobe from every other; the one at
-// 0.5 alone leaves it open (method.md section 15).
+// Contours at 0.3, 0.5 and 0.7 with independent noise of one pixel, the peak's once, tell a microfacet lobe from every other; the
+// one at 0.5 alone leaves it open (method.md section 15).
 TEST(Reflectance, SeveralLevelsNameTheLobe) {
   const auto noisy = [](const Polyline& contour, unsigned seed) {
     std::mt19937_64 engine(seed);

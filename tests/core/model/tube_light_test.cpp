@@ -123,8 +123,8 @@ TEST(TubeLight, NoiseAndBand) {
   EXPECT_LT(noisy.errorPct, heldOutError(tube(0.8), 0, 1, 0.3).errorPct);
 }
 
-// Six cameras within 28 degrees and 4 px of noise: one of the lights that explain the contours best is under the sphere. No estimate may be there,
-// whether or not the extent was asked for.
+// Six cameras within 28 degrees and 4 px of noise: one of the lights that explain the contours best is under the sphere. No
+// estimate may be there, whether or not the extent was asked for.
 TEST(TubeLight, NoLightBehindAHighlightPasses) {
   AnalyticSpec spec;
   spec.type = "sphere";

@@ -15,8 +15,8 @@ namespace {
 
 using namespace test;
 
-// Camera at height d straight above the plane, value = distance from the axis, level r: moving the level by s metres moves the circle by
-// s f / d pixels everywhere.
+// Camera at height d straight above the plane, value = distance from the axis, level r: moving the level by s metres moves the
+// circle by s f / d pixels everywhere.
 TEST(LevelSetSigma, OfACircleSeenFromAbove) {
   const Camera camera = lookAt({0, 0, 4}, {0, 0, 0}, 800);
   const auto surface = makeAnalytic(plane());
@@ -82,8 +82,9 @@ TEST(IncidentAngleByLight, AgreesWithDifferences) {
   EXPECT_LT(behind, 80);
 }
 
-/// Half width of the interval that the measured share of trials may leave: three standard errors of the mean over trials. Directions of
-/// one trial move together, so their binomial spread alone would be too small; the trials themselves are independent.
+/// Half width of the interval that the measured share of trials may leave: three standard errors of the mean over trials.
+/// Directions of one trial move together, so their binomial spread alone would be too small; the trials themselves are
+/// independent.
 double slack(const CoverageResult& r) { return 3 * r.shareSpread / std::sqrt(double(r.trials - r.failed)); }
 
 class Coverage : public testing::TestWithParam<int> {};
@@ -118,8 +119,9 @@ TEST(CoverageOfRadiance, OfTheReflectanceBandIsTheStatedOne) {
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Coverage, testing::Values(0, 2, 3, 5));
 
-// Noise of 1 px on contours of 15 px radius: weights that err together with the residuals displaced the prediction by 0.042 px on average, half of
-// its standard deviation, and the band missed the truth that much more often. The standard error of the mean is 0.009 px.
+// Noise of 1 px on contours of 15 px radius: weights that err together with the residuals displaced the prediction by 0.042 px on
+// average, half of its standard deviation, and the band missed the truth that much more often. The standard error of the mean is
+// 0.009 px.
 TEST(Bundle, NoiseLeavesNoBiasOfSecondOrder) {
   CoverageTrials t;
   t.scene = coverageScenes()[3].second;
@@ -131,7 +133,8 @@ TEST(Bundle, NoiseLeavesNoBiasOfSecondOrder) {
   EXPECT_NEAR(r.share(), 0.95, slack(r));
 }
 
-// Noise displaces the points of a curved contour outwards by sigma^2 / (2 R) on average: 0.04 px here, ten standard errors. The bundle removes it.
+// Noise displaces the points of a curved contour outwards by sigma^2 / (2 R) on average: 0.04 px here, ten standard errors. The
+// bundle removes it.
 TEST(Bundle, SmallNoisyContoursDoNotWidenTheLimitAngle) {
   Synthetic s = sphereScene(6);
   s.limitAngle = 0.03;
@@ -214,8 +217,8 @@ TEST(Band, IsEmptyWhereNothingIsKnown) {
   }
 }
 
-// The covariance of the refined ellipsoid against the spread of 150 noisy fits: the ratio of two standard deviations from 150 trials has a
-// standard error of 6 %.
+// The covariance of the refined ellipsoid against the spread of 150 noisy fits: the ratio of two standard deviations from 150
+// trials has a standard error of 6 %.
 TEST(RefinedUncertainty, AgreesWithTheSpreadOfNoisyFits) {
   Eigen::Isometry3d place = pose(0.7, {0.2, -0.1, 0.3});
   const Ellipsoid truth(place, {0.5, 0.35, 0.2});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Highlights far from the axis of a fisheye lens, against those that an ordinary camera at the same place sees when it is turned towards
-// them: the same rays, far inside of its image.
+// Highlights far from the axis of a fisheye lens, against those that an ordinary camera at the same place sees when it is turned
+// towards them: the same rays, far inside of its image.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -118,7 +118,7 @@ TEST(SeenWindow, OfAFisheyeByItsFormula) {
   EXPECT_GT(corner, reach);
   EXPECT_LT((window.max() - Pixel(99.5 + corner, 99.5 + corner)).norm(), 1e-9);
   EXPECT_LT((window.min() - Pixel(99.5 - corner, 99.5 - corner)).norm(), 1e-9);
-  // Beyond 85 degrees it ends, also where the lens sees more than 90.
+  // Beyond 85 degrees it ends, even if the lens sees more than 90.
   c.width = c.height = 640;
   c.pixelFromRay(0, 2) = c.pixelFromRay(1, 2) = 319.5;
   window = seenWindow(c);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a plugin adds gives the answers of our own kinds where the two are the same thing: Student's t with gamma = 2 is GGX without masking,
-// a superellipsoid of exponent 2 an ellipsoid.
+// What a plugin adds gives the answers of our own kinds where the two are the same thing: Student's t with gamma = 2 is GGX
+// without masking, a superellipsoid of exponent 2 an ellipsoid.
 #include <gmock/gmock.h>
 
 #include <random>

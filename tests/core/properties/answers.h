@@ -11,7 +11,8 @@
 
 namespace glint::testing_support {
 
-/// How the answer of a changed scene is brought back: world point -> scale (linear point + shift), pixel -> (sign u, v) / zoom + offset.
+/// How the answer of a changed scene is brought back: world point -> scale (linear point + shift), pixel -> (sign u, v) / zoom +
+/// offset.
 struct Back {
   Eigen::Matrix3d linear = Eigen::Matrix3d::Identity();
   Eigen::Vector3d shift = Eigen::Vector3d::Zero();
@@ -25,8 +26,8 @@ enum class Quantity { Light, LimitAngle, Roughness, Centre, Shape, ContourPx, Pe
 constexpr int kQuantities = 10;
 const char* nameOf(Quantity quantity);
 
-/// Largest differences, by model and quantity. Lights (by distance), limit angles, roughness and ellipsoids (centre by distance, shape by size)
-/// are relative, contours, peaks and errors in px of the first scene.
+/// Largest differences, by model and quantity. Lights (by distance), limit angles, roughness and ellipsoids (centre by distance,
+/// shape by size) are relative, contours, peaks and errors in px of the first scene.
 struct Differences {
   struct Worst {
     double difference = 0;
@@ -36,8 +37,8 @@ struct Differences {
   std::map<std::string, int> fits, contours;  ///< by model, how many were compared
 };
 
-/// Compares the answer for a scene with that for a changed one; what one of them answers and the other refuses is a test failure. Frames
-/// are found by their ids. @param models  only these; empty = all
+/// Compares the answer for a scene with that for a changed one; what only one of them answers is a test failure. Ids find the
+/// frames. @param models  only these; empty = all
 void compare(const Inspection& a, const Inspection& b, const Back& back, const std::string& scene, Differences& differences,
              const std::vector<std::string>& models = {});
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Laws of the whole pipeline on random scenes: what changes the world, its unit, the photographs' number of pixels, the order of frames or
-// how often a frame is given moves the answer along and changes nothing else.
+// Laws of the whole pipeline on random scenes: what changes the world, its unit, the photographs' number of pixels, the order of
+// frames or how often a frame is given moves the answer along and changes nothing else.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -86,16 +86,17 @@ struct Tolerances {
 
 /// A part in 1e9 of the answer's own size; of a pixel coordinate: of the picture's width.
 constexpr double kSame = 1e-9, kSamePx = 641e-9;
-/// The bundle stops reweighting when a round moves light and limit angle by less than 1e-9 of their unit sphere, and the fit of a lobe when a
-/// round moves light and log roughness by as much; the round that they do not take would move them by about as much again. Distances
-/// of a light that is farther than the scene's size, and the next stages, magnify that a few times.
+/// The bundle stops reweighting when a round moves light and limit angle by less than 1e-9 of their unit sphere, and the fit of a
+/// lobe when a round moves light and log roughness by as much; the round that they do not take would move them by about as much
+/// again. Distances of a light that is farther than the scene's size, and the next stages, magnify that a few times.
 constexpr double kStopped = 1e-8;
-/// What the stopping tolerance of the light leaves in the shape of an ellipsoid about it, whose thin axis the contours hardly see.
+/// What the stopping tolerance of the light leaves in the shape of an ellipsoid about it, whose thin axis the contours hardly
+/// see.
 constexpr double kStoppedShape = 1e-6;
 /// In a picture 641 px wide.
 constexpr double kStoppedPx = 641 * kStopped;
-/// An extent that the contours hardly show trades with the limit angle: little decides between them, and the round-off of the residuals moves
-/// the angle by a few parts in 1e8 (number 97: 1e-8 whatever the solver's tolerance is below 1e-13).
+/// An extent that the contours hardly show trades with the limit angle: little decides between them, and the round-off of the
+/// residuals moves the angle by a few parts in 1e8 (number 97: 1e-8 whatever the solver's tolerance is below 1e-13).
 constexpr double kTradedRoundOff = 1e-7;
 constexpr Tolerances kMoved{kStopped,   kTradedRoundOff, kStopped,   kStopped,       kStoppedShape,
                             kStoppedPx, kStoppedPx,      kStoppedPx, 100 * kStopped, kStopped};
@@ -160,8 +161,9 @@ TEST_F(Properties, UnitOfTheWorld) {
   }
 }
 
-/// A mean over a contour is taken at samples half a pixel apart from its first vertex on. In the mirror the walks start at another
-/// direction and go the other way round, so other points are sampled; what that does falls with the square of the distance.
+/// A mean over a contour is taken at samples half a pixel apart from its first vertex on. In the mirror the walks start at
+/// another direction and go the other way round, so other points are sampled; what that does falls with the square of the
+/// distance.
 constexpr double kSampledPx = 2e-3, kSampledPct = 2e-3;
 TEST_F(Properties, Mirror) {
   Differences d;

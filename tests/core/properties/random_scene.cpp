@@ -122,7 +122,8 @@ Camera cameraAt(const Eigen::Vector3d& eye, const Eigen::Vector3d& target, Rando
 
 using Field = std::function<std::optional<double>(const Pixel&)>;
 
-/// The level set `level` of a field that rises away from `centre`, at 72 points of equal chords. Nothing where it is no star or leaves the image.
+/// The level set `level` of a field that rises away from `centre`, at 72 points of equal chords. Nothing if it is no star or
+/// leaves the image.
 std::optional<std::vector<Pixel>> contourOf(const Field& field, const Pixel& centre, double level, const Camera& camera) {
   const auto at = [&](double angle) -> std::optional<Pixel> {
     const Pixel direction(std::cos(angle), std::sin(angle));
@@ -193,7 +194,7 @@ struct Lamp {
   Eigen::Vector3d at;
 };
 
-/// One light's highlight in one view, nothing where it is not whole.
+/// One light's highlight in one view, nothing if it is not whole.
 std::optional<Highlight> highlightOf(const Surface& surface, const Camera& camera, const Lamp& lamp, const Draw& what,
                                      double width, Random& random) {
   const Light light = Light::at(lamp.at);
@@ -222,7 +223,8 @@ std::optional<Highlight> highlightOf(const Surface& surface, const Camera& camer
   Pixel peak = mirror->front().pixel;
   std::optional<std::vector<Pixel>> contour;
   if (what.radiance) {
-    // The brightest pixel, by a parabola through values one pixel apart, twice: what detection does, to 1e-3 px. All laws move it along.
+    // The brightest pixel, by a parabola through values one pixel apart, twice: what detection does, to 1e-3 px. All laws move it
+    // along.
     for (int round = 0; round < 3; ++round) {
       const auto f = [&](double x, double y) { return darkness(peak + Pixel(x, y)); };
       const auto c = f(0, 0), l = f(-1, 0), r = f(1, 0), u = f(0, -1), d = f(0, 1);
@@ -338,7 +340,8 @@ void mapSurfaces(Scene& scene, const Eigen::Affine3d& map, double scale, const s
     spec.semiAxes *= scale;
     Eigen::Isometry3d pose;
     pose.linear() = map.linear() * spec.worldFromSurface.linear() / scale;
-    // These kinds are their own mirror images in the plane x = 0 of their own frame, so that a mirrored pose can be written as a rigid one.
+    // These kinds are their own mirror images in the plane x = 0 of their own frame, so that a mirrored pose can be written as a
+    // rigid one.
     if (mirror) pose.linear().col(0) *= -1;
     pose.translation() = map * spec.worldFromSurface.translation();
     spec.worldFromSurface = pose;

@@ -25,8 +25,8 @@ struct Draw {
   unsigned seed = 1;
   std::string text() const;
 };
-/// The scene with this number: any ten from a multiple of ten on hold every kind with one and with two lights, exact and noisy; any twenty
-/// hold every kind with both contours too.
+/// The scene with this number: any ten from a multiple of ten on hold every kind with one and with two lights, exact and noisy;
+/// any twenty hold every kind with both contours too.
 Draw draw(int number, unsigned seed);
 
 /// A scene whose frames give their highlights, with a mesh as a file beside it.
@@ -40,8 +40,8 @@ struct RandomScene {
 constexpr int kTraining = 5, kHeldOut = 1;
 constexpr double kNoisePx = 0.2;
 
-/// Cameras 641 x 481 with a random roll, lights and a surface that touches the origin. Contours have 72 points at equal distances along the
-/// contour, each on the level set, so that resampling to 72 gives them again. @param folder  for the mesh.
+/// Cameras 641 x 481 with a random roll, lights, a surface that touches the origin. Contours are 72 points on the level set, at
+/// equal distances along it, so that resampling to 72 gives them again. @param folder  for the mesh.
 RandomScene randomScene(const Draw& what, const std::filesystem::path& folder);
 
 /// x -> scale (motion x) of surfaces, cameras and lights. Highlights stay as they are.
@@ -52,8 +52,8 @@ RandomScene mirrored(const RandomScene& s, const std::filesystem::path& folder);
 RandomScene zoomed(const RandomScene& s, int zoom);
 /// Frames in the order of `order`.
 RandomScene reordered(const RandomScene& s, const std::vector<int>& order);
-/// With one more frame "ID again" for each of `frames`, which trains where the frame does. @param turned  its contours start at another vertex:
-/// the same evidence, but not the same numbers.
+/// With one more frame "ID again" for each of `frames`, which trains where the frame does. @param turned  its contours start at
+/// another vertex: the same evidence, but not the same numbers.
 RandomScene repeated(const RandomScene& s, const std::vector<int>& frames, bool turned = false);
 
 }  // namespace glint::testing_support

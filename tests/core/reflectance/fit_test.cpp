@@ -145,8 +145,8 @@ TEST(FitRadiance, NominalSizeOfALightWiderThanTheLobe) {
   EXPECT_LT(fit->rmsPx, 0.02);
 }
 
-// A cosine power can hide behind a lamp of any size; sums over one that is many lobes wide took minutes. Bounded by the work, not by a
-// clock: a size attempt may take 25 iterations, and a size that survives is at most 2.5 lobe widths.
+// A cosine power can hide behind a lamp of any size; sums over one that is many lobes wide took minutes. Bounded by the work, not
+// by a clock: a size attempt may take 25 iterations, and a size that survives is at most 2.5 lobe widths.
 TEST(FitRadiance, DegenerateLobeDoesNotHideBehindAHugeLamp) {
   const RadianceScene s = radianceScene(ellipsoidScene(6), Lobe::TorranceSparrow, 0.05);
   for (const Lobe lobe : {Lobe::Phong, Lobe::BlinnPhong}) {

@@ -30,8 +30,8 @@ double denseSegment(Lobe lobe, double m, const Eigen::Vector3d& n, const Eigen::
   return std::log(sum);
 }
 
-// From lamps far shorter than the lobe is wide to ten times as long; at the middle, at the end and at the highlight's foot; axis across
-// and slantwise.
+// From lamps far shorter than the lobe is wide to ten times as long; at the middle, at the end and at the highlight's foot; axis
+// across and slantwise.
 TEST(SegmentLight, AgreesWithADenseQuadrature) {
   const double m = 0.03;
   const Eigen::Vector3d n = Eigen::Vector3d::UnitZ();

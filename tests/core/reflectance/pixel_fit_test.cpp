@@ -341,8 +341,8 @@ double trueArea(const Scene& s, int view, double q) {
   return double(std::count_if(values.begin(), values.end(), [&](double v) { return v > q * top; })) / (kFine * kFine);
 }
 
-// A background that knows nothing of the lobe takes GGX's tail for its own and loses 2 % of the radius. With the lobe's background the
-// contour lies where the radiance is half its peak.
+// A background that knows nothing of the lobe takes GGX's tail for its own and loses 2 % of the radius. With the lobe's
+// background the contour lies where the radiance is half its peak.
 TEST(ContourWithLobe, LiesAtItsLevelOnALongTailedLobe) {
   for (const double albedo : {0.0, 0.4}) {
     Scene s;
@@ -363,9 +363,9 @@ TEST(ContourWithLobe, LiesAtItsLevelOnALongTailedLobe) {
   }
 }
 
-// Noise of 2 % of the peak on every pixel. At a vertex of a contour between two such pixels the true radiance is off by about 0.8 x 2 % (the mean
-// size of a normal deviate). The lobe keeps the shape, so that a Gaussian window of a thirtieth of the radius, 0.65 px here, may average more
-// pixels: white noise falls to 1 / (2 sqrt(pi) 0.65) = 0.43 of that.
+// Noise of 2 % of the peak on every pixel. At a vertex of a contour between two such pixels the true radiance is off by about 0.8
+// x 2 % (the mean size of a normal deviate). The lobe keeps the shape, so that a Gaussian window of a thirtieth of the radius,
+// 0.65 px here, may average more pixels: white noise falls to 1 / (2 sqrt(pi) 0.65) = 0.43 of that.
 TEST(ContourWithLobe, NoiseOfSinglePixelsIsEvenedOut) {
   Scene s;
   s.roughness *= 2;
@@ -394,7 +394,8 @@ TEST(ContourWithLobe, ALobeThatExplainsNothingIsRefused) {
                                BackgroundKind::None, DetectOptions{}));
 }
 
-// Clipped at a third of the peak: the contour at half the peak lies in clipped pixels, and the highlight says at which level it was found.
+// Clipped at a third of the peak: the contour at half the peak lies in clipped pixels, and the highlight says at which level it
+// was found.
 TEST(ContourWithLobe, AClippedHighlightKeepsItsContourAndNamesItsLevel) {
   Scene s;
   s.clip = 0.35;
@@ -417,8 +418,8 @@ TEST(ContourWithLobe, AClippedHighlightKeepsItsContourAndNamesItsLevel) {
   EXPECT_NEAR(radius / std::sqrt(trueArea(s, 1, *h.trueLevel)), 1, 0.03);
 }
 
-// ---- A step that leaves the lamp and the lobe as they are takes the sharp image and the background's terms from before. The same step with
-// the roughness moved by one unit in the last place computes all anew.
+// ---- A step that leaves the lamp and the lobe as they are takes the sharp image and the background's terms from before. The
+// same step with the roughness moved by one unit in the last place computes all anew.
 
 /// Largest difference between the two ways, share of the largest entry.
 double keptAgainstAnew(patch::PixelProblem& problem, const patch::State& at, double stepPx2) {

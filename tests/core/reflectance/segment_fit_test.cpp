@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A lamp with a length from contours. The frames integrate over a tube of 3 cm by another quadrature than the fit (24 nodes along and 3
-// across it, every one with its own shadow).
+// A lamp with a length from contours. The frames integrate over a tube of 3 cm by another quadrature than the fit (24 nodes along
+// and 3 across it, every one with its own shadow).
 #include "core/reflectance/segment_fit.h"
 
 #include <gtest/gtest.h>

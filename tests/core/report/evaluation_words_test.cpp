@@ -58,7 +58,8 @@ TEST(EvaluationWords, SayHowGoodTheBestIsAndWhichIsNext) {
   EXPECT_THAT(words.doubts, Contains(HasSubstr("flatters it")));
 }
 
-/// Differences 0.3, -0.1, 0.2, -0.2, 0.3: mean 0.1, standard deviation sqrt(0.22 / 4), standard error that over sqrt(5) = 0.104881.
+/// Differences 0.3, -0.1, 0.2, -0.2, 0.3: mean 0.1, standard deviation sqrt(0.22 / 4), standard error that over sqrt(5) =
+/// 0.104881.
 TEST(EvaluationWords, DoNotCallAnOrderByChanceABetterModel) {
   const Inspection run = runWith({{"primal", {1.3, 0.9, 1.2, 0.8, 1.3}}, {"dual", {1, 1, 1, 1, 1}}});
   const ErrorDifference d = errorDifference(run, "dual", "primal");

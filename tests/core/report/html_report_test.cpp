@@ -70,8 +70,8 @@ TEST(HtmlReport, BeginsInWordsAndExplainsTheModels) {
   EXPECT_THAT(html, HasSubstr("content=\"light\"")) << "it is printed: a dark page would waste ink";
 }
 
-/// Relative luminance and contrast of the Web Content Accessibility Guidelines 2.1, which ask for 4.5 : 1. The darkest ground of a text on
-/// the page is the box of the summary.
+/// Relative luminance and contrast of the Web Content Accessibility Guidelines 2.1, which ask for 4.5 : 1. The darkest ground of
+/// a text on the page is the box of the summary.
 TEST(HtmlReport, EveryTextIsReadable) {
   const auto luminance = [](const std::string& hex) {
     double sum = 0;
@@ -124,7 +124,8 @@ TEST(HtmlReport, AFrameWithAMissHasACrossAndNoErrorInThePlot) {
   EXPECT_THAT(html, HasSubstr("<title>frame v4 (held out)\ndual  "));
 }
 
-/// The legend of the plot, the table and the sentence speak of the same highlights: those that were found, and it says how many were not.
+/// The legend of the plot, the table and the sentence speak of the same highlights: those that were found, and it says how many
+/// were not.
 TEST(HtmlReport, LegendTableAndSentenceHaveOneMean) {
   InspectionRequest q;
   q.models = {"dual"};

@@ -97,7 +97,7 @@ TEST(EdgeShareOf, NothingOnTheWholeEverythingBesideTheSurface) {
   EXPECT_EQ(edgeShareOf({{{5, 5}, {5, 5}}, true}, above(0.01), *strip(0.01)), 0);
 }
 
-/// A curved surface is no edge, also where it is steep: a sphere's silhouette is one, what lies 5 % of its radius inside is not.
+/// A curved surface is no edge, even if it is steep: a sphere's silhouette is one, what lies 5 % of its radius inside is not.
 TEST(EdgeShareOf, TheSilhouetteOfASphereIsAnEdgeAndItsSlopeIsNone) {
   AnalyticSpec spec = testing_support::sphere(0.5);
   spec.worldFromSurface.translation().setZero();
@@ -113,7 +113,8 @@ TEST(EdgeShareOf, TheSilhouetteOfASphereIsAnEdgeAndItsSlopeIsNone) {
   EXPECT_EQ(edgeShareOf(circle(0.95 * silhouette), above(0.01), *sphere), 0);
 }
 
-/// Five frames; the first one's image is cut so that it shows the left part of its highlight alone, the last one's shows none of it.
+/// Five frames; the first one's image is cut so that it shows the left part of its highlight alone, the last one's shows none of
+/// it.
 struct Cut {
   Inspection inspection;
   double cutAt = 0;

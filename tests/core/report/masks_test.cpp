@@ -138,7 +138,7 @@ TEST(WriteLabels, LightsThatAFolderCannotTellApartGetFoldersOfTheirOwn) {
   }
 }
 
-// A reader of the labels must not look for files that are not there.
+// A reader of the labels must not look for files that are missing.
 TEST(CocoJson, WithoutAPhotographTheFileNameIsTheFramesIdAndANoteSaysSo) {
   const Inspection inspection = small();
   const std::vector<int> frames{0, 1, 2};

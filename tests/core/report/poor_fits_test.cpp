@@ -95,7 +95,7 @@ TEST(PoorFits, PredictionsAndLabelsSayIt) {
   EXPECT_FALSE(json::parse(cocoJson(r, "primal", {4}))["info"].contains("reason"));
 }
 
-/// Of a live pose: poor where no fit that answers is ok.
+/// A live pose is poor if no fit that answers is ok.
 TEST(PoorFits, LiveAnswersSayIt) {
   const Inspection r = run();
   LivePose pose;

@@ -109,7 +109,7 @@ TEST(FitLambert, Degenerate) {
   const Outcome<LambertShading> twice = scene.fit({lamp[0], lamp[0]});
   ASSERT_TRUE(twice);
   EXPECT_LT(scene.worst(*twice), 1e-4);
-  // A light that darkens the surface is none.
+  // No light darkens the surface.
   for (float& v : scene.linear.data) v = 0.5f - v;
   const Outcome<LambertShading> inverse = scene.fit(lamp);
   ASSERT_TRUE(inverse);

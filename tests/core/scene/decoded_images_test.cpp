@@ -88,7 +88,8 @@ TEST(DecodedImages, AFileThatJustChangedIsNotKept) {
   EXPECT_FALSE(images.find("a", fresh));
 }
 
-// Another picture of the same size in bytes, written into the same file, which is given its old time again: as hard to notice as it can be.
+// Another picture of the same size in bytes, written into the same file, which is given its old time again: as hard to notice as
+// it can be.
 TEST(DecodedImages, AFrameWhoseFileChangesIsReadAgain) {
   const TemporaryFolder folder;
   const Keeping keeping(1'000'000);

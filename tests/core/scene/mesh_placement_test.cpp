@@ -19,7 +19,8 @@ using testing::IsEmpty;
 constexpr int kCameras = 24;
 constexpr const char* kElsewhere = "the surface passes through 3 of the 200 sparse points that it should";
 
-/// A capture whose mesh is in a frame and unit of its own: `truth` takes it to the cameras' world. The report has what was found before.
+/// A capture whose mesh is in a frame and unit of its own: `truth` takes it to the cameras' world. The report has what was found
+/// before.
 struct Misplaced {
   testing_support::TemporaryFolder folder;
   TriangleMesh mesh;
@@ -103,8 +104,8 @@ TEST(PlaceMesh, FindsWhatIsOnlyTurnedShiftedOrScaled) {
   }
 }
 
-/// 200 points that scatter by 0.5 % of the size determine a corner to some 0.2 % of it: less than a pixel of images in which the mesh is 120 px
-/// large. Points of a floor and walls do no harm.
+/// 200 points that scatter by 0.5 % of the size determine a corner to some 0.2 % of it: less than a pixel of images in which the
+/// mesh is 120 px large. Points of a floor and walls do no harm.
 TEST(PlaceMesh, NoiseAndOtherThingsInTheCloud) {
   TriangleMesh mesh = body(lump);
   const double size = 2.4;  // of the lump's box

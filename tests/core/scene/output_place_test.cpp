@@ -24,7 +24,7 @@ using testing_support::TemporaryFolder;
 constexpr const char* kPrecious = "precious";
 const char* const kOurs = R"({"glint_report": 1})";
 
-/// A folder of several users, and a file that is none of the program's business.
+/// A folder of several users, and a file that does not concern the program.
 struct SharedFolder : TemporaryFolder {
   SharedFolder() {
     fs::create_directories(*this / "shared");

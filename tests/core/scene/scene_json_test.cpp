@@ -283,7 +283,8 @@ TEST(ReadScene, AnUnknownKeyThatNestsAsDeepAsAllowedIsKept) {
   EXPECT_EQ(readScene(folder / "again.json").unknownJson, scene.unknownJson);
 }
 
-// K = [80 2.5 31.5; 0 80 23.5; 0 0 1] at (0.2, -0.4, 2) of the camera: u = (80 * 0.2 + 2.5 * -0.4) / 2 + 31.5, v = 80 * -0.4 / 2 + 23.5.
+// K = [80 2.5 31.5; 0 80 23.5; 0 0 1] at (0.2, -0.4, 2) of the camera: u = (80 * 0.2 + 2.5 * -0.4) / 2 + 31.5, v = 80 * -0.4 / 2
+// + 23.5.
 TEST(ReadScene, SkewIsPartOfTheCamera) {
   const TemporaryFolder folder;
   const auto sceneWith = [&](const std::string& more) {
@@ -466,17 +467,22 @@ TEST(WriteScene, RoundTripIsExact) {
 TEST(WriteScene, EveryKindOfSurfaceLightAndHighlightComesBack) {
   const TemporaryFolder folder;
   const std::string text = R"({"glint_scene": 1, "name": "all",
-    "frames": [{"id": "a", "camera": {"width": 64, "height": 48, "fx": 80, "fy": 81, "cx": 31.5, "cy": 23.5, "distortion": [0.1,-0.02,0.001,0.002,0.003]},
+    "frames": [{"id": "a", "camera": {"width": 64, "height": 48, "fx": 80, "fy": 81, "cx": 31.5, "cy": 23.5,
+      "distortion": [0.1,-0.02,0.001,0.002,0.003]},
       "depth": "d.png", "depth_scale": 0.0002, "mask": "m.png", "normals": "n.tiff", "lights_on": ["p"],
       "camera_from_world": [[1,0,0,0],[0,1,0,0],[0,0,1,2],[0,0,0,1]],
-      "highlights": [{"light": "p", "level": 0.2, "peak": [30.25, 20.5], "contour": [[28, 18], [32, 18.5], [33, 22], [30, 23], [27.5, 21]]}]},
+      "highlights": [{"light": "p", "level": 0.2, "peak": [30.25, 20.5],
+      "contour": [[28, 18], [32, 18.5], [33, 22], [30, 23], [27.5, 21]]}]},
       {"id": "b", "camera": {"width": 32, "height": 48, "fx": 80, "fy": 80, "cx": 15.5, "cy": 23.5}, "surface": "q",
       "camera_from_world": [[0,-1,0,0.5],[1,0,0,0],[0,0,1,2],[0,0,0,1]]}],
     "surfaces": {"p": {"analytic": {"type": "plane"}}, "c": {"analytic": {"type": "cylinder", "radius": 0.1}},
-      "e": {"analytic": {"type": "ellipsoid", "semi_axes": [0.6, 0.35, 0.25], "world_from_surface": [[0,-1,0,0.5],[1,0,0,0],[0,0,1,2],[0,0,0,1]]}},
-      "s": {"analytic": {"type": "sheet", "curvature": 0.5, "length": 1, "width": 2}}, "t": {"analytic": {"type": "torus", "major_radius": 0.5, "minor_radius": 0.1}},
+      "e": {"analytic": {"type": "ellipsoid", "semi_axes": [0.6, 0.35, 0.25],
+      "world_from_surface": [[0,-1,0,0.5],[1,0,0,0],[0,0,1,2],[0,0,0,1]]}},
+      "s": {"analytic": {"type": "sheet", "curvature": 0.5, "length": 1, "width": 2}},
+      "t": {"analytic": {"type": "torus", "major_radius": 0.5, "minor_radius": 0.1}},
       "q": {"analytic": {"type": "quadric", "matrix": [[1,0,0,0],[0,2,0,0],[0,0,3,0],[0,0,0,-1]]}}},
-    "lights": [{"id": "p", "position": [1, 0, 2], "radius": 0.02}, {"id": "sun", "direction": [0, 0, 2]}, {"id": "tube", "segment": [[0, 0, 2], [0.6, 0, 2]], "radius": 0.015}]})";
+    "lights": [{"id": "p", "position": [1, 0, 2], "radius": 0.02}, {"id": "sun", "direction": [0, 0, 2]},
+      {"id": "tube", "segment": [[0, 0, 2], [0.6, 0, 2]], "radius": 0.015}]})";
   const Scene scene = readScene(folder.write("one.json", text));
   EXPECT_THAT(scene.warnings, ElementsAre());
   writeScene(scene, folder / "two.json");
@@ -500,8 +506,8 @@ TEST(WriteScene, EveryKindOfSurfaceLightAndHighlightComesBack) {
   EXPECT_EQ(readScene(folder / "three.json").frames.size(), 2u);
 }
 
-/// Rotations are written with nine digits as often as with all of them. At 1e6 m the tenth digit is a millimetre: the camera must stay where
-/// R c + t = 0 says, not where -R^T t does.
+/// Rotations are written with nine digits as often as with all of them. At 1e6 m the tenth digit is a millimetre: the camera must
+/// stay where R c + t = 0 says, not where -R^T t does.
 TEST(ReadSceneJson, ARotationOfNineDigitsKeepsItsCameraInPlace) {
   const Eigen::Vector3d centre(1e6, -6e5, 3e5);
   Eigen::Matrix3d r = (Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, -1).normalized())).toRotationMatrix();

@@ -196,8 +196,8 @@ TEST(Session, ReplayAgreesAndSaysWhereItDoesNot) {
   EXPECT_EQ(changed.firstChanged, "prediction");
   EXPECT_EQ(same.firstChanged, "");
 
-  // Another level changes what is detected, and with it all the rest: the first stage is named. A session of an older program does not hold
-  // its detection, so that the same change shows first in the light.
+  // Another level changes what is detected, and with it all the rest: the first stage is named. A session of an older program
+  // does not hold its detection, so that the same change shows first in the light.
   Session level = readSession(folder / "x.glint");
   level.request.settings.setFromText("detect.level", "0.4");
   EXPECT_EQ(replay(level).firstChanged, "detection");

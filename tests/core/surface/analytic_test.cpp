@@ -243,8 +243,8 @@ TEST(Analytic, TessellationLiesOnTheSurfaceInsideItsBounds) {
   }
 }
 
-// A quadric has no grid of its own: it is contoured. Oracles: Euler's formula, every edge between two triangles that go round it the opposite way, and
-// the volume of an ellipsoid.
+// A quadric has no grid of its own: it is contoured. Oracles: Euler's formula, every edge between two triangles that go round it
+// the opposite way, and the volume of an ellipsoid.
 TEST(Analytic, AContouredEllipsoidIsClosed) {
   AnalyticSpec spec;
   spec.type = "quadric";

@@ -54,8 +54,8 @@ TEST(BrightestPoint, SphereAgreesWithAlhazen) {
   }
 }
 
-/// Where eye and light are as far from the centre, the mirror point bisects their directions: known without a search, and nothing in
-/// it grows with the distance of all three from the origin.
+/// Where eye and light are as far from the centre, the mirror point bisects their directions: known without a search, and nothing
+/// in it grows with the distance of all three from the origin.
 TEST(BrightestPoint, IsFoundFarFromTheOriginAsWellAsCoordinatesTell) {
   const double half = 0.4;
   const Vector3d eye(3 * std::sin(half), 0, 3 * std::cos(half)), light(-eye.x(), 0, eye.z()), top(0, 0, 1);

@@ -141,8 +141,8 @@ TEST(DepthFit, Degenerate) {
   for (const float z : fittedDepth(Image(160, 120, 1), camera, 0.05).depth.data) ASSERT_EQ(z, 0.f);
 }
 
-// Three standard deviations and the rounding of the published model: 351.3 / z is whole, and its error a sixth of a pixel before rounding:
-// together the variance 1/36 + 1/12.
+// Three standard deviations and the rounding of the published model: 351.3 / z is whole, and its error a sixth of a pixel before
+// rounding: together the variance 1/36 + 1/12.
 TEST(DepthNoise, AsPublished) {
   for (const double z : {1.0, 3.0}) {
     Image depth(160, 120, 1, static_cast<float>(z));
@@ -236,7 +236,8 @@ TEST(DepthFusion, Degenerate) {
   EXPECT_EQ(fusedDepth(own, camera, {}, 0.03).depth.data, own.data);
 }
 
-// The same sphere from a depth camera beside the colour camera, coarser and turned: what is registered is what the colour camera would measure.
+// The same sphere from a depth camera beside the colour camera, coarser and turned: what is registered is what the colour camera
+// would measure.
 TEST(DepthRegistration, NominalAndScale) {
   for (const double scale : {1e-4, 1.0, 1e4}) {
     Camera colour = camera200(scale);
@@ -256,7 +257,8 @@ TEST(DepthRegistration, NominalAndScale) {
   }
 }
 
-// The depth camera sees the wall beside the near square; from the colour camera a part of it is hidden, and a part that nobody saw stays empty.
+// The depth camera sees the wall beside the near square; from the colour camera a part of it is hidden, and a part that nobody
+// saw stays empty.
 TEST(DepthRegistration, HiddenPartsAndEdges) {
   const Camera colour = test::lookAt({0, 0, 0}, {0, 1, 0}, 200, 160, 120);
   Camera depthCamera = colour;

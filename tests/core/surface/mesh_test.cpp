@@ -131,7 +131,8 @@ TEST(Mesh, HitsAgreeWithBruteForceInDouble) {
   EXPECT_GT(misses, 30);
 }
 
-// surface.rays=single: the ray tracer's hits, off by no more than the single precision of coordinates of size 1 allows at this slant.
+// surface.rays=single: the ray tracer's hits, off by no more than the single precision of coordinates of size 1 allows at this
+// slant.
 TEST(Mesh, SinglePrecisionIsNearAndIsNotDouble) {
   constexpr double kSinglePrecision = 2e-5;
   const TriangleMesh mesh = tessellated(test::torus(0.5, 0.2), 40);

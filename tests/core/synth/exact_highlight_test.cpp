@@ -157,7 +157,8 @@ TEST(ExactHighlights, DegenerateIsRefusedByName) {
   EXPECT_EQ(exactHighlights(*scene.surface, scene.camera, scene.light, {}, {}).failure().reason, Reason::NoHighlight);
 }
 
-// The inner wall of a ring is in the shadow of the wall across, whatever the ring's size: nothing is tested at a distance in metres.
+// The inner wall of a ring is in the shadow of the wall across, whatever the ring's size: nothing is tested at a distance in
+// metres.
 TEST(LightSource, ScaleOfAShadowUnderALightAtInfinity) {
   TrueLight light;
   light.lamp = lampTowards(Eigen::Vector3d(-1, 0, 0.05).normalized());

@@ -121,8 +121,8 @@ std::vector<std::string> allOf(const std::string& text, const char* pattern) {
   return found;
 }
 
-/// One error of a setting, whether a plot, a table, the sentence of the choice or the bound of --max-error-pct says it. Beside it, by name, that
-/// of the highlights that were found, and how many these are.
+/// One error of a setting, whether a plot, a table, the sentence of the choice or the bound of --max-error-pct says it. Beside
+/// it, by name, that of the highlights that were found, and how many these are.
 TEST(TradeoffHtml, PlotTableAndSentenceShowOneError) {
   const Tradeoff t = twoWithMisses();
   const double ranked = (29 * 38.1 + (25 + 27) * 100.0) / 81;

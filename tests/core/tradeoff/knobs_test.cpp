@@ -45,7 +45,7 @@ TEST(Knobs, KeepTheValueThatTheUserChose) {
   EXPECT_THAT(texts(*find(knobsOf(settings), "predict.directions")), ElementsAre("12", "18", "24", "36", "50", "72"));
 }
 
-// A setting that nobody has thought of here: every kind that is a knob, and what is none.
+// A setting that nobody has thought of here: every kind of knob, and what does not count as one.
 TEST(Knobs, FindSettingsThatAreAddedLater) {
   std::vector<ParamSpec> params(6);
   params[0] = {"predict.query", "", "", "", std::string("exact"), 0, 0, 0, {"exact", "local-quadric"}, "", "predict"};

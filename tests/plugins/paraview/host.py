@@ -42,7 +42,7 @@ def fetched(source, port=0):
 
 
 def block(data, path):
-    """The block of a path such as "Predicted/canonical/ContoursInImage"; None where there is none."""
+    """The block of a path such as "Predicted/canonical/ContoursInImage"; None if it is missing."""
     for name in path.split("/"):
         if data is None or not data.IsA("vtkMultiBlockDataSet"):
             return None

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/highlight/parting.h"
+#include "core/highlight/specular_separation.h"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace glint {
 namespace {
 
 constexpr double kMiddle = 0.4;                             // footprints: the lobe is above 0.9 of its peak there (level 0.5)
-constexpr double kRingFrom = 1.6;                           // footprints, as of the background
+constexpr double kRingFrom = 1.6;                           // footprints, where the background's ring starts
 constexpr double kRingTo = 6;                               // far enough out that tail and diffuse light differ
 constexpr std::size_t kMostRing = 20000, kLeastRing = 200;  // pixels
 constexpr int kLeastMiddle = 3;                             // pixels
@@ -110,7 +110,7 @@ Colours coloursAround(const Image& image, const std::vector<char>& usable, doubl
   return c;
 }
 
-/// The combination w: w . middle is the lobe there, and around the highlight w . I differs least from its tail, a mixture of a Gaussian and a GGX one.
+/// The combination w: w . middle is the lobe there; around the highlight w . I differs least from its tail, Gaussian plus GGX.
 struct Combination {
   Eigen::Vector3d w;
   double rms;  ///< of what differs
@@ -140,8 +140,8 @@ Combination leastDiffuse(const Colours& c, double level) {
   return result;
 }
 
-/// Radiance per unit of s in each channel: the slope of the highlight's colours over s, beside diffuse light that is linear in the pixel. What else the diffuse
-/// light does there goes into it, along the diffuse colours: it is for scale and pictures.
+/// Radiance per unit of s in each channel: the slope of the highlight's colours over s, beside diffuse light that is linear in
+/// the pixel. What else the diffuse light does there goes into it, along the diffuse colours: it is for scale and pictures.
 Eigen::Vector3d lampOf(const Colours& c, const Eigen::Vector3d& w) {
   Eigen::Matrix4d squares = Eigen::Matrix4d::Zero();
   Eigen::Matrix<double, 4, 3> products = Eigen::Matrix<double, 4, 3>::Zero();
@@ -165,7 +165,7 @@ double channelNoise(const Image& image, const std::vector<char>& usable, const c
   return pixelNoise(part, use);
 }
 
-Failure cannotPart(std::string why) { return {Reason::NotSupported, std::move(why)}; }
+Failure cannotSeparate(std::string why) { return {Reason::NotSupported, std::move(why)}; }
 
 std::vector<char> usablePixels(const Image& linear, const Image* mask) {
   std::vector<char> usable(static_cast<std::size_t>(linear.width) * linear.height);
@@ -180,47 +180,47 @@ std::vector<char> usablePixels(const Image& linear, const Image* mask) {
 
 }  // namespace
 
-Outcome<PartedRegion> partColours(const Image& linear, const std::vector<char>& usable, double clipValue,
-                                  const Highlight& highlight, const std::vector<Highlight>& others) {
-  require(usable.size() == static_cast<std::size_t>(linear.width) * linear.height, "partColours: one entry per pixel");
-  if (linear.channels != 3) return cannotPart("the image is grey");
+Outcome<SeparatedRegion> separateColours(const Image& linear, const std::vector<char>& usable, double clipValue,
+                                         const Highlight& highlight, const std::vector<Highlight>& others) {
+  require(usable.size() == static_cast<std::size_t>(linear.width) * linear.height, "separateColours: one entry per pixel");
+  if (linear.channels != 3) return cannotSeparate("the image is grey");
   const std::optional<Footprint> footprint = footprintOf(highlight);
   if (!footprint) return Failure{Reason::NotAnEllipse, "a highlight has no ellipse"};
   std::vector<Reach> left;
   for (const Highlight& h : others)
     if (const std::optional<Footprint> f = footprintOf(h)) left.emplace_back(*f);
   const Colours c = coloursAround(linear, usable, clipValue, *footprint, left);
-  if (highlight.clipped || c.clipped >= kFewClipped) return cannotPart("clipped pixels have lost their colour");
+  if (highlight.clipped || c.clipped >= kFewClipped) return cannotSeparate("clipped pixels have lost their colour");
   if (c.middlePixels < kLeastMiddle || c.ring.size() < kLeastRing)
     return Failure{Reason::TooFewPoints, formatted("%zu pixels around a highlight, %zu are needed", c.ring.size(), kLeastRing)};
-  if (c.grey) return cannotPart("the image is grey");
+  if (c.grey) return cannotSeparate("the image is grey");
   Eigen::Vector3d diffuse(0, 0, 0);
   for (const Eigen::Vector3d& colour : c.ring) diffuse += colour / static_cast<double>(c.ring.size());
   if (!(diffuse.mean() > kDarkShare * c.middle.mean()))
-    return cannotPart("there is no diffuse light around the highlight (metal, or black): nothing is to be parted");
+    return cannotSeparate("there is no diffuse light around the highlight (metal, or black): nothing to separate");
 
   const Combination found = leastDiffuse(c, footprint->level);
   const Eigen::Vector3d lamp = lampOf(c, found.w);
-  PartedRegion region;
+  SeparatedRegion region;
   region.footprint = *footprint;
   if (!found.w.allFinite() || !lamp.allFinite() || !(lamp.mean() > 0))
-    return cannotPart("no combination of the channels is free of the diffuse colours");
+    return cannotSeparate("no combination of the channels is free of the diffuse colours");
   region.lampColour = lamp / lamp.mean();
   region.channels = found.w * lamp.mean();
   region.angleDeg = std::atan2(lamp.cross(diffuse).norm(), lamp.dot(diffuse)) * 180 / M_PI;
   region.noise = channelNoise(linear, usable, boxOf(*footprint, kRingTo, linear.width, linear.height), found.w);
   region.leftover = std::sqrt(std::max(0.0, found.rms * found.rms - region.noise * region.noise));
   if (region.angleDeg < kLeastAngleDeg)
-    return cannotPart(formatted("the diffuse colour is the lamp's, to %.1f degrees", region.angleDeg));
+    return cannotSeparate(formatted("the diffuse colour is the lamp's, to %.1f degrees", region.angleDeg));
   if (region.noise > kMostNoise)
-    return cannotPart(formatted("noise of the parted highlight would be %.0f %% of its peak", 100 * region.noise));
+    return cannotSeparate(formatted("noise of the separated highlight would be %.0f %% of its peak", 100 * region.noise));
   if (region.leftover > kMostLeftover)
-    return cannotPart(
+    return cannotSeparate(
         formatted("no combination of the channels is free of the colours around the highlight (%.0f %% of its peak is left): "
                   "several materials, "
                   "or one of the lamp's colour",
                   100 * region.leftover));
-  if (region.lampColour.minCoeff() < kNegativeLamp) return cannotPart("what is left is no lamp's colour");
+  if (region.lampColour.minCoeff() < kNegativeLamp) return cannotSeparate("what is left is no lamp's colour");
   return region;
 }
 
@@ -231,7 +231,7 @@ struct SpecularView {
   Image value, mask;
   cv::Rect box;
 };
-SpecularView viewOf(const Image& linear, const std::vector<char>& usable, const PartedRegion& region) {
+SpecularView viewOf(const Image& linear, const std::vector<char>& usable, const SeparatedRegion& region) {
   SpecularView view;
   view.box = boxOf(region.footprint, kRingTo, linear.width, linear.height);
   view.value = Image(view.box.width, view.box.height, 1);
@@ -271,27 +271,28 @@ double movedBy(double share, const Highlight& h) {
   return share * std::sqrt(h.areaPx2 / M_PI) / (2 * h.level * -std::log(h.level));
 }
 
-Parting partHighlights(const Image& linear, const Image* mask, const DetectOptions& options, std::vector<Highlight>& highlights) {
-  Parting parting;
+SpecularSeparation separateHighlights(const Image& linear, const Image* mask, const DetectOptions& options,
+                                      std::vector<Highlight>& highlights) {
+  SpecularSeparation separation;
   if (linear.channels != 3) {
-    parting.reason = "the image is grey";
-    return parting;
+    separation.reason = "the image is grey";
+    return separation;
   }
   const std::vector<char> usable = usablePixels(linear, mask);
   std::vector<SpecularView> views;
   for (std::size_t i = 0; i < highlights.size(); ++i) {
     std::vector<Highlight> others = highlights;
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
-    Outcome<PartedRegion> region = partColours(linear, usable, options.clipValue, highlights[i], others);
+    Outcome<SeparatedRegion> region = separateColours(linear, usable, options.clipValue, highlights[i], others);
     if (!region) {
-      parting.reason = region.failure().detail;
+      separation.reason = region.failure().detail;
       if (highlights.size() > 1)
-        parting.reason += formatted(" (highlight at %.0f, %.0f)", highlights[i].peak.x(), highlights[i].peak.y());
-      parting.regions.clear();
-      return parting;
+        separation.reason += formatted(" (highlight at %.0f, %.0f)", highlights[i].peak.x(), highlights[i].peak.y());
+      separation.regions.clear();
+      return separation;
     }
-    parting.regions.push_back(*std::move(region));
-    views.push_back(viewOf(linear, usable, parting.regions.back()));
+    separation.regions.push_back(*std::move(region));
+    views.push_back(viewOf(linear, usable, separation.regions.back()));
   }
   DetectOptions again = options;
   again.removeBackground = false;
@@ -316,23 +317,23 @@ Parting partHighlights(const Image& linear, const Image* mask, const DetectOptio
     traced = traceAll();
   }
   if (!traced) {
-    parting.reason = "the specular part shows no contour where the highlight was found";
-    parting.regions.clear();
-    return parting;
+    separation.reason = "the specular part shows no contour where the highlight was found";
+    separation.regions.clear();
+    return separation;
   }
   for (std::size_t i = 0; i < highlights.size(); ++i) {
     (*traced)[i].light = highlights[i].light;
     (*traced)[i].touchesBorder = highlights[i].touchesBorder;
   }
   highlights = *std::move(traced);
-  parting.parted = true;
-  return parting;
+  separation.separated = true;
+  return separation;
 }
 
-Image specularPart(const Image& linear, const Parting& parting) {
+Image specularPart(const Image& linear, const SpecularSeparation& separation) {
   Image part(linear.width, linear.height, 3);
   if (linear.channels != 3) return part;
-  for (const PartedRegion& region : parting.regions) {
+  for (const SeparatedRegion& region : separation.regions) {
     const Reach reach(region.footprint);
     const cv::Rect box = boxOf(region.footprint, kRingTo, linear.width, linear.height);
     for (int y = box.y; y < box.y + box.height; ++y)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/highlight/clipped_skirt.h"
+#include "core/highlight/clipped_flank.h"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -11,23 +11,23 @@
 #include "core/base/median.h"
 #include "core/base/number_text.h"
 #include "core/highlight/iso_contour.h"
-#include "core/highlight/tongues.h"
+#include "core/highlight/streaks.h"
 
 namespace glint {
 namespace {
 
-constexpr std::array kSkirtLevels{0.95, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.22, 0.16, 0.12};  // of the clip height
-constexpr std::size_t kLeastSkirtLevels = 5;                                                   // of four unknowns
+constexpr std::array kFlankLevels{0.95, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.22, 0.16, 0.12};  // of the clip height
+constexpr std::size_t kLeastFlankLevels = 5;                                                   // of four unknowns
 constexpr double kClipRank = 0.02;   // of the clipped pixels: the least values are those where one channel is only just clipped
 constexpr double kClipNoise = 2;     // in standard deviations: nearer to the clip value noise is cut on one side
-constexpr double kSkirtNoise = 6;    // a level below this many deviations follows noise
+constexpr double kFlankNoise = 6;    // a level below this many deviations follows noise
 constexpr double kMostDrift = 0.25;  // of the shorter semi-axis, of the centre between levels: more is no single lobe
 constexpr double kMostRatioChange = 1.3;  // of the axes' ratio between levels
 constexpr double kMostGrowth = 1.3;       // over v^-1, the area of the longest tail fitted: more is a neighbour that joins
 constexpr double kAreaSigmaPx2 = 0.3;     // of a contour made of chords, measured on exact lobes of 5 to 60 px
 constexpr double kUnusablePx = 1.5;       // a contour that near to an unusable pixel follows its border
 
-// The profile and its uncertainty. The tests have lobes that are none of these profiles.
+// The profile and its uncertainty. The tests use lobes with other profiles.
 constexpr std::array kTails{1.0, 1 / 1.5, 0.5,  1 / 3.0, 0.2,
                             0.1, 0.0,     -0.1, -0.2};  // 1/beta: from tails longer than GGX's to lobes that end
 constexpr std::array kStarts{-2.5, -1.0, 0.3, 1.5};     // log(A0 / median area)
@@ -40,11 +40,11 @@ constexpr double kFirstDamping = 1e-3, kLeastDamping = 1e-9, kMostDamping = 1e7;
 constexpr double kDamped = 5;                                                     // factor from step to step
 constexpr double kConverged = 1e-7;  // of the cost: log K then changes by far less than its sigma
 
-// When a peak is relied on.
+// When a peak is trusted.
 constexpr double kMostLogSigma = 0.2;  // a level known to a fifth; worse is no better than the clip value
 constexpr double kMostShape = 2;       // p: flatter tops are a lamp's image in a mirror, whose height no wall shows
 constexpr double kLeastGrown = 1.6;    // of the areas from the highest to the lowest level: a Gaussian clipped at a thirtieth
-constexpr double kMostMisfit = 0.05;   // rms of log I: beyond it the skirt is no lobe's
+constexpr double kMostMisfit = 0.05;   // rms of log I: beyond it the flank is no lobe's
 constexpr double kMostOutOfRound =
     0.08;  // median over levels: star bursts and mirrored lamps have 0.1 to 0.2 (psbox), lobes on bent surfaces below 0.05
 constexpr int kRoundSamples = 72;         // along a contour: the rays of a star burst are wider than that
@@ -62,13 +62,13 @@ struct ProfileFit {
 };
 
 /// Levels, scaled to the strongest value and the median area.
-struct Skirt {
+struct Flank {
   std::vector<double> logValue, inverse, logArea, sigma;
   double backgroundSigma = 0;
 };
 
 /// Residuals and their derivatives: the levels, then the two priors. Returns the cost.
-double evaluate(const Skirt& s, double tail, const Unknowns& x, Eigen::Matrix4d* h, Unknowns* g, double* squares = nullptr) {
+double evaluate(const Flank& s, double tail, const Unknowns& x, Eigen::Matrix4d* h, Unknowns* g, double* squares = nullptr) {
   const double p = std::exp(x[2]);
   double cost = 0;
   if (h) h->setZero(), g->setZero();
@@ -95,7 +95,7 @@ double evaluate(const Skirt& s, double tail, const Unknowns& x, Eigen::Matrix4d*
 }
 
 /// Levenberg-Marquardt from several A0.
-ProfileFit fitProfile(const Skirt& s, double tail) {
+ProfileFit fitProfile(const Flank& s, double tail) {
   ProfileFit best;
   for (const double start : kStarts) {
     Unknowns x(0, start, 0, 0), g;
@@ -126,39 +126,39 @@ ProfileFit fitProfile(const Skirt& s, double tail) {
   return best;
 }
 
-bool usableSample(const SkirtSample& s) {
+bool usableSample(const FlankSample& s) {
   return s.value > 0 && s.areaPx2 > 0 && std::isfinite(s.value) && std::isfinite(s.areaPx2) && s.logSigma >= 0 &&
          std::isfinite(s.logSigma);
 }
 
 }  // namespace
 
-double SkirtPeak::areaAt(double v) const {
+double FlankPeak::areaAt(double v) const {
   if (!(v > 0) || !(v < value)) return 0;
   const double fall = std::log(value / v), u = tail != 0 ? std::expm1(fall * tail) / tail : fall;
   return areaPx2 * std::pow(u, 1 / shape);
 }
 
-double SkirtPeak::fallAt(double area) const {
+double FlankPeak::fallAt(double area) const {
   const double u = std::pow(std::max(0.0, area) / areaPx2, shape);
   return tail != 0 ? std::pow(std::max(0.0, 1 + u * tail), -1 / tail) : std::exp(-u);
 }
 
-Outcome<SkirtPeak> peakFromSkirt(std::span<const SkirtSample> given, double backgroundSigma) {
+Outcome<FlankPeak> peakFromFlank(std::span<const FlankSample> given, double backgroundSigma) {
   if (!std::all_of(given.begin(), given.end(), usableSample) || !std::isfinite(backgroundSigma))
     return Failure{Reason::NotFinite, "a level's value or area is not positive and finite"};
-  if (given.size() < kLeastSkirtLevels)
+  if (given.size() < kLeastFlankLevels)
     return Failure{Reason::TooFewPoints,
-                   formatted("%zu levels of the slope can be traced, %zu are needed", given.size(), kLeastSkirtLevels)};
-  std::vector<SkirtSample> samples(given.begin(), given.end());
-  std::sort(samples.begin(), samples.end(), [](const SkirtSample& a, const SkirtSample& b) { return a.value > b.value; });
+                   formatted("%zu levels of the slope can be traced, %zu are needed", given.size(), kLeastFlankLevels)};
+  std::vector<FlankSample> samples(given.begin(), given.end());
+  std::sort(samples.begin(), samples.end(), [](const FlankSample& a, const FlankSample& b) { return a.value > b.value; });
   const double top = samples.front().value, middle = samples[samples.size() / 2].areaPx2;
   if (!(samples.back().areaPx2 > samples.front().areaPx2))
     return Failure{Reason::NotConverged, "contours do not grow as the level falls"};
   if (samples.back().areaPx2 < kLeastGrown * samples.front().areaPx2) return Failure{Reason::NotConverged, kSteep};
-  Skirt s;
+  Flank s;
   s.backgroundSigma = std::max(backgroundSigma / top, 1e-6);  // 0: the background is known; the prior stays finite
-  for (const SkirtSample& q : samples) {
+  for (const FlankSample& q : samples) {
     s.logValue.push_back(std::log(q.value / top));
     s.inverse.push_back(top / q.value);
     s.logArea.push_back(std::log(q.areaPx2 / middle));
@@ -181,7 +181,7 @@ Outcome<SkirtPeak> peakFromSkirt(std::span<const SkirtSample> given, double back
   }
   mean /= sum;
   const double variance = std::max(0.0, square / sum - mean * mean);
-  SkirtPeak peak;
+  FlankPeak peak;
   peak.value = top * std::exp(mean);
   peak.logSigma = std::sqrt(variance + std::pow(kPeakSigma, 2) + std::pow(kReachSigma * std::max(0.0, mean), 2));
   peak.areaPx2 = middle * std::exp(fits[best].x[1]);
@@ -196,7 +196,7 @@ Outcome<SkirtPeak> peakFromSkirt(std::span<const SkirtSample> given, double back
 namespace {
 
 /// Clipped pixel that is farthest from all that is not.
-Pixel deepestClipped(const SkirtView& view) {
+Pixel deepestClipped(const FlankView& view) {
   cv::Mat saturated(view.corrected.height + 2, view.corrected.width + 2, CV_8U, cv::Scalar(0)), depth;
   for (int y = 0; y < view.corrected.height; ++y)
     for (int x = 0; x < view.corrected.width; ++x)
@@ -208,7 +208,7 @@ Pixel deepestClipped(const SkirtView& view) {
 }
 
 /// Along a pixel that is not usable: the contour then follows the mask.
-bool alongUnusable(const SkirtView& view, const Polyline& line) {
+bool alongUnusable(const FlankView& view, const Polyline& line) {
   const int reach = static_cast<int>(std::ceil(kUnusablePx));
   for (const Pixel& q : line.points)
     for (int y = static_cast<int>(q.y()) - reach; y <= static_cast<int>(q.y()) + reach + 1; ++y)
@@ -220,14 +220,14 @@ bool alongUnusable(const SkirtView& view, const Polyline& line) {
 }
 
 /// Why a level no longer belongs to the highlight; null = it does.
-const char* notOfTheSame(const SkirtLevel& now, const std::vector<SkirtLevel>& above) {
+const char* notOfTheSame(const FlankLevel& now, const std::vector<FlankLevel>& above) {
   if (!now.ellipse) return "contours are no ellipses";
   if (above.empty()) return nullptr;
-  const SkirtLevel &first = above.front(), &last = above.back();
+  const FlankLevel &first = above.front(), &last = above.back();
   if (!(now.areaPx2 > last.areaPx2)) return "contours do not grow as the level falls";
-  // Near the top of a lobe areas grow fast; the logarithm of the area grows ever slower with that of the value, and ends at that of the tail.
+  // Near the top of a lobe areas grow fast; the logarithm of the area grows ever slower with the value's, down to the tail's.
   if (above.size() > 1) {
-    const SkirtLevel& before = above[above.size() - 2];
+    const FlankLevel& before = above[above.size() - 2];
     const double expected = std::max(1.0, std::log(last.areaPx2 / before.areaPx2) / std::log(before.value / last.value));
     if (std::log(now.areaPx2 / last.areaPx2) > kMostGrowth * expected * std::log(last.value / now.value))
       return "the contour joins something else";
@@ -250,14 +250,14 @@ double outOfRound(const Polyline& line, const Ellipse& e) {
   return std::sqrt(sum / kRoundSamples);
 }
 
-double medianOutOfRound(const std::vector<SkirtLevel>& levels) {
+double medianOutOfRound(const std::vector<FlankLevel>& levels) {
   std::vector<double> all;
-  for (const SkirtLevel& level : levels) all.push_back(level.outOfRound);
+  for (const FlankLevel& level : levels) all.push_back(level.outOfRound);
   return upperMedian(all);
 }
 
-/// The contour at a value around a pixel; empty where there is none, with the reason why levels end here.
-std::optional<SkirtLevel> levelAround(const SkirtView& view, const Pixel& inside, double value, const char*& reason) {
+/// The contour at a value around a pixel; empty, with the reason why levels end here, if there is no contour.
+std::optional<FlankLevel> levelAround(const FlankView& view, const Pixel& inside, double value, const char*& reason) {
   for (const IsoContour& c : isoContours(view.corrected, value)) {
     if (signedArea(c.line) < view.minAreaPx2 || !contains(c.line, inside)) continue;
     if (c.touchesBorder) {
@@ -268,9 +268,9 @@ std::optional<SkirtLevel> levelAround(const SkirtView& view, const Pixel& inside
       reason = "the slope touches pixels that are masked or not usable";
       return std::nullopt;
     }
-    SkirtLevel level;
+    FlankLevel level;
     level.value = value;
-    level.contour = withoutTongues(c.line).line;
+    level.contour = withoutStreaks(c.line).line;
     level.areaPx2 = signedArea(level.contour);
     if (const Outcome<Ellipse> e = fitEllipse(level.contour.points)) level.ellipse = *e;
     if (level.ellipse) level.outOfRound = outOfRound(level.contour, *level.ellipse);
@@ -280,11 +280,11 @@ std::optional<SkirtLevel> levelAround(const SkirtView& view, const Pixel& inside
   return std::nullopt;
 }
 
-std::vector<SkirtSample> samplesOf(const ClippedSkirt& skirt, double noise) {
-  std::vector<SkirtSample> samples;
-  for (std::size_t i = 0; i < skirt.levels.size(); ++i) {
-    const SkirtLevel& level = skirt.levels[i];
-    const SkirtLevel& other = skirt.levels[i > 0 ? i - 1 : std::min<std::size_t>(1, skirt.levels.size() - 1)];
+std::vector<FlankSample> samplesOf(const ClippedFlank& flank, double noise) {
+  std::vector<FlankSample> samples;
+  for (std::size_t i = 0; i < flank.levels.size(); ++i) {
+    const FlankLevel& level = flank.levels[i];
+    const FlankLevel& other = flank.levels[i > 0 ? i - 1 : std::min<std::size_t>(1, flank.levels.size() - 1)];
     const double grown = std::abs(level.areaPx2 - other.areaPx2), fallen = std::abs(std::log(level.value / other.value));
     // Noise of a pixel is averaged along the contour; an error of the area counts by the slope of log I over it.
     const double byNoise = noise / level.value / std::sqrt(std::max(1.0, length(level.contour)));
@@ -295,99 +295,99 @@ std::vector<SkirtSample> samplesOf(const ClippedSkirt& skirt, double noise) {
 
 }  // namespace
 
-ClippedSkirt traceSkirt(const SkirtView& view) {
+ClippedFlank traceFlank(const FlankView& view) {
   const std::size_t pixels = view.corrected.data.size();
   require(view.corrected.channels == 1 && view.usable.size() == pixels && view.saturated.size() == pixels,
-          "traceSkirt: one channel and maps of its size");
-  ClippedSkirt skirt;
-  skirt.backgroundSigma = view.backgroundSigma;
+          "traceFlank: one channel and maps of its size");
+  ClippedFlank flank;
+  flank.backgroundSigma = view.backgroundSigma;
   std::vector<float> clipped;
   for (std::size_t i = 0; i < pixels; ++i)
     if (view.saturated[i]) clipped.push_back(view.corrected.data[i]);
   if (clipped.empty()) {
-    skirt.reason = "no pixel is clipped";
-    return skirt;
+    flank.reason = "no pixel is clipped";
+    return flank;
   }
-  skirt.clipHeight = ranked(clipped, static_cast<std::size_t>(kClipRank * static_cast<double>(clipped.size())));
+  flank.clipHeight = ranked(clipped, static_cast<std::size_t>(kClipRank * static_cast<double>(clipped.size())));
   const Pixel inside = deepestClipped(view);
   const char* ended = "the slope sinks into the noise";
-  for (const double share : kSkirtLevels) {
-    const double value = share * skirt.clipHeight;
-    if (!(value > 0) || value > skirt.clipHeight - kClipNoise * view.noise) continue;
-    if (value < kSkirtNoise * view.noise) break;
-    std::optional<SkirtLevel> level = levelAround(view, inside, value, ended);
+  for (const double share : kFlankLevels) {
+    const double value = share * flank.clipHeight;
+    if (!(value > 0) || value > flank.clipHeight - kClipNoise * view.noise) continue;
+    if (value < kFlankNoise * view.noise) break;
+    std::optional<FlankLevel> level = levelAround(view, inside, value, ended);
     if (!level) break;
-    if (const char* const stranger = notOfTheSame(*level, skirt.levels)) {
+    if (const char* const stranger = notOfTheSame(*level, flank.levels)) {
       ended = stranger;
       break;
     }
-    skirt.levels.push_back(*std::move(level));
+    flank.levels.push_back(*std::move(level));
   }
-  const Outcome<SkirtPeak> peak = peakFromSkirt(samplesOf(skirt, view.noise), view.backgroundSigma);
+  const Outcome<FlankPeak> peak = peakFromFlank(samplesOf(flank, view.noise), view.backgroundSigma);
   if (!peak) {
-    skirt.reason = peak.failure().detail + (skirt.levels.size() < kLeastSkirtLevels ? std::string(": ") + ended : "");
-    return skirt;
+    flank.reason = peak.failure().detail + (flank.levels.size() < kLeastFlankLevels ? std::string(": ") + ended : "");
+    return flank;
   }
-  skirt.peak = *peak;
-  if (!(peak->value > skirt.clipHeight))
-    skirt.reason = "the profile's peak is not above the clip value";
+  flank.peak = *peak;
+  if (!(peak->value > flank.clipHeight))
+    flank.reason = "the profile's peak is not above the clip value";
   else if (peak->shape > kMostShape)
-    skirt.reason = kSteep;
+    flank.reason = kSteep;
   else if (peak->misfit > kMostMisfit)
-    skirt.reason = formatted("the slope is not that of a lobe: it leaves the profile by %.0f %%", 100 * peak->misfit);
-  else if (const double ragged = medianOutOfRound(skirt.levels); ragged > kMostOutOfRound)
-    skirt.reason = formatted(
+    flank.reason = formatted("the slope is not that of a lobe: it leaves the profile by %.0f %%", 100 * peak->misfit);
+  else if (const double ragged = medianOutOfRound(flank.levels); ragged > kMostOutOfRound)
+    flank.reason = formatted(
         "the slope is not that of a lobe: its contours leave their ellipses by %.0f %%, as those of a star burst", 100 * ragged);
   else if (peak->logSigma > kMostLogSigma)
-    skirt.reason = formatted("the peak is known to %.0f %% only", 100 * peak->logSigma);
+    flank.reason = formatted("the peak is known to %.0f %% only", 100 * peak->logSigma);
   else
-    skirt.trusted = true;
-  return skirt;
+    flank.trusted = true;
+  return flank;
 }
 
-bool reachesLevel(const ClippedSkirt& skirt, double level) {
-  return skirt.trusted && level * skirt.peak->value < kHighestContour * skirt.clipHeight;
+bool reachesLevel(const ClippedFlank& flank, double level) {
+  return flank.trusted && level * flank.peak->value < kHighestContour * flank.clipHeight;
 }
 
-void noteContour(ClippedSkirt& skirt, double level, double reference, const Polyline& contour) {
+void noteContour(ClippedFlank& flank, double level, double reference, const Polyline& contour) {
   constexpr double kSamePeak = 1 - 1e-9;  // round-off
-  skirt.levelAsked = level;
-  skirt.contourValue = level * reference;
-  skirt.outsideCore = reachesLevel(skirt, level) && skirt.contourValue < kHighestContour * skirt.clipHeight &&
-                      reference >= kSamePeak * skirt.peak->value;
-  skirt.sigmaPx = 0;
+  flank.levelAsked = level;
+  flank.contourValue = level * reference;
+  flank.outsideCore = reachesLevel(flank, level) && flank.contourValue < kHighestContour * flank.clipHeight &&
+                      reference >= kSamePeak * flank.peak->value;
+  flank.sigmaPx = 0;
   const double round = length(contour), area = std::abs(signedArea(contour));
   if (!(round > 0) || !(area > 0)) return;
-  if (!skirt.peak || !skirt.trusted) {
-    skirt.sigmaPx = std::sqrt(area / M_PI / 3);  // of anything between none and the whole radius, equally likely
+  if (!flank.peak || !flank.trusted) {
+    flank.sigmaPx = std::sqrt(area / M_PI / 3);  // of anything between none and the whole radius, equally likely
     return;
   }
   // A background that is too high lowers the peak, too: the two add up.
-  const double wanted = level * std::max(reference, skirt.peak->value);
-  const double off = skirt.peak->logSigma + (1 - level) * skirt.backgroundSigma / skirt.contourValue;
-  const double lower = skirt.peak->areaAt(wanted * std::exp(-off)), higher = skirt.peak->areaAt(wanted * std::exp(off));
-  skirt.sigmaPx = (lower - higher) / (2 * round);
-  if (!skirt.outsideCore) {
-    const double shrunk = std::clamp(skirt.peak->areaAt(wanted) / skirt.peak->areaAt(skirt.contourValue), 0.0, 1.0);
-    skirt.sigmaPx += area * (1 - shrunk) / (round * (1 + std::sqrt(shrunk)) / 2);  // between similar lines: area over mean length
+  const double wanted = level * std::max(reference, flank.peak->value);
+  const double off = flank.peak->logSigma + (1 - level) * flank.backgroundSigma / flank.contourValue;
+  const double lower = flank.peak->areaAt(wanted * std::exp(-off)), higher = flank.peak->areaAt(wanted * std::exp(off));
+  flank.sigmaPx = (lower - higher) / (2 * round);
+  if (!flank.outsideCore) {
+    const double shrunk = std::clamp(flank.peak->areaAt(wanted) / flank.peak->areaAt(flank.contourValue), 0.0, 1.0);
+    flank.sigmaPx += area * (1 - shrunk) / (round * (1 + std::sqrt(shrunk)) / 2);  // between similar lines: area over mean length
   }
 }
 
-std::string inWords(const ClippedSkirt& skirt) {
-  if (!skirt.peak)
+std::string inWords(const ClippedFlank& flank) {
+  if (!flank.peak)
     return formatted("the peak cannot be told (%s): contour at %g of the clip value, too large by an unknown part of its radius",
-                     skirt.reason.c_str(), skirt.levelAsked);
-  const double times = skirt.peak->value / skirt.clipHeight, pct = 100 * skirt.peak->logSigma;
+                     flank.reason.c_str(), flank.levelAsked);
+  const double times = flank.peak->value / flank.clipHeight, pct = 100 * flank.peak->logSigma;
   const std::string peak = formatted("peak about %.2g times the clip value (+-%.0f %%), from %zu levels of the slope", times, pct,
-                                     skirt.levels.size());
-  if (skirt.outsideCore)
-    return peak + formatted(": contour at %g of it, outside of the core (+-%.2g px)", skirt.levelAsked, skirt.sigmaPx);
-  const double own = skirt.contourValue / skirt.peak->value;
-  if (!skirt.trusted)
+                                     flank.levels.size());
+  if (flank.outsideCore)
+    return peak + formatted(": contour at %g of it, outside of the core (+-%.2g px)", flank.levelAsked, flank.sigmaPx);
+  const double own = flank.contourValue / flank.peak->value;
+  if (!flank.trusted)
     return peak + formatted("; not relied on (%s): contour at %g of the clip value, too large by an unknown part of its radius",
-                            skirt.reason.c_str(), skirt.levelAsked);
+                            flank.reason.c_str(), flank.levelAsked);
   return peak + formatted(": level %g lies inside the clipped core, the contour at about %.2g, too large by %.2g px or less",
-                          skirt.levelAsked, own, skirt.sigmaPx);
+                          flank.levelAsked, own, flank.sigmaPx);
 }
 
 }  // namespace glint

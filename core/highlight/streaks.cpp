@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/highlight/tongues.h"
+#include "core/highlight/streaks.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -10,12 +10,12 @@
 namespace glint {
 namespace {
 
-constexpr double kNarrowShare = 0.1;   // of the largest disc: half the width of what counts as a tongue
+constexpr double kNarrowShare = 0.1;   // of the largest disc: half the width of what counts as a streak
 constexpr double kSticksOut = 0.5;     // of the opening disc: a corner of 90 degrees sticks out by 0.41 of it
 constexpr double kFineCells = 8;       // samples across the opening disc's radius: distances are then right to a tenth of it
 constexpr double kMostCells = 4e6;     // of the sampled region: 16 MB a picture
 constexpr double kThinPx = 2;          // radius of a region in which pixels do not show what is narrow
-constexpr double kLargeShare = 0.2;    // of the largest piece's area: then a neck joins two highlights, no tongue
+constexpr double kLargeShare = 0.2;    // of the largest piece's area: then a neck joins two highlights, not a streak
 constexpr double kRimCells = 0.5;      // from the line to the first cell outside, about
 constexpr int kFrame = 2;              // cells around the region
 constexpr double kFirstSamples = 128;  // across the region, to find the largest disc to half a percent
@@ -91,8 +91,8 @@ double largestDiscInside(const Polyline& line) {
   return std::max(0.0, depthInside(region, depth) - kRimCells) / region.cellsPerPx;
 }
 
-TongueCut withoutTongues(const Polyline& line) {
-  TongueCut result;
+StreakCut withoutStreaks(const Polyline& line) {
+  StreakCut result;
   result.line = line;
   result.radiusPx = largestDiscInside(line);
   if (result.radiusPx < kThinPx) return result;
@@ -103,7 +103,7 @@ TongueCut withoutTongues(const Polyline& line) {
   const double narrow = narrowPx * region.cellsPerPx;
   const cv::Mat middles = middlesOf(depth, narrow + kRimCells);
   cv::distanceTransform(~middles, away, cv::DIST_L2, cv::DIST_MASK_PRECISE);
-  // Of each point: how far it lies outside of all opening discs, in their radii, zero at the cut.
+  // How far each point lies outside of all opening discs, in their radii, zero at the cut.
   const std::size_t n = line.points.size();
   std::vector<double> out(n);
   for (std::size_t i = 0; i < n; ++i) out[i] = bilinear(away, region.toCells(line.points[i])) / narrow - 1 - kSticksOut;

@@ -4,7 +4,7 @@
 #include "tests/core/fit/coloured_scene.h"
 
 /// Frames of a lobe on coloured paint under a soft shadow, seen through a lens: the truth is the lobe's contour in ideal pixels.
-namespace glint::parted_evidence_tests {
+namespace glint::separated_evidence_tests {
 namespace {
 
 using test::Coloured;
@@ -15,8 +15,8 @@ TEST(PartEvidence, TheContourIsTheLobesInIdealPixels) {
     FrameEvidence evidence = c.detected();
     ASSERT_EQ(evidence.highlights.size(), 1u);
     const double before = test::meanDistance(evidence.highlights[0].contour, c.blob.levelSet(0.5));
-    const Parting parting = partEvidence(c.scene, 0, FrameSource::Radiance, Settings{}, evidence);
-    ASSERT_TRUE(parting.parted) << parting.reason;
+    const SpecularSeparation separation = separateEvidence(c.scene, 0, FrameSource::Radiance, Settings{}, evidence);
+    ASSERT_TRUE(separation.separated) << separation.reason;
     const double after = test::meanDistance(evidence.highlights[0].contour, c.blob.levelSet(0.5));
     EXPECT_LT(after, 0.1) << distorted;
     EXPECT_GT(before, 3 * after) << distorted;
@@ -31,13 +31,14 @@ TEST(PartEvidence, DegenerateFramesKeepTheirHighlightsAndSayWhy) {
   FrameEvidence evidence = grey.detected();
   ASSERT_EQ(evidence.highlights.size(), 1u);
   const std::vector<Pixel> before = evidence.highlights[0].contour.points;
-  EXPECT_EQ(partEvidence(grey.scene, 0, FrameSource::Radiance, Settings{}, evidence).reason, "the image is grey");
+  EXPECT_EQ(separateEvidence(grey.scene, 0, FrameSource::Radiance, Settings{}, evidence).reason, "the image is grey");
   EXPECT_EQ(evidence.highlights[0].contour.points, before);
   FrameEvidence none;
-  EXPECT_EQ(partEvidence(grey.scene, 0, FrameSource::Radiance, Settings{}, none).reason, "there is no highlight");
+  EXPECT_EQ(separateEvidence(grey.scene, 0, FrameSource::Radiance, Settings{}, none).reason, "there is no highlight");
   evidence.highlights[0].fromScene = true;
-  EXPECT_EQ(partEvidence(grey.scene, 0, FrameSource::Radiance, Settings{}, evidence).reason, "the scene gives the highlights");
+  EXPECT_EQ(separateEvidence(grey.scene, 0, FrameSource::Radiance, Settings{}, evidence).reason,
+            "the scene gives the highlights");
 }
 
 }  // namespace
-}  // namespace glint::parted_evidence_tests
+}  // namespace glint::separated_evidence_tests

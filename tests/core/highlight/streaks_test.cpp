@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/highlight/tongues.h"
+#include "core/highlight/streaks.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include "core/highlight/highlight.h"
 #include "highlight_images.h"
 
-namespace glint::tongues_test {
+namespace glint::streaks_test {
 namespace {
 
 /// An ellipse with semi-axes a, b about the origin, on whose upper side a bar of half-width w and length l stands at x = 0.
@@ -38,14 +38,14 @@ Polyline ellipseLine(double a, double b, int n = 600) {
 }
 
 /// What may be left of the bar: half of the opening disc's radius, its bulge between the corners at the bar's foot, and a sample.
-double stumpPx(const TongueCut& cut, double w) {
+double stumpPx(const StreakCut& cut, double w) {
   const double r = 0.1 * cut.radiusPx;
   return 0.5 * r + r - std::sqrt(r * r - w * w) + 0.3;
 }
 
-TEST(WithoutTongues, NominalABarIsCutOff) {
+TEST(WithoutStreaks, NominalABarIsCutOff) {
   const EllipseWithBar shape;
-  const TongueCut cut = withoutTongues(shape.line());
+  const StreakCut cut = withoutStreaks(shape.line());
   EXPECT_NEAR(cut.radiusPx, shape.b, 0.5);
   EXPECT_NEAR(cut.cutPx2, 2 * shape.w * (shape.l - 0.5 * stumpPx(cut, shape.w)), 2 * shape.w * stumpPx(cut, shape.w));
   EXPECT_LT(test::largestDistance(cut.line, ellipseLine(shape.a, shape.b)), stumpPx(cut, shape.w));
@@ -55,28 +55,28 @@ TEST(WithoutTongues, NominalABarIsCutOff) {
   EXPECT_GT(std::abs(with->semiAxes.y() - shape.b), 0.5);  // the bar matters
 }
 
-TEST(WithoutTongues, ScaleTheSameShareIsCutOff) {
+TEST(WithoutStreaks, ScaleTheSameShareIsCutOff) {
   const EllipseWithBar shape;
-  const double share = withoutTongues(shape.line()).cutPx2;
+  const double share = withoutStreaks(shape.line()).cutPx2;
   EXPECT_GT(share, 30);
   for (const double scale : {0.2, 3.0, 30.0}) {
-    const TongueCut cut = withoutTongues(shape.line(scale));
+    const StreakCut cut = withoutStreaks(shape.line(scale));
     EXPECT_NEAR(cut.cutPx2 / (scale * scale), share, 0.05 * share) << scale;
   }
 }
 
-TEST(WithoutTongues, NoiseLeavesTheEllipseAlone) {
+TEST(WithoutStreaks, NoiseLeavesTheEllipseAlone) {
   const EllipseWithBar shape;
   std::mt19937 random(3);
   std::normal_distribution<double> normal(0, 0.15);
   Polyline plain = ellipseLine(shape.a, shape.b, 400), barred = shape.line();
   for (Polyline* line : {&plain, &barred})
     for (Pixel& p : line->points) p += Pixel(normal(random), normal(random));
-  EXPECT_LT(withoutTongues(plain).cutPx2, 1e-3 * M_PI * shape.a * shape.b);
-  EXPECT_LT(test::largestDistance(withoutTongues(barred).line, ellipseLine(shape.a, shape.b)), 1.5 + 0.6);
+  EXPECT_LT(withoutStreaks(plain).cutPx2, 1e-3 * M_PI * shape.a * shape.b);
+  EXPECT_LT(test::largestDistance(withoutStreaks(barred).line, ellipseLine(shape.a, shape.b)), 1.5 + 0.6);
 }
 
-TEST(WithoutTongues, DegenerateShapesStayAsTheyAre) {
+TEST(WithoutStreaks, DegenerateShapesStayAsTheyAre) {
   Polyline square, twoDiscs;
   for (const auto& [from, to] : {std::pair(Pixel(0, 0), Pixel(40, 0)), std::pair(Pixel(40, 0), Pixel(40, 40)),
                                  std::pair(Pixel(40, 40), Pixel(0, 40)), std::pair(Pixel(0, 40), Pixel(0, 0))})
@@ -87,20 +87,21 @@ TEST(WithoutTongues, DegenerateShapesStayAsTheyAre) {
       twoDiscs.points.push_back(Pixel(side == 0 ? -25 : 25, 0) + 20 * Pixel(std::cos(t), std::sin(t)));
     }
   for (const Polyline& line : {square, ellipseLine(90, 6, 2000), ellipseLine(1.5, 1.2), ellipseLine(30, 30)}) {
-    const TongueCut cut = withoutTongues(line);
+    const StreakCut cut = withoutStreaks(line);
     EXPECT_EQ(cut.cutPx2, 0);
     EXPECT_EQ(cut.line.points, line.points);
   }
   const double whole = signedArea(twoDiscs);
-  EXPECT_NEAR(signedArea(withoutTongues(twoDiscs).line), whole, 0.02 * whole);
+  EXPECT_NEAR(signedArea(withoutStreaks(twoDiscs).line), whole, 0.02 * whole);
   for (const Polyline& line : {Polyline{}, Polyline{{{1, 1}}}, Polyline{{{0, 0}, {5, 5}, {9, 9}}}}) {
-    const TongueCut cut = withoutTongues(line);
+    const StreakCut cut = withoutStreaks(line);
     EXPECT_EQ(cut.line.points, line.points);
     EXPECT_EQ(cut.radiusPx, 0);
   }
 }
 
-/// A clipped blob with a streak and a piece of another beside it: the streak is no part of the highlight, the piece none of its own.
+/// A clipped blob with a streak and a piece of another beside it: the streak is no part of the highlight, the piece none of its
+/// own.
 TEST(DetectHighlights, StreaksOfAClippedCoreAreCutOffAndNamed) {
   test::Blob blob;
   blob.a = 40, blob.b = 30, blob.angle = 0, blob.height = 4, blob.centre = {100, 80};
@@ -130,4 +131,4 @@ TEST(DetectHighlights, StreaksOfAClippedCoreAreCutOffAndNamed) {
 }
 
 }  // namespace
-}  // namespace glint::tongues_test
+}  // namespace glint::streaks_test

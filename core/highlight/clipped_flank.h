@@ -14,7 +14,7 @@
 namespace glint {
 
 /// One contour of the slope around a clipped core.
-struct SkirtLevel {
+struct FlankLevel {
   double value = 0;  ///< radiance above the background
   Polyline contour;  ///< closed
   double areaPx2 = 0;
@@ -23,15 +23,15 @@ struct SkirtLevel {
 };
 
 /// What a fit needs of it.
-struct SkirtSample {
+struct FlankSample {
   double value = 0;  ///< above the background, > 0
   double areaPx2 = 0;
   double logSigma = 0;  ///< standard deviation of log(value), noise and pixels; what no profile explains is added by the fit
 };
 
-/// The unclipped peak that continues a skirt: I(A) = K (1 + (A/A0)^p / beta)^-beta, A the area of the contour at I.
+/// The unclipped peak that continues a flank: I(A) = K (1 + (A/A0)^p / beta)^-beta, A the area of the contour at I.
 /// With beta < 0 the lobe ends where the bracket is 0.
-struct SkirtPeak {
+struct FlankPeak {
   double value = 0;     ///< K, above the background
   double logSigma = 0;  ///< standard deviation of log K: noise, background, the profile's shape
   double areaPx2 = 0;   ///< A0
@@ -44,11 +44,11 @@ struct SkirtPeak {
 };
 
 /// The slope around the clipped core of one highlight.
-struct ClippedSkirt {
+struct ClippedFlank {
   double clipHeight = 0;  ///< lowest value above the background at which a channel is clipped: what lies below it is whole
-  std::vector<SkirtLevel> levels;  ///< highest first
-  std::optional<SkirtPeak> peak;   ///< where the levels tell one
-  std::string reason;              ///< in words: why they tell none, or why it is not relied on
+  std::vector<FlankLevel> levels;  ///< highest first
+  std::optional<FlankPeak> peak;   ///< where the levels tell one
+  std::string reason;              ///< in words: why they tell no peak, or why it is not trusted
   bool trusted = false;            ///< the peak is known well enough to set the level of contours
   double levelAsked = 0.5;
   double contourValue = 0;     ///< at which the highlight's contour was taken, above the background
@@ -56,19 +56,19 @@ struct ClippedSkirt {
   double backgroundSigma = 0;  ///< of the background that was taken off
   /// How far the contour may be from that at the level asked for (standard deviation, px). Outside of the core: what the
   /// uncertainties of peak and background move it. Else the contour is too large: by the distance to where the profile has the
-  /// level, and its uncertainty; where no peak is relied on, anything up to the whole radius is as likely.
+  /// level, and its uncertainty; without a trusted peak, anything up to the whole radius is as likely.
   double sigmaPx = 0;
 };
 
-/// Fits the profile to the areas of several levels. log K, A0, p and an offset of the background are fitted for each of nine beta; the answers are averaged by
-/// how well they explain the levels, and their scatter is part of the uncertainty. A narrow peak of its own on top of the core, of which the skirt shows nothing, is in no skirt.
-/// @param samples          at least five, any order. @param backgroundSigma  standard deviation of the background that was taken off
-/// @return TooFewPoints; NotFinite (a value or an area is not positive and finite); NotConverged (areas do not grow as values fall, or so little that the slope
-///         does not show how high it rises)
-Outcome<SkirtPeak> peakFromSkirt(std::span<const SkirtSample> samples, double backgroundSigma);
+/// Fits the profile to the areas of the levels: log K, A0, p and an offset of the background per beta, nine of them. Averages the
+/// answers by how well they explain the levels; their scatter adds to the uncertainty. Misses a narrow peak on top of the core
+/// of which the flank shows nothing. @param samples  at least five, any order. @param backgroundSigma  as in FlankView
+/// @return TooFewPoints; NotFinite (a value or an area is not positive and finite); NotConverged (areas do not grow as values
+///         fall, or so little that the slope does not show how high it rises)
+Outcome<FlankPeak> peakFromFlank(std::span<const FlankSample> samples, double backgroundSigma);
 
 /// Pixels around one clipped highlight; all maps have the size of `corrected`, one entry per pixel.
-struct SkirtView {
+struct FlankView {
   Image corrected;              ///< one channel, background removed; 0 on pixels that are not usable
   std::vector<char> usable;     ///< finite, not negative, on the glossy object
   std::vector<char> saturated;  ///< of this highlight
@@ -77,18 +77,18 @@ struct SkirtView {
   double minAreaPx2 = 12;
 };
 
-/// Traces the slope at up to eleven levels, from just below the clipped core down to the noise, streaks cut off, as long as the contours are those of one
-/// highlight (one around the other, of like shape, growing no faster than a lobe's, on usable pixels, within the view), and estimates the peak.
-ClippedSkirt traceSkirt(const SkirtView& view);
+/// Traces the slope at up to eleven levels, from just below the clipped core down to noise, without streaks, while the contours
+/// belong to one highlight (nested, alike, growing no faster than a lobe's, on usable pixels, in view). Estimates the peak.
+ClippedFlank traceFlank(const FlankView& view);
 
-/// The contour at `level` of the estimated peak lies outside of the clipped core, and the peak is relied on.
-bool reachesLevel(const ClippedSkirt& skirt, double level);
+/// The contour at `level` of the estimated peak lies outside of the clipped core, and the peak is trusted.
+bool reachesLevel(const ClippedFlank& flank, double level);
 
 /// Notes at which value the contour was taken, and what the peak's uncertainty does to it.
-/// @param reference  above the background, whose fraction `level` the value is: the peak of this skirt, or a stronger one
-void noteContour(ClippedSkirt& skirt, double level, double reference, const Polyline& contour);
+/// @param reference  above the background, whose fraction `level` the value is: the peak of this flank, or a stronger one
+void noteContour(ClippedFlank& flank, double level, double reference, const Polyline& contour);
 
 /// Where the contour lies and why, in words.
-std::string inWords(const ClippedSkirt& skirt);
+std::string inWords(const ClippedFlank& flank);
 
 }  // namespace glint

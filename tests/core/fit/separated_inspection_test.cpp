@@ -4,7 +4,7 @@
 #include "core/report/warnings.h"
 #include "tests/core/fit/coloured_scene.h"
 
-namespace glint::parted_inspection_tests {
+namespace glint::separated_inspection_tests {
 
 using test::Coloured;
 
@@ -29,21 +29,21 @@ Inspection inspectionOf(const Coloured& c, FrameEvidence evidence) {
 TEST(ColoursAsBackground, TheContourIsTheLobesAndNothingIsWarnedOf) {
   for (const bool distorted : {false, true}) {
     const Coloured c(false, distorted);
-    const FrameEvidence smooth = evidenceOf(c, "smooth"), parted = evidenceOf(c, "colours");
-    EXPECT_LT(errorPx(c, parted), 0.1);
-    EXPECT_GT(errorPx(c, smooth), 3 * errorPx(c, parted));
-    EXPECT_EQ(parted.notParted, "");
-    EXPECT_TRUE(warningsOf(inspectionOf(c, parted)).empty());
+    const FrameEvidence smooth = evidenceOf(c, "smooth"), separated = evidenceOf(c, "colours");
+    EXPECT_LT(errorPx(c, separated), 0.1);
+    EXPECT_GT(errorPx(c, smooth), 3 * errorPx(c, separated));
+    EXPECT_EQ(separated.notSeparated, "");
+    EXPECT_TRUE(warningsOf(inspectionOf(c, separated)).empty());
   }
 }
 
 TEST(ColoursAsBackground, GreyFramesKeepTheSmoothOneAndSayWhy) {
   const Coloured c(true, false);
-  const FrameEvidence smooth = evidenceOf(c, "smooth"), parted = evidenceOf(c, "colours");
-  EXPECT_EQ(parted.highlights.at(0).contour.points, smooth.highlights.at(0).contour.points);
-  EXPECT_EQ(parted.notParted, "the image is grey");
-  EXPECT_EQ(smooth.notParted, "") << "nobody asked";
-  const std::vector<std::string> warnings = warningsOf(inspectionOf(c, parted));
+  const FrameEvidence smooth = evidenceOf(c, "smooth"), separated = evidenceOf(c, "colours");
+  EXPECT_EQ(separated.highlights.at(0).contour.points, smooth.highlights.at(0).contour.points);
+  EXPECT_EQ(separated.notSeparated, "the image is grey");
+  EXPECT_EQ(smooth.notSeparated, "") << "nobody asked";
+  const std::vector<std::string> warnings = warningsOf(inspectionOf(c, separated));
   ASSERT_EQ(warnings.size(), 1U);
   EXPECT_EQ(warnings[0],
             "colours do not tell what is specular, and the smooth background is used, in frame 0 (the image is grey)");
@@ -55,7 +55,7 @@ TEST(ColoursAsBackground, ReasonsAreListedWithTheirFrames) {
   for (int f = 0; f < 5; ++f) {
     scene.frames.emplace_back().id = "00" + std::to_string(20 + f);
     r.evidence.emplace_back().frame = f;
-    r.evidence.back().notParted = f == 1 ? "too much noise" : f == 3 ? "" : "the image is grey";
+    r.evidence.back().notSeparated = f == 1 ? "too much noise" : f == 3 ? "" : "the image is grey";
   }
   r.scene = std::make_shared<const Scene>(std::move(scene));
   r.request.excluded = {4};
@@ -67,4 +67,4 @@ TEST(ColoursAsBackground, ReasonsAreListedWithTheirFrames) {
       "0021 (too much noise)");
 }
 
-}  // namespace glint::parted_inspection_tests
+}  // namespace glint::separated_inspection_tests
