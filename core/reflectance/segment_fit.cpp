@@ -18,7 +18,7 @@ constexpr std::size_t kLeastFrames = 3;  // that a comparison of left-out ones n
 constexpr int kAxisScreenPoints = 16, kAxisScreenIterations = 20;
 constexpr std::size_t kPromisingAxes = 3;
 constexpr int kLeftOutPoints = 24;  // a view: enough to compare two models
-constexpr double kSamePlace =
+constexpr double kSameSegment =
     1e-2;  // of a unit vector L, log m and the half axis over the distance: far less than a basin is wide
 constexpr double kStartLength = 0.1;  // half the lamp's length over its distance
 // Where a lamp's length takes a part of the width that is seen, the lobe is narrower than the contours; both are tried.
@@ -34,7 +34,7 @@ struct Start {
   bool isNear(const Start& other) const {
     lobe::Parameters turned = other.place;
     turned.tail<3>() *= -1;
-    return std::min((place - other.place).norm(), (place - turned).norm()) < kSamePlace;
+    return std::min((place - other.place).norm(), (place - turned).norm()) < kSameSegment;
   }
 };
 
