@@ -5,6 +5,8 @@
   docs/make_trust.py            renders the page; exit 1 if a piece is not in the format
   docs/make_trust.py --check    says whether the page matches the pieces; exit 1 if not
   docs/make_trust.py piece NAME --what TEXT --command TEXT [--row NAME COUNT FINDINGS NOTE]...
+  docs/make_trust.py times NAME=SECONDS...
+                                keeps in docs/trust/times.json how long these searches took; the times of others stay
   docs/make_trust.py row FILE --what TEXT --command TEXT --row NAME COUNT FINDINGS NOTE... [--needs NAME]...
                                 adds these rows, each with today's date; other rows stay, and needed rows that are absent are shown as missing
 """
@@ -19,6 +21,7 @@ import sys
 root = pathlib.Path(__file__).resolve().parent.parent
 page = root / "docs/trust.md"
 pieces = root / "docs/trust"
+times = pieces / "times.json"
 begin, end = "<!-- table -->\n", "<!-- end of table -->\n"
 
 # In the page's order: the piece, what it is about, and the command that writes it.
@@ -95,6 +98,8 @@ def render():
     """The table and the details, and what is wrong with pieces."""
     found, problems = {}, []
     for file in sorted(pieces.glob("*.json")):
+        if file == times:
+            continue
         try:
             found[file.stem] = checked(json.loads(file.read_text(encoding="utf-8")))
         except (ValueError, NotAPiece) as error:
@@ -123,7 +128,24 @@ def render():
                     "| name | count | findings | note |", "|---|---:|---:|---|"]
         details += [f"| {shown(r['name'])} | {r['count']:,} | {r['findings']:,} | {shown(r['note'])} |" for r in piece["rows"]]
         details += [f"| {shown(row)} | missing | | |" for row in absent]
-    return "\n".join(head + details) + "\n", problems
+    return "\n".join(head + duration() + details) + "\n", problems
+
+
+def duration():
+    """What the searches of tests/run_nightly took when each ran last."""
+    if not times.exists():
+        return []
+    took = json.loads(times.read_text(encoding="utf-8"))
+    said = [f"{name} {one['seconds'] / 60:.0f} ({one['date']})" for name, one in took.items()]
+    return ["", f"Minutes of `tests/run_nightly` on {max(one['cores'] for one in took.values())} cores: {', '.join(said)}; together {sum(one['seconds'] for one in took.values()) / 3600:.1f} hours."]
+
+
+def writeTimes(arguments):
+    took = json.loads(times.read_text(encoding="utf-8")) if times.exists() else {}
+    for name, seconds in (pair.split("=") for pair in arguments.times):
+        took[name] = {"seconds": int(seconds), "date": today(), "cores": os.cpu_count()}
+    pieces.mkdir(exist_ok=True)
+    replaceFile(times, json.dumps(took, indent=2) + "\n")
 
 
 def replaceFile(file, text):
@@ -187,11 +209,15 @@ def main():
     row.add_argument("--command", required=True)
     row.add_argument("--row", nargs=4, action="append", required=True, metavar=("NAME", "COUNT", "FINDINGS", "NOTE"))
     row.add_argument("--needs", action="append", default=[], metavar="NAME", help="a row that a complete piece needs")
+    took = commands.add_parser("times", help="how long searches took")
+    took.add_argument("times", nargs="*", metavar="NAME=SECONDS")
     arguments = parser.parse_args()
     if arguments.verb == "piece":
         return writePiece(arguments)
     if arguments.verb == "row":
         return writeRows(arguments)
+    if arguments.verb == "times":
+        return writeTimes(arguments)
     body, problems = render()
     head, rest = page.read_text(encoding="utf-8").split(begin)
     text = head + begin + body + end + rest.split(end)[1]

@@ -42,7 +42,7 @@ RadianceFit described(RadianceProblem& problem, const Attempt& a, std::size_t vi
 double gainBySize(RadianceProblem& problem, const State& point) {
   if (point.atInfinity()) return 0;  // there a size has no meaning, only an angle
   State grown = point;
-  grown.lamp.shape = SphereShape<>::of(point.lengthOf(kProbe));
+  grown.lamp.shape = SphereShape<>::of(point.lengthOf(kProbedSize));
   const RadianceProblem::Probe found = problem.probe(point, {{grown, point}});
   return found.extra(0) > 0 ? found.gain : 0;
 }

@@ -11,10 +11,8 @@
 namespace glint {
 namespace {
 
-using patch::Attempt;
 using patch::FramePatches;
 using patch::PixelProblem;
-using patch::State;
 
 constexpr double kSearchTolerance = 1e-4;   // of fits that only choose a start or a background
 constexpr double kMicrofacetMargin = 0.02;  // of the cost, by which a cosine power must be better than a microfacet lobe
@@ -57,7 +55,7 @@ class Cells {
 };
 
 /// Bayesian information criterion of a fit to n cells, up to a constant.
-double criterion(const Attempt& a, const patch::Normalised& evidence, BackgroundKind kind) {
+double criterion(const patch::Attempt& a, const patch::Normalised& evidence, BackgroundKind kind) {
   double unknowns = 4;
   for (const FramePatches& f : evidence.frames) unknowns += 1 + patch::coefficientsOf(kind) * double(f.patches.size());
   const double n = static_cast<double>(evidence.cells);
@@ -65,9 +63,9 @@ double criterion(const Attempt& a, const patch::Normalised& evidence, Background
   return n * std::log(a.cost / n + 1e-14) + unknowns * std::log(n);
 }
 
-Lamp inWorld(const State& at, const patch::Normalised& n) { return fromNormalised(at.lamp, n.origin, n.scale); }
+Lamp inWorld(const patch::State& at, const patch::Normalised& n) { return fromNormalised(at.lamp, n.origin, n.scale); }
 
-State stateOf(const LobeModel& model, const patch::Normalised& n) {
+patch::State stateOf(const LobeModel& model, const patch::Normalised& n) {
   return {{normalised(model.lamp, n.origin, n.scale), std::log(model.roughness)}, model.blurVariance};
 }
 
@@ -86,16 +84,16 @@ class Search {
   struct Candidate {
     Lobe lobe;
     BackgroundKind kind;
-    Attempt attempt;
+    patch::Attempt attempt;
     double criterion;
   };
 
   /// The kinds of background with the lobe that comes first; then all lobes with all kinds, each from the best so far, and once more
   /// from the best of all: a start far off may have held one back. Nothing where no lobe reaches the pixels.
-  std::optional<Candidate> run(const std::vector<Lobe>& lobes, const State& start) {
+  std::optional<Candidate> run(const std::vector<Lobe>& lobes, const patch::State& start) {
     for (const Lobe lobe : lobes) {
       const Candidate* best = least([](const Candidate&) { return true; });
-      const State from = best ? best->attempt.at : start;
+      const patch::State from = best ? best->attempt.at : start;
       for (const BackgroundKind kind :
            {BackgroundKind::None, BackgroundKind::Cosine, BackgroundKind::SlopedCosine, BackgroundKind::Quadratic})
         // A lamp with an extent takes long: the first lobe tells which backgrounds compete.
@@ -115,7 +113,7 @@ class Search {
   int iterations() const { return iterations_; }
 
  private:
-  void tryOut(Lobe lobe, BackgroundKind kind, const State& from) {
+  void tryOut(Lobe lobe, BackgroundKind kind, const patch::State& from) {
     PixelProblem problem(evidence_, lobe, kind);
     patch::SolveOptions solving{false, options_.maxIterations, kSearchTolerance, kSearchTolerance};
     solving.progress = options_.progress;
@@ -123,7 +121,7 @@ class Search {
       solving.mostEvaluations = kMostEvaluations;
       solving.work = kExtentWork;
     }
-    const Attempt a = patch::solve(problem, from, solving);
+    const patch::Attempt a = patch::solve(problem, from, solving);
     iterations_ += a.iterations;
     if (std::isfinite(a.cost)) candidates_.push_back({lobe, kind, a, criterion(a, evidence_, kind)});
   }
@@ -158,7 +156,7 @@ Outcome<std::vector<PatchSolution>> solvePatches(const std::vector<const PixelPa
   const patch::Normalised n = patch::normalised(patches);
   require(n.frames.size() == 1, "solvePatches: patches of one frame");
   PixelProblem pixels(n, model.lobe, background);
-  const State at = stateOf(model, n);
+  const patch::State at = stateOf(model, n);
   pixels.chooseRule(at);
   std::vector<double> residuals(static_cast<std::size_t>(pixels.residuals()));
   if (!pixels.residualsAt(at, residuals.data()) || !pixels.solutions()[0].solved)
@@ -215,7 +213,7 @@ Outcome<PixelFit> fitPixels(const std::vector<Lobe>& lobes, const std::vector<co
   int iterations = search.iterations();
 
   // In full, as far as an extended lamp lets it, then with a blur where it shows.
-  const State found = chosen->attempt.at;
+  const patch::State found = chosen->attempt.at;
   const LobeModel start{chosen->lobe, found.roughness(), inWorld(found, few), 0};
   while (!lamp.isPoint() && evaluationsOf(start, full.all()) > kMostEvaluations &&
          (full.coarsen() || full.coarsen(kFewestFrom))) {
@@ -228,15 +226,15 @@ Outcome<PixelFit> fitPixels(const std::vector<Lobe>& lobes, const std::vector<co
     solving.mostEvaluations = 4 * kMostEvaluations;  // it may grow a little more
     solving.work = kExtentWork;
   }
-  Attempt a = patch::solve(problem, stateOf(start, fine), solving);
+  patch::Attempt a = patch::solve(problem, stateOf(start, fine), solving);
   iterations += a.iterations;
   if (!std::isfinite(a.cost)) return Failure{Reason::NotConverged, "pixels"};
   bool blur = false;
   if (options.blur && (lamp.isPoint() || a.converged)) {
-    State blurred = a.at;
+    patch::State blurred = a.at;
     blurred.blurVariance = 1;
     solving.blur = true;
-    const Attempt b = patch::solve(problem, blurred, solving);
+    const patch::Attempt b = patch::solve(problem, blurred, solving);
     iterations += b.iterations;
     if ((blur = b.cost < (1 - kClearGain) * a.cost)) a = b;
   }
@@ -247,7 +245,7 @@ Outcome<PixelFit> fitPixels(const std::vector<Lobe>& lobes, const std::vector<co
   // All pixels say what it leaves, so that fits can be compared.
   const patch::Normalised whole = patch::normalised(patches);
   PixelProblem described(whole, chosen->lobe, chosen->kind);
-  const State at = stateOf(fit.model, whole);
+  const patch::State at = stateOf(fit.model, whole);
   described.chooseRule(at);
   std::vector<double> residuals(whole.cells);
   if (!described.residualsAt(at, residuals.data())) return Failure{Reason::NotConverged, "pixels"};

@@ -19,9 +19,9 @@ constexpr std::size_t kLeastFrames = 3;  // that a comparison of left-out ones n
 constexpr int kAxisScreenPoints = 16, kAxisScreenIterations = 20;
 constexpr std::size_t kPromisingAxes = 3;
 constexpr int kLeftOutPoints = 24;  // a view: enough to compare two models
-constexpr double kSamePlace =
-    1e-2;                       // of a unit vector L, log m and the half axis over the distance: far less than a basin is wide
-constexpr double kProbe = 0.4;  // of the lobe's width, as angles of the light: a length that would show little
+constexpr double kSameSegment =
+    1e-2;  // of a unit vector L, log m and the half axis over the distance: far less than a basin is wide
+constexpr double kProbedLength = 0.4;  // of the lobe's width, as angles of the light: it would show little
 constexpr double kStartLength = 0.1;  // half the lamp's length over its distance
 // Where a lamp's length takes a part of the width that is seen, the lobe is narrower than the contours; both are tried.
 constexpr std::array<double, 2> kStartWidths{0.7, 0.35};
@@ -37,7 +37,7 @@ struct Start {
     lobe::State turned = other.place;
     std::get<SegmentShape<>>(turned.lamp.shape).halfAxis *= -1;
     const Eigen::VectorXd at = place.place();
-    return std::min((at - other.place.place()).norm(), (at - turned.place()).norm()) < kSamePlace;
+    return std::min((at - other.place.place()).norm(), (at - turned.place()).norm()) < kSameSegment;
   }
 };
 
@@ -53,7 +53,7 @@ Promise gainByLength(lobe::RadianceProblem& problem, const lobe::State& point) {
   // Second moments across the mean direction to the light; a length along it would hardly be seen.
   const Eigen::Vector3d towards = point.lamp.centre.head<3>().normalized();
   const Eigen::Vector3d u = towards.unitOrthogonal(), v = towards.cross(u);
-  const double length = point.lengthOf(kProbe);
+  const double length = point.lengthOf(kProbedLength);
   std::vector<lobe::RadianceProblem::ProbeColumn> columns;
   for (const Eigen::Vector3d& axis : {u, v, Eigen::Vector3d((u + v) / std::sqrt(2.0))}) {
     // Against a segment too short to be seen: the sine of the angle to the axis is there for any length.

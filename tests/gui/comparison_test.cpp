@@ -27,7 +27,7 @@ class ComparisonTest : public QObject {
  private slots:
   void init() {
     problem_.clear();
-    window_ = std::make_unique<MainWindow>(coreEngine());
+    window_ = std::make_unique<MainWindow>(knownEngine());
     connect(window_.get(), &MainWindow::problem, this, [this](const QString& line) { problem_ = line; });
     window_->show();
     window_->open(QStringLiteral(GLINT_SOURCE_DIR "/sessions/plane/plane.glint"));

@@ -36,7 +36,7 @@ class ExplainTest : public QObject {
   Q_OBJECT
  private slots:
   void initTestCase() {
-    window_ = std::make_unique<MainWindow>(coreEngine());
+    window_ = std::make_unique<MainWindow>(knownEngine());
     window_->show();
     window_->open(QStringLiteral(GLINT_SOURCE_DIR "/sessions/plane-to-cylinder/plane-to-cylinder.glint"));
     QTRY_VERIFY_WITH_TIMEOUT(window_->document().scene() && window_->idle() && window_->document().inspection(), 120000);
@@ -353,7 +353,7 @@ class ExplainTest : public QObject {
 
   /// On a bulging mirror it is several times as large as the highlight, and would not be in sight where that fills half the view.
   void theFrameViewHoldsTheCanonicalEllipse() {
-    MainWindow window(coreEngine());
+    MainWindow window(knownEngine());
     window.show();
     window.open(QStringLiteral(GLINT_SOURCE_DIR "/sessions/lessons/sphere/sphere.glint"));
     Document& document = window.document();

@@ -42,7 +42,7 @@ class ExportTest : public QObject {
   Q_OBJECT
  private slots:
   void init() {
-    window_ = std::make_unique<MainWindow>(coreEngine());
+    window_ = std::make_unique<MainWindow>(knownEngine());
     window_->show();
     window_->open(QString::fromUtf8(kSession));
     QTRY_VERIFY_WITH_TIMEOUT(window_->document().scene() && window_->idle() && window_->document().inspection(), 60000);

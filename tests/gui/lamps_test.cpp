@@ -57,7 +57,7 @@ class LampsTest : public QObject {
   void init() { folder_ = std::make_unique<QTemporaryDir>(); }
 
   void theLampsOfASceneAreThoseOfTheCommand() {
-    MainWindow window(coreEngine());
+    MainWindow window(knownEngine());
     window.resize(1500, 950);
     window.show();
     window.open(kTwoLamps);
@@ -90,7 +90,7 @@ class LampsTest : public QObject {
     Opened opened = openInput(kTwoLamps.toStdString());
     opened.options["lamps/measured"] = "1";
     saveSession(opened, nullptr, file);
-    MainWindow window(coreEngine());
+    MainWindow window(knownEngine());
     window.resize(1500, 950);
     window.show();
     window.open(toQString(file));
@@ -105,7 +105,7 @@ class LampsTest : public QObject {
   }
 
   void stoppingLeavesNothing() {
-    Engine engine = coreEngine();
+    Engine engine = knownEngine();
     std::atomic<bool> running{false};
     engine.lamps = [&running](const std::shared_ptr<const Scene>&, const InspectionRequest&, const std::string&,
                               const ProgressFn& go, const Inspection*) -> LampsReport {
@@ -134,7 +134,7 @@ class LampsTest : public QObject {
   }
 
   void aFailureIsOneLine() {
-    Engine engine = coreEngine();
+    Engine engine = knownEngine();
     engine.lamps = [](const std::shared_ptr<const Scene>&, const InspectionRequest&, const std::string&, const ProgressFn&,
                       const Inspection*) -> LampsReport { throw InputError("a.png", "frame 3", "is damaged"); };
     MainWindow window(engine);

@@ -45,7 +45,7 @@ class LessonsTest : public QObject {
  private slots:
   void initTestCase() {
     qputenv("GLINT_LESSONS", GLINT_SOURCE_DIR "/sessions/lessons");
-    window_ = std::make_unique<MainWindow>(coreEngine());
+    window_ = std::make_unique<MainWindow>(knownEngine());
     window_->show();
     panel_ = window_->findChild<ExplainPanel*>();
     QVERIFY(panel_);

@@ -47,12 +47,13 @@ void writeChecked(const QString& file, QColor other) {
 class RetextureTest : public QObject {
   Q_OBJECT
  private slots:
+  void initTestCase() {
+    copyFolder(QStringLiteral(GLINT_SOURCE_DIR "/sessions/ellipsoid"), folder_.path() + "/in");
+    session_ = folder_.path() + "/in/ellipsoid.glint";
+    writeChecked(folder_.path() + "/in/texture.png", QColor(40, 170, 200));
+  }
   void init() {
-    folder_ = std::make_unique<QTemporaryDir>();
-    copyFolder(QStringLiteral(GLINT_SOURCE_DIR "/sessions/ellipsoid"), folder_->path() + "/in");
-    session_ = folder_->path() + "/in/ellipsoid.glint";
-    writeChecked(folder_->path() + "/in/texture.png", QColor(40, 170, 200));
-    window_ = std::make_unique<MainWindow>(coreEngine());
+    window_ = std::make_unique<MainWindow>(knownEngine(session_));
     window_->show();
     window_->open(session_);
     settle();
@@ -65,7 +66,7 @@ class RetextureTest : public QObject {
     QVERIFY(bar().isVisible());
     QVERIFY2(words().contains("Choose a picture"), qPrintable(words()));
     QVERIFY(!canvas().comparing());
-    choose(folder_->path() + "/in/texture.png");
+    choose(folder_.path() + "/in/texture.png");
     settle();
     QVERIFY(canvas().comparing());
     QCOMPARE(option("frame/retexture-texture"), std::string("texture.png"));  // relative: the session can be moved
@@ -74,20 +75,20 @@ class RetextureTest : public QObject {
       s.model = model;
       s.frame = 7;
       document().select(s);
-      compareWithCommand({"--texture", folder_->path() + "/in/texture.png"}, model);
+      compareWithCommand({"--texture", folder_.path() + "/in/texture.png"}, model);
     }
     document().setOption("frame/retexture-mapping", "box", "box");
     document().setOption("frame/retexture-repeat", 3.0, "three");
     document().setOption("frame/retexture-shading", "frame", "shading");
     document().setOption("frame/retexture-albedo", 0.4, "albedo");
-    compareWithCommand({"--texture", folder_->path() + "/in/texture.png", "--mapping", "box", "--repeat", "3", "--shading",
+    compareWithCommand({"--texture", folder_.path() + "/in/texture.png", "--mapping", "box", "--repeat", "3", "--shading",
                         "frame", "--albedo", "0.4"},
                        "limit-angle");
     document().setOption("frame/retexture", "removed", "removed");
     document().setOption("frame/retexture-margin", 7.0, "margin");
     compareWithCommand({"--remove", "--margin", "7"}, "limit-angle");
-    const QString plain = folder_->path() + "/plain.png";
-    QVERIFY(QFile::copy(folder_->path() + "/in/frames/0007.png", plain));
+    const QString plain = folder_.path() + "/plain.png";
+    QVERIFY(QFile::copy(folder_.path() + "/in/frames/0007.png", plain));
     document().setOption("frame/retexture", "background", "background");
     settle();
     choose(plain);
@@ -106,7 +107,7 @@ class RetextureTest : public QObject {
     settle();
     QVERIFY(bar().result() && bar().result() != first && bar().result()->picture.data != first->picture.data);
     compareWithCommand(
-        {"--texture", folder_->path() + "/in/texture.png", "--set", "predict.contour=star", "--set", "detect.level=0.4"},
+        {"--texture", folder_.path() + "/in/texture.png", "--set", "predict.contour=star", "--set", "detect.level=0.4"},
         document().plottedModel().c_str());
     document().undoStack()->undo();
     document().undoStack()->undo();
@@ -134,8 +135,8 @@ class RetextureTest : public QObject {
     constexpr double kZoom = 4;  // screen pixels are not smoothed
     c.lookAt(Pixel(share * width, 120), kZoom);
     settle();
-    const QImage photograph(folder_->path() + "/in/frames/0000.png"), made = toQImage(bar().result()->picture),
-                                                                      shown = c.grab().toImage();
+    const QImage photograph(folder_.path() + "/in/frames/0000.png"), made = toQImage(bar().result()->picture),
+                                                                     shown = c.grab().toImage();
     int checked = 0;
     for (int x = 0; x < photograph.width(); ++x)
       for (int y = 0; y < photograph.height(); y += 3) {
@@ -151,7 +152,7 @@ class RetextureTest : public QObject {
     QVERIFY(checked > 100);
     while (document().undoStack()->count() > steps && document().undoStack()->index() > steps) document().undoStack()->undo();
     QCOMPARE(document().option("frame/retexture-compare", 0.5), 0.5);
-    const QString saved = folder_->path() + "/in/saved.glint";
+    const QString saved = folder_.path() + "/in/saved.glint";
     Opened state = document().toSave();
     coreEngine().save(state, document().inspection().get(), saved.toStdString(), {});
     window_->open(saved);
@@ -162,7 +163,7 @@ class RetextureTest : public QObject {
 
   /// A session from others may not have any file of this computer read.
   void aFileOutsideIsReadOnlyWhereItIsAllowed() {
-    const QString outside = folder_->path() + "/secret.png";
+    const QString outside = folder_.path() + "/secret.png";
     writeChecked(outside, QColor(10, 20, 30));
     document().setOption("frame/retexture-texture", outside.toStdString(), "as from a session");
     document().setOption("frame/retexture", "texture", "on");
@@ -175,7 +176,7 @@ class RetextureTest : public QObject {
   }
 
   void whatCannotBeReadIsSaid() {
-    QFile broken(folder_->path() + "/in/broken.png");
+    QFile broken(folder_.path() + "/in/broken.png");
     QVERIFY(broken.open(QIODevice::WriteOnly) && broken.write("\x89PNG nothing") > 0);
     broken.close();
     document().setOption("frame/retexture", "texture", "on");
@@ -197,11 +198,11 @@ class RetextureTest : public QObject {
     turnOn();
     for (int i = 1; i <= 30; ++i) document().setOption("frame/retexture-repeat", double(i), "more", 77);
     settle();
-    compareWithCommand({"--texture", folder_->path() + "/in/texture.png", "--repeat", "30"}, document().plottedModel().c_str());
+    compareWithCommand({"--texture", folder_.path() + "/in/texture.png", "--repeat", "30"}, document().plottedModel().c_str());
     for (int frame = 0; frame < 9; ++frame) document().selectFrame(frame);
     settle();
     QVERIFY(bar().result());
-    compareWithCommand({"--texture", folder_->path() + "/in/texture.png", "--repeat", "30"}, document().plottedModel().c_str());
+    compareWithCommand({"--texture", folder_.path() + "/in/texture.png", "--repeat", "30"}, document().plottedModel().c_str());
   }
 
   /// What the core says of a doubtful picture stands in words below the bar.
@@ -250,7 +251,7 @@ class RetextureTest : public QObject {
   void compareWithCommand(const QStringList& how, const char* model) {
     settle();
     QVERIFY2(bar().result(), qPrintable(words()));
-    const QString mine = folder_->path() + "/mine.png", theirs = folder_->path() + "/theirs.png";
+    const QString mine = folder_.path() + "/mine.png", theirs = folder_.path() + "/theirs.png";
     QFile::remove(mine);
     answerDialog(mine, QDialogButtonBox::Save);
     QTest::mouseClick(bar().findChild<QToolButton*>(QStringLiteral("retextureSave")), Qt::LeftButton);
@@ -266,7 +267,7 @@ class RetextureTest : public QObject {
     QVERIFY(contentOf(mine) == contentOf(theirs));
   }
 
-  std::unique_ptr<QTemporaryDir> folder_;
+  QTemporaryDir folder_;
   std::unique_ptr<MainWindow> window_;
   std::unique_ptr<QTimer> answers_;
   QString session_;

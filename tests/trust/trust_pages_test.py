@@ -136,6 +136,15 @@ class MakeTrust(unittest.TestCase):
         self.page()
         self.assertEqual(self.run_("--check").returncode, 0)
 
+    def testTimesOfTheLastRunAreShown(self):
+        self.addRows(("io", 16, 0, "tests"))
+        self.assertNotIn("Minutes", self.page()[1])
+        self.run_("times", "fuzz=600", "suite=60")
+        self.run_("times", "suite=3000")
+        _, page = self.page()
+        self.assertRegex(page, r"Minutes of `tests/run_nightly` on \d+ cores: fuzz 10 \([-0-9]+\), suite 50 \([-0-9]+\); together 1.0 hours.")
+        self.assertEqual(self.run_("--check").returncode, 0)
+
     # A reader that is newer than the last run must not look as if it had been fed.
     def testReadersThatWereNeverFedAreMissing(self):
         (self.folder / "tests").mkdir()
