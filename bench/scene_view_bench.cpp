@@ -43,7 +43,7 @@ struct Setup {
     auto scene = std::make_shared<Scene>();
     scene->name = "globe";
     scene->folder = folder;
-    scene->surfaces["globe"].mesh = folder / "globe.ply";
+    scene->surfaces["globe"] = MeshFile{{folder / "globe.ply"}};
     for (int i = 0; i < 100; ++i) {
       const double t = 2 * std::numbers::pi * i / 100;
       const Eigen::Vector3d eye(3 * std::cos(t), 3 * std::sin(t), 2), forward = -eye.normalized();

@@ -132,8 +132,7 @@ class Candidates {
 
   void surface() {
     const bool mesh = std::any_of(r_.views.begin(), r_.views.end(), [&](const TrainingView& v) {
-      const auto it = r_.scene->surfaces.find(r_.scene->frames[std::size_t(v.frame)].surface);
-      return it != r_.scene->surfaces.end() && !it->second.analytic;
+      return r_.scene->hasTriangles(r_.scene->frames[std::size_t(v.frame)].surface);
     });
     if (!mesh) return;
     set("surface.normals", "curved", "a coarse mesh");

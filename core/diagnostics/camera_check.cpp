@@ -19,7 +19,7 @@
 #include "core/model/model.h"
 #include "core/model/plausible.h"
 #include "core/model/reflectance_settings.h"
-#include "core/scene/mesh_placement.h"
+#include "core/scene/convention_report.h"
 #include "core/surface/mesh_policy.h"
 
 namespace glint {

@@ -46,9 +46,7 @@ class LightFitter {
   void refineNormals(LightFit& fit) const {
     if (fit.views.empty()) return;
     const std::string surface = surfaces_.keyOf(fit.views.front().frame);
-    const auto source = scene_.surfaces.find(surface);
-    if (source == scene_.surfaces.end() || !source->second.mesh)
-      return;  // a shape is exact, a depth map has a depth that could be off
+    if (!scene_.hasTriangles(surface)) return;  // a shape is exact, a depth map has a depth that could be off
     // One correction describes the errors of one mesh only.
     if (std::any_of(fit.views.begin(), fit.views.end(),
                     [&](const TrainingView& v) { return surfaces_.keyOf(v.frame) != surface; }))

@@ -38,7 +38,7 @@ std::shared_ptr<const Scene> sceneOf(const BallShots& shots, int width, int heig
   sphere.type = "sphere";
   sphere.radius = 1;
   sphere.worldFromSurface.translation() = ballOf(view, ball.parameters).centre;
-  scene->surfaces["ball"].analytic = sphere;
+  scene->surfaces["ball"] = sphere;
   for (const Shot& shot : shots.shots) {
     Frame frame;
     frame.id = shot.id;

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kDoubtShare = 0.02;  // of the radius: a right lobe leaves less
 constexpr double kSphereGain = 0.2;   // of the sum of squares, before a size is believed
-constexpr double kProbe = 0.4;        // of the lobe's width, as angles of the light: a size that would show little
+constexpr double kProbedSize = 0.4;   // of the lobe's width, as angles of the light: it would show little
 // Other starts are judged by a short fit to few points; the most promising are then fitted in full.
 constexpr int kScreenPoints = 16, kScreenIterations = 15;
 constexpr std::size_t kPromising = 3;

@@ -99,9 +99,8 @@ TextureCoordinates::TextureCoordinates(const Scene& scene, int frame, const Surf
     : repeat_(repeat) {
   require(repeat > 0 && std::isfinite(repeat), "TextureCoordinates: repeat > 0");
   const std::string& name = scene.frames.at(std::size_t(frame)).surface;
-  const auto source = scene.surfaces.find(name);
-  if (mapping == TextureMapping::Natural && source != scene.surfaces.end() && source->second.analytic)
-    std::tie(map_, words_) = naturalMap(*source->second.analytic);
+  if (const AnalyticSpec* const formula = scene.formulaOf(name); formula && mapping == TextureMapping::Natural)
+    std::tie(map_, words_) = naturalMap(*formula);
   if (map_) return;
   const Eigen::AlignedBox3d box = surface.bounds();
   const bool bounded = !name.empty() && box.sizes().allFinite() && box.sizes().maxCoeff() > 0;

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/scene/capture_scene.h"
-
 #include <algorithm>
 #include <map>
 #include <set>
@@ -9,10 +7,10 @@
 #include "core/base/found_file.h"
 #include "core/base/number_text.h"
 #include "core/base/permitted.h"
-#include "core/scene/mesh_file.h"
-#include "core/scene/relinked.h"
+#include "core/scene/scene_files.h"
 #include "core/scene/scene_json.h"
 #include "core/scene/scene_reader.h"
+#include "core/surface/point_surface.h"
 
 namespace glint {
 namespace fs = std::filesystem;
@@ -97,22 +95,6 @@ std::vector<std::string> idsOf(const std::vector<CaptureView>& views) {
   return ids;
 }
 
-/// The mesh where it was relinked to, else in its place, else in one of the folders; Scene::meshes says where it is instead.
-fs::path meshWhereItIs(const fs::path& place, const std::string& named, const ReadOptions& options, Scene& scene) {
-  const auto isThere = [](const fs::path& file) {
-    std::error_code ignored;  // what cannot be asked about is not there
-    return fs::is_regular_file(file, ignored);
-  };
-  const auto moved = options.meshes.find(named);
-  fs::path found = moved != options.meshes.end() ? fs::absolute(moved->second).lexically_normal() : place;
-  if (!isThere(found)) found.clear();
-  for (const fs::path& folder : options.meshFolders)
-    if (found.empty()) found = sameUnder(fs::absolute(folder), place);
-  if (found.empty()) throw MissingMesh(scene.file.string(), "surface", named, place);
-  if (found != place) scene.meshes[named] = found;
-  return found;
-}
-
 /// Every file that was found for the capture lies where a capture may name files: in its project's folder or in one that a person named.
 /// A name that looks harmless may be a link that leads out, as may one of the folders that programs look into (`images`).
 class InsideCapture {
@@ -165,8 +147,8 @@ void requireInside(const Capture& capture, const fs::path& mesh, const ReadOptio
   if (options.choices.surface != InputChoices::Surface::File) inside.require(mesh, "surface", "--surface FILE");
 }
 
-/// The surface of the capture's own sparse points (`--surface points`). In units of its poses.
-SurfaceSource sparseSurface(const Capture& capture, const ReadOptions& options, double metresPerUnit) {
+/// The capture's own sparse points, for `--surface points`. In units of its poses.
+std::shared_ptr<const PointCloud> sparsePoints(const Capture& capture, const ReadOptions& options) {
   const std::vector<CaptureTrack> tracks = [&]() -> std::vector<CaptureTrack> {
     const CaptureReader* reader = captureReaderNamed(capture.kind);
     if (!reader) return {};
@@ -175,12 +157,8 @@ SurfaceSource sparseSurface(const Capture& capture, const ReadOptions& options, 
   if (tracks.empty())
     throw InputError(capture.file.string(), "--surface points", "it has no sparse points; name a cloud by --surface FILE");
   auto cloud = std::make_shared<PointCloud>();
-  for (const CaptureTrack& track : tracks) cloud->points.push_back(metresPerUnit * track.point);
-  SurfaceSource source;
-  source.mesh = capture.file;
-  source.named = capture.file.filename().string();
-  source.points = std::move(cloud);
-  return source;
+  for (const CaptureTrack& track : tracks) cloud->points.push_back(track.point);
+  return cloud;
 }
 
 }  // namespace
@@ -229,19 +207,19 @@ Scene sceneOfCapture(const Capture& capture, const ReadOptions& options) {
   requireInside(capture, mesh, options);
   const bool onPoints = choices.surface == InputChoices::Surface::Points;
   if (onPoints) {
-    scene.surfaces[kSurfaceId] = sparseSurface(capture, options, metres);
-    scene.facts.push_back(formatted("surface: made of the %zu sparse points", scene.surfaces[kSurfaceId].points->points.size()));
+    const auto points = sparsePoints(capture, options);
+    scene.surfaces[kSurfaceId] = CapturePoints{{capture.file, "", metres}, points};
+    scene.facts.push_back(formatted("surface: made of the %zu sparse points", points->points.size()));
   } else if (!mesh.empty()) {
-    SurfaceSource source;
-    source.mesh = fs::absolute(mesh).lexically_normal();
-    source.named = source.mesh->lexically_relative(capture.folder).generic_string();
+    SurfaceFile file{fs::absolute(mesh).lexically_normal()};
+    file.named = file.file.lexically_relative(capture.folder).generic_string();
     const bool own = capture.mesh && capture.mesh->file == mesh;
-    source.metresPerUnit = choices.surfaceMetresPerUnit.value_or(own ? capture.mesh->metresPerUnit : metres);
-    source.mesh = meshWhereItIs(*source.mesh, source.named, options, scene);
-    source.isCloud = isCloudFile(*source.mesh);
-    scene.surfaces[kSurfaceId] = source;
-    scene.facts.push_back("surface: " + source.named +
-                          (source.isCloud ? ", a cloud of points: the surface is made of them" : ""));
+    file.metresPerUnit = choices.surfaceMetresPerUnit.value_or(own ? capture.mesh->metresPerUnit : metres);
+    file.file = placeOfMesh(
+        file.named, [place = file.file] { return place; }, options, scene, "surface");
+    const bool isCloud = isCloudFile(file.file);
+    scene.facts.push_back("surface: " + file.named + (isCloud ? ", a cloud of points: the surface is made of them" : ""));
+    scene.surfaces[kSurfaceId] = isCloud ? SurfaceSource(PointsFile{std::move(file)}) : MeshFile{std::move(file)};
   } else if (choices.surfaceMetresPerUnit) {
     throw InputError(capture.file.string(), "--surface-units", "the surface is no mesh");
   }

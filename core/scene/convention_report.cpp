@@ -13,7 +13,6 @@
 #include "core/scene/corrected_files.h"
 #include "core/scene/geometry_check.h"
 #include "core/scene/image_scale.h"
-#include "core/scene/mesh_file.h"
 #include "core/scene/scene_reader.h"
 #include "core/surface/analytic.h"
 
@@ -296,26 +295,23 @@ class Triangles {
   /// Valid until the next question.
   const TriangleMesh& of(const std::string& id) {
     const SurfaceSource& source = scene_.surfaces.at(id);
-    std::map<std::string, TriangleMesh>& known = source.mesh ? read_ : made_;
+    std::map<std::string, TriangleMesh>& known = source.hasTriangles() ? read_ : made_;
     const auto found = known.find(id);
     if (found != known.end()) return found->second;
-    if (source.isCloud || source.points) return known[id] = ofPoints(id, source);
-    if (source.mesh) return known[id] = readMesh(source);
+    if (source.hasTriangles()) return known[id] = read(id, source);
     if (known.size() >= kMostMade) known.clear();
-    const std::shared_ptr<const Surface> surface = makeAnalytic(*source.analytic);
+    const std::shared_ptr<const Surface> surface = *source.load({});
     return known[id] = surface->tessellate(regionOfInterest(scene_, surface->bounds()), kSteps);
   }
 
  private:
   /// Where no surface can be made, the points alone: whether the cameras see them is worth knowing.
-  TriangleMesh ofPoints(const std::string& id, const SurfaceSource& source) {
-    Outcome<PointSurface> made = readPointSurface(source);
-    if (made) {
-      report_.facts.push_back("surface '" + id + "' is made of points: " + made->facts.text());
-      return std::move(made->mesh);
-    }
-    report_.findings.push_back("no surface can be made of the points of '" + id + "': " + made.failure().message());
-    return {readCloud(source).points, {}, {}};
+  TriangleMesh read(const std::string& id, const SurfaceSource& source) {
+    SurfaceTriangles triangles = source.triangles();
+    if (!triangles.of.empty()) report_.facts.push_back("surface '" + id + "' is made of points: " + triangles.of);
+    if (triangles.failure)
+      report_.findings.push_back("no surface can be made of the points of '" + id + "': " + triangles.failure->message());
+    return std::move(triangles.mesh);
   }
 
   static constexpr int kSteps = 64;             // along each side: 4,225 vertices, 300 kB
@@ -369,8 +365,7 @@ ConventionReport conventionReport(const Scene& scene, const ProgressFn& progress
     if (!glint::report(progress, {"surface", done++, static_cast<int>(scene.surfaces.size())})) throw Stopped{};
     ConventionReport::SurfaceFacts facts;
     facts.id = id;
-    const bool ofPoints = source.isCloud || source.points;
-    facts.kind = ofPoints ? "points" : source.mesh ? "mesh" : "analytic " + source.analytic->type;
+    facts.kind = source.kind();
     const TriangleMesh& mesh = triangles.of(id);
     Eigen::AlignedBox3d box;
     for (const Eigen::Vector3d& v : mesh.vertices) box.extend(v);
@@ -380,16 +375,15 @@ ConventionReport conventionReport(const Scene& scene, const ProgressFn& progress
     }
     facts.vertices = static_cast<int>(mesh.vertices.size());
     facts.triangles = static_cast<int>(mesh.triangles.size());
-    if (source.mesh && !ofPoints) {
+    if (std::get_if<MeshFile>(&source)) {
       facts.grid = coordinateGrid(mesh.vertices);
       facts.side = medianSide(mesh);
-    }
-    if (source.mesh && !ofPoints)
       if (const std::string sides = sidesOf(mesh); !sides.empty())
         report.add("the mesh of surface '" + id + "' has its sides reversed: " + sides +
                        " (Glint turns normals towards the camera; other programs may not)",
-                   source.isCloud ? std::nullopt : std::optional(flipFacesCorrection()));
-    facts.hasNormals = source.analytic.has_value() || !mesh.normals.empty();
+                   flipFacesCorrection());
+    }
+    facts.hasNormals = !source.hasTriangles() || !mesh.normals.empty();
     report.surfaces.push_back(facts);
   }
   for (std::size_t i = 0; i < scene.frames.size(); ++i) {

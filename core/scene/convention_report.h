@@ -6,12 +6,21 @@
 #include <vector>
 
 #include "core/base/progress.h"
-#include "core/scene/coordinate_grid.h"
 #include "core/scene/correction.h"
 #include "core/scene/scene.h"
 #include "core/scene/track_check.h"
 
 namespace glint {
+
+/// The steps in which coordinates lie because of how they were written.
+struct CoordinateGrid {
+  double spacing = 0;            ///< units of the coordinates: the widest of the three axes
+  bool singlePrecision = false;  ///< the spacing of floats there; else decimal places of a text
+};
+/// Whether all coordinates lie on the grid of single precision, or of a text with few digits, and use it: also its last digit
+/// varies, as it does when numbers were rounded to it and does not when a shape has round coordinates. Nothing for doubles
+/// written in full, and for an axis along which nothing varies.
+std::optional<CoordinateGrid> coordinateGrid(const std::vector<Eigen::Vector3d>& vertices);
 
 /// What the highlights say about images and intrinsics that cannot be seen in a single frame: mirrored images, a principal point
 /// that is half a pixel off (programs that put (0, 0) at a corner of the first pixel, not at its centre), a wrong focal length.
@@ -85,6 +94,10 @@ struct ConventionReport {
 
 /// Reads every surface and every image once. InputError when a mesh cannot be read; Stopped.
 ConventionReport conventionReport(const Scene& scene, const ProgressFn& progress = {});
+
+/// Where the sparse points put a mesh through which most of them do not pass: adds to their finding, or makes one where another place explains
+/// them. Not where a correction of the unit or place of the mesh is known already. InputError, Stopped.
+void placeMesh(const Scene& scene, const ProgressFn& progress, ConventionReport& report);
 
 std::string toText(const ConventionReport& report);  ///< for a terminal, ends with a line break
 std::string findingsText(

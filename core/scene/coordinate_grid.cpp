@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/scene/coordinate_grid.h"
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
+
+#include "core/scene/convention_report.h"
 
 namespace glint {
 namespace {

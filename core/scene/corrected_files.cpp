@@ -11,7 +11,6 @@
 #include "core/base/atomic_file.h"
 #include "core/base/safe_text.h"
 #include "core/scene/geometry_check.h"
-#include "core/scene/mesh_file.h"
 #include "core/scene/scene_reader.h"
 
 namespace glint {
@@ -74,20 +73,21 @@ bool writeMesh(const fs::path& file, const TriangleMesh& mesh) {
 void flipFaces(Scene& scene, const fs::path& output, std::vector<fs::path>& written) {
   bool any = false;
   for (auto& [id, source] : scene.surfaces) {
-    if (!source.mesh || source.isCloud || source.points) continue;
-    TriangleMesh mesh = readMesh(*source.mesh);
+    MeshFile* const given = std::get_if<MeshFile>(&source);
+    if (!given) continue;
+    TriangleMesh mesh = readMesh(given->file);
     if (sidesOf(mesh).empty()) continue;
     any = true;
     std::vector<Eigen::Vector3d> eyes;
     for (const Frame& f : scene.frames)
-      if (f.surface == id) eyes.push_back(f.camera.centreInWorld() / source.metresPerUnit);
+      if (f.surface == id) eyes.push_back(f.camera.centreInWorld() / given->metresPerUnit);
     const fs::path file = output.parent_path() / (output.stem().string() + "." + fileNameOf(id) + ".ply");
     std::error_code ignored;  // what cannot be asked about is not the same
-    if (fs::equivalent(file, *source.mesh, ignored))
+    if (fs::equivalent(file, given->file, ignored))
       throw InputError(file.string(), "--fix flip-faces", "is an input file; choose another output");
     if (writeMesh(file, withSidesRight(std::move(mesh), eyes))) written.push_back(file);
-    source.mesh = fs::absolute(file).lexically_normal();
-    source.named.clear();
+    given->file = fs::absolute(file).lexically_normal();
+    given->named.clear();
   }
   if (!any) throw InputError("--fix", kFlipFaces, "no mesh has its sides reversed");
 }

@@ -54,11 +54,8 @@ void applyGeometry(Scene& scene, const GeometryCorrection& c) {
   for (Frame& f : scene.frames) f.camera.camFromWorld = c.camFromWorld(f.camera.camFromWorld);
   if (c.meshScale == 1) return;
   bool any = false;
-  for (auto& [id, source] : scene.surfaces) {
-    if (!source.mesh) continue;
-    source.metresPerUnit *= c.meshScale;
-    any = true;
-  }
+  for (auto& [id, source] : scene.surfaces)
+    if (SurfaceFile* const f = source.file()) f->metresPerUnit *= c.meshScale, any = true;
   if (!any) throw InputError("--fix", c.fix, "the scene has no mesh");
 }
 
@@ -168,8 +165,8 @@ void applySimilarity(Scene& scene, std::string_view fix) {
   const auto refuse = [&](const std::string& why) { throw InputError("--fix", kMeshSimilarity, why); };
   if (scene.surfaces.size() != 1)
     refuse(formatted("the scene has %zu surfaces; it moves the cameras to a single one", scene.surfaces.size()));
-  if (!scene.surfaces.begin()->second.mesh || scene.surfaces.begin()->second.points)
-    refuse("the surface is no mesh of its own file");
+  const SurfaceSource& surface = scene.surfaces.begin()->second;
+  if (!surface.file() || std::get_if<CapturePoints>(&surface)) refuse("the surface is no mesh of its own file");
   for (Frame& f : scene.frames) {
     if (!f.normals.empty()) refuse("frame " + f.id + " has a map of normals, which would have to turn, too");
     if (!f.depth.empty() && !(f.depthScale > 0))

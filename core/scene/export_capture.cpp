@@ -27,8 +27,8 @@ std::vector<std::string> leftOutOf(const Scene& scene) {
   std::vector<std::string> lines;
   for (const auto& [id, source] : scene.surfaces)
     lines.push_back(
-        "surface '" + id + "' is left out" +
-        (source.mesh ? ": name it by --surface " + source.mesh->string() : ": only meshes can be named by --surface"));
+        "surface '" + id + "' is left out: " +
+        (source.file() ? "name it by --surface " + source.file()->file.string() : "only meshes can be named by --surface"));
   const auto count = [&](const auto& has) { return std::count_if(scene.frames.begin(), scene.frames.end(), has); };
   const auto say = [&](long n, const std::string& what) {
     if (n > 0) lines.push_back(what + " of " + std::to_string(n) + " frames are left out");

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/scene/mesh_placement.h"
-
 #include <Eigen/Geometry>
 #include <algorithm>
 
 #include "core/base/number_text.h"
-#include "core/scene/mesh_file.h"
+#include "core/scene/convention_report.h"
 #include "core/surface/registration.h"
 
 namespace glint {
@@ -52,7 +50,6 @@ struct MeshPlacement {
 /// A place from which not every camera that saw points would see the mesh is none. Stopped.
 MeshPlacement placementOf(const Scene& scene, const TriangleMesh& mesh, const std::vector<SeenPoint>& points,
                           const ProgressFn& progress) {
-  if (scene.surfaces.size() != 1 || scene.surfaces.begin()->second.points) return {};
   const Outcome<Registration> found = registerMesh(mesh, points, progress);
   if (!found)
     return {
@@ -85,7 +82,7 @@ void placeMesh(const Scene& scene, const ProgressFn& progress, ConventionReport&
   if (!report.tracks || report.tracks->sample.empty() || scene.surfaces.size() != 1) return;
   if (std::any_of(report.corrections.begin(), report.corrections.end(), ofUnit)) return;  // then it is known what is wrong
   const auto& [id, source] = *scene.surfaces.begin();
-  const TriangleMesh mesh = source.mesh && !source.isCloud && !source.points ? readMesh(source) : TriangleMesh{};
+  const TriangleMesh mesh = std::get_if<MeshFile>(&source) ? source.triangles().mesh : TriangleMesh{};
   if (mesh.triangles.empty()) return;
   TrackCheck& tracks = *report.tracks;
   MeshPlacement placement = placementOf(scene, mesh, tracks.sample, progress);

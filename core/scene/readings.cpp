@@ -5,7 +5,6 @@
 #include "core/base/image_memory.h"
 #include "core/base/limits.h"
 #include "core/base/plugin_hint.h"
-#include "core/scene/capture_scene.h"
 #include "core/scene/folder_below.h"
 #include "core/scene/scene.h"
 #include "core/scene/scene_reader.h"

@@ -26,6 +26,11 @@ std::string firstBytes(const fs::path& file, std::size_t n) {
   return bytes;
 }
 
+const AnalyticSpec* Scene::formulaOf(const std::string& surface) const {
+  const auto found = surfaces.find(surface);
+  return found == surfaces.end() ? nullptr : found->second.analytic();
+}
+
 namespace {
 
 /// An opening brace (after blanks and a byte-order mark) and this key in quotes somewhere in the file.

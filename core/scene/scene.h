@@ -20,23 +20,9 @@
 #include "core/reflectance/lamp.h"
 #include "core/scene/camera_response.h"
 #include "core/scene/input_choices.h"
-#include "core/surface/analytic.h"
-#include "core/surface/surface.h"
+#include "core/scene/surface_source.h"
 
 namespace glint {
-
-struct PointCloud;  // core/surface/point_surface.h
-
-/// Where a surface comes from: exactly one of mesh and analytic is set.
-struct SurfaceSource {
-  std::optional<std::filesystem::path> mesh;  ///< absolute
-  std::optional<AnalyticSpec> analytic;
-  std::string named = {};    ///< the mesh's path as the scene file writes it; "" = no file has written it yet
-  double metresPerUnit = 1;  ///< of the mesh's coordinates: 0.001 where the file is in millimetres
-  bool isCloud = false;      ///< `mesh` names points without triangles, from which the surface is made (surfaceOfPoints)
-  /// Those points where they are no file of their own (`--surface points`): in metres; `mesh` is then the file of the capture.
-  std::shared_ptr<const PointCloud> points = {};
-};
 
 /// One captured view. Paths are absolute; empty = not given.
 struct Frame {
@@ -88,6 +74,11 @@ struct Scene {
   std::vector<std::string> warnings;  ///< unknown keys and other oddities, one line each
   std::string
       unknownJson;  ///< unknown keys, kept for writing back, grouped by scene, camera, frames, surfaces, lights; "" = none
+
+  /// The formula of a surface; null where there is no such surface (a frame's own depth map) or it has no formula.
+  const AnalyticSpec* formulaOf(const std::string& surface) const;
+  /// There is such a surface, and its normals may be off because it is made of triangles.
+  bool hasTriangles(const std::string& surface) const { return surfaces.count(surface) && !formulaOf(surface); }
 };
 
 struct ReadOptions {

@@ -4,6 +4,7 @@
 #include <set>
 #include <vector>
 
+#include "core/base/found_file.h"
 #include "core/scene/relinked.h"
 
 namespace glint {
@@ -17,7 +18,7 @@ std::vector<fs::path> filesOf(const Scene& scene) {
   };
   for (const fs::path& p : scene.sources) add(p);
   for (const auto& [id, source] : scene.surfaces)
-    if (source.mesh) add(*source.mesh);
+    if (source.file()) add(source.file()->file);
   for (const Frame& f : scene.frames)
     for (const fs::path* p : {&f.image, &f.radiance, &f.depth, &f.normals, &f.mask, &f.response.file()}) add(*p);
   return paths;
@@ -59,13 +60,41 @@ std::optional<FrameFile> fileNamedIn(const std::string& sentence, const Frame& f
 
 std::string meshNamedIn(const std::string& sentence, const Scene& scene) {
   for (const auto& [id, source] : scene.surfaces)
-    if (source.mesh && sentence.rfind(source.mesh->string() + ": ", 0) == 0) return source.named;
+    if (const SurfaceFile* const f = source.file(); f && sentence.rfind(f->file.string() + ": ", 0) == 0) return f->named;
   return "";
+}
+
+MissingMesh::MissingMesh(const std::string& file, const std::string& place, std::string named, fs::path mesh)
+    : InputError(file, place, "file '" + mesh.string() + "' does not exist"), named_(std::move(named)), mesh_(std::move(mesh)) {}
+
+fs::path folderOfMove(const fs::path& file, const fs::path& now) {
+  fs::path was = file.lexically_normal(), is = now.lexically_normal();
+  if (was.filename() != is.filename()) return is.parent_path();
+  while (was.has_filename() && was.filename() == is.filename() && is.has_relative_path()) {
+    was = was.parent_path();
+    is = is.parent_path();
+  }
+  return is;
+}
+
+fs::path placeOfMesh(const std::string& named, const std::function<fs::path()>& place, const ReadOptions& options, Scene& scene,
+                     const std::string& where) {
+  const auto moved = options.meshes.find(named);
+  const bool isMoved = moved != options.meshes.end();
+  const fs::path first = isMoved ? fs::absolute(moved->second).lexically_normal() : place();
+  std::error_code ignored;  // what cannot be asked about is not there
+  fs::path found = fs::is_regular_file(first, ignored) ? first : fs::path();
+  for (const fs::path& folder : options.meshFolders)
+    if (found.empty()) found = sameUnder(fs::absolute(folder), first);
+  if (found.empty()) throw MissingMesh(scene.file.string(), where, named, first);
+  if (isMoved || found != first) scene.meshes[named] = found;
+  return found;
 }
 
 Scene withMeshAt(Scene scene, const std::string& named, const fs::path& now) {
   for (auto& [id, source] : scene.surfaces)
-    if (source.mesh && source.named == named) source.mesh = scene.meshes[named] = fs::absolute(now).lexically_normal();
+    if (SurfaceFile* const f = source.file(); f && f->named == named)
+      f->file = scene.meshes[named] = fs::absolute(now).lexically_normal();
   return scene;
 }
 

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <set>
@@ -39,6 +40,11 @@ std::optional<FrameFile> fileNamedIn(const std::string& sentence, const Frame& f
 
 /// The mesh that a sentence "FILE: reason" is about, as the scene file writes it; "" = none.
 std::string meshNamedIn(const std::string& sentence, const Scene& scene);
+
+/// Where the mesh is that a document calls `named`: where `options` say, else at its place, else in one of their folders. Scene::meshes
+/// keeps it where it is not at its place. @param where  in the document. MissingMesh; what `place` throws.
+std::filesystem::path placeOfMesh(const std::string& named, const std::function<std::filesystem::path()>& place,
+                                  const ReadOptions& options, Scene& scene, const std::string& where);
 
 /// The scene with another file for the mesh that the scene file calls `named`; Scene::meshes says so.
 /// @param now  need not exist.

@@ -10,14 +10,10 @@
 #include "core/base/bounded_json.h"
 #include "core/base/json_dom.h"
 #include "core/base/level_range.h"
-#include "core/base/number_text.h"
-#include "core/base/plugin_hint.h"
 #include "core/capture/file_names.h"
 #include "core/geometry/distortion.h"
-#include "core/scene/relinked.h"
 #include "core/scene/scene_files.h"
 #include "core/scene/scene_reader.h"
-#include "core/surface/added_shape.h"
 
 namespace glint {
 namespace fs = std::filesystem;
@@ -71,74 +67,11 @@ const std::set<std::string> kSceneGeometry = {"scale",      "world_scale", "tran
                                               "handedness", "up",          "up_axis",   "convention",      "origin",
                                               "offset"};
 
-std::set<std::string> analyticKeys(const std::string& type) {
-  static const std::map<std::string, std::set<std::string>> keys = {{"plane", {}},
-                                                                    {"sphere", {"radius"}},
-                                                                    {"ellipsoid", {"semi_axes"}},
-                                                                    {"cylinder", {"radius"}},
-                                                                    {"sheet", {"curvature", "length", "width"}},
-                                                                    {"torus", {"major_radius", "minor_radius"}},
-                                                                    {"quadric", {"matrix"}}};
-  std::set<std::string> all;
-  if (const ShapeKind* const kind = addedShapeKind(type))
-    for (const ShapeNumber& n : kind->numbers()) all.insert(n.name);
-  else
-    all = keys.at(type);
-  all.insert({"type", "world_from_surface"});
-  return all;
-}
-
 }  // namespace
 
 bool isMadeBySynth(const JsonNode& root) {
   const auto n = root.find(kMadeBy);
   return n && n->isString() && n->text() == kMadeBySynth;
-}
-
-AnalyticSpec readAnalyticJson(const JsonNode& node) {
-  AnalyticSpec spec;
-  const JsonNode type = node.at("type");
-  spec.type = type.text();
-  if (spec.type == "sphere" || spec.type == "cylinder") {
-    spec.radius = positive(node.at("radius"), kFarthest);
-  } else if (spec.type == "ellipsoid") {
-    const JsonNode axes = node.at("semi_axes");
-    spec.semiAxes = lengths3(axes);
-    if (!(spec.semiAxes.minCoeff() > 0)) axes.fail("must be positive");
-  } else if (spec.type == "sheet") {
-    spec.curvature = bounded(node.at("curvature"), kLargestFactor);
-    if (const auto n = node.find("length")) spec.length = positive(*n, kFarthest);
-    if (const auto n = node.find("width")) spec.width = positive(*n, kFarthest);
-  } else if (spec.type == "torus") {
-    spec.majorRadius = positive(node.at("major_radius"), kFarthest);
-    const JsonNode minor = node.at("minor_radius");
-    spec.minorRadius = positive(minor, kFarthest);
-    if (spec.minorRadius >= spec.majorRadius) minor.fail("must be smaller than major_radius");
-  } else if (spec.type == "quadric") {
-    const JsonNode matrix = node.at("matrix");
-    for (std::size_t i = 0; i < matrix.size(); ++i) boundedAll(matrix.at(i), kLargestFactor);
-    spec.matrix = matrix.matrix4();
-    const double size = spec.matrix.cwiseAbs().maxCoeff();
-    if (!(size > 0)) matrix.fail("must not be zero");
-    constexpr double kTyped = 1e-9;  // relative: more digits than a printed matrix has wrong
-    if ((spec.matrix - spec.matrix.transpose()).cwiseAbs().maxCoeff() > kTyped * size) matrix.fail("must be symmetric");
-  } else if (const ShapeKind* const kind = addedShapeKind(spec.type)) {
-    for (const ShapeNumber& n : kind->numbers()) {
-      const auto given = node.find(n.name);
-      if (!given && n.byDefault) {
-        spec.numbers[n.name] = *n.byDefault;
-        continue;
-      }
-      const JsonNode number = node.at(n.name);
-      const double value = number.number();
-      if (!(value >= n.least && value <= n.most)) number.fail(formatted("%g is outside %g .. %g", value, n.least, n.most));
-      spec.numbers[n.name] = value;
-    }
-  } else if (spec.type != "plane") {
-    type.fail("'" + spec.type + "' is not one of: " + knownShapes() + kPluginHint);
-  }
-  if (const auto pose = node.find("world_from_surface")) spec.worldFromSurface = readPoseJson(*pose);
-  return spec;
 }
 
 namespace {
@@ -313,53 +246,6 @@ Frame readFrame(const JsonNode& node, const FrameContext& context, Json& rest) {
   return frame;
 }
 
-/// The mesh file that `node` names: where it was relinked to, else in its place, else in one of the folders.
-fs::path findMesh(const JsonNode& node, const FrameContext& context) {
-  const std::string named = node.text();
-  const auto isThere = [](const fs::path& file) {
-    std::error_code ignored;  // what cannot be asked about is not there
-    return fs::is_regular_file(file, ignored);
-  };
-  const auto moved = context.options.meshes.find(named);
-  const fs::path place = moved != context.options.meshes.end()
-                             ? fs::absolute(moved->second).lexically_normal()
-                             : context.names.other(context.scene.folder, named, node.file(), node.place());
-  fs::path found = isThere(place) ? place : fs::path();
-  for (const fs::path& folder : context.options.meshFolders)
-    if (found.empty()) found = sameUnder(fs::absolute(folder), place);
-  if (found.empty()) throw MissingMesh(node.file(), node.place(), named, place);
-  if (moved != context.options.meshes.end() || found != place) context.scene.meshes[named] = found;
-  return found;
-}
-
-double metresOf(const JsonNode& unit) {
-  if (unit.isNumber()) return positive(unit, kLargestFactor);
-  for (const double metres : {1.0, 0.01, 0.001})
-    if (unit.text() == unitOfMetres(metres)) return metres;
-  unit.fail("'" + unit.text() + "' is not one of: m, cm, mm, or a number of metres");
-}
-
-SurfaceSource readSurface(const JsonNode& node, const FrameContext& context, Json& rest) {
-  SurfaceSource source;
-  refuseGeometry(node, kSurfaceGeometry);
-  const auto mesh = node.find("mesh"), points = node.find("points");
-  if (const auto& n = points ? points : mesh) {
-    source.mesh = findMesh(*n, context);
-    source.isCloud = points.has_value();
-    source.named = n->text();
-    if (const auto unit = node.find("units")) {
-      source.metresPerUnit = metresOf(*unit);
-    }
-  }
-  if (const auto n = node.find("analytic")) {
-    source.analytic = readAnalyticJson(*n);
-    keep(rest, "analytic", context.unknown.of(*n, analyticKeys(source.analytic->type)));
-  }
-  if (int(mesh.has_value()) + int(points.has_value()) + int(source.analytic.has_value()) != 1)
-    node.fail("needs exactly one of mesh, points, analytic");
-  return source;
-}
-
 }  // namespace
 
 Scene readSceneJson(const std::string& text, const fs::path& file, const ReadOptions& options) {
@@ -397,8 +283,16 @@ Scene readSceneJson(const std::string& text, const fs::path& file, const ReadOpt
     for (const std::string& id : n->keys()) {
       const JsonNode node = n->at(id);
       if (!isIdentifier(id)) node.fail("a surface needs a name without control characters");
-      Json rest = unknown.of(node, {"mesh", "points", "analytic", "units"});
-      scene.surfaces[id] = readSurface(node, context, rest);
+      refuseGeometry(node, kSurfaceGeometry);
+      ReadSurface read = readSurfaceJson(node, [&](const JsonNode& named) {
+        return placeOfMesh(
+            named.text(), [&] { return names.other(scene.folder, named.text(), named.file(), named.place()); }, options, scene,
+            named.place());
+      });
+      scene.surfaces[id] = std::move(read.source);
+      Json rest = unknown.of(node, read.known.at(""));
+      read.known.erase("");
+      for (const auto& [key, known] : read.known) keep(rest, key, unknown.of(node.at(key), known));
       keep(surfaceRests, id, rest);
     }
   }

@@ -17,8 +17,6 @@ namespace glint {
 // The parts of scene.json (docs/formats.md, "Scene") that other documents share (synth SPEC.json, sessions). All throw
 // InputError with file, place and reason. Keys that a part does not know are left to the caller (JsonNode::unknownKeys).
 
-/// {"type": ..., sizes, "world_from_surface"} with every size checked for the type.
-AnalyticSpec readAnalyticJson(const JsonNode& node);
 /// {"id", one of "position" | "direction" | "segment", "radius"}. A direction is normalised.
 TrueLight readLightJson(const JsonNode& node);
 

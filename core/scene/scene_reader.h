@@ -34,6 +34,18 @@ std::unique_ptr<const SceneReader> makeSessionSceneReader();  ///< the scene tha
 /// A capture of another program; the reader lives as long as the program.
 std::unique_ptr<const SceneReader> makeCaptureSceneReader(const CaptureReader& reader);
 
+/// The scene of a capture: lengths in metres, a surface, ids of frames (the image's name without folder and ending; with the folder
+/// where names repeat). InputError where no surface, or more than one, is named or found, or a choice does not fit the capture.
+///
+/// The surface is `choices.surfaceFile`, else the mesh that the capture names, else the only mesh in its folder (`mesh.*` before
+/// others; a PLY without faces is none), else the frames' own depth maps.
+Scene sceneOfCapture(const Capture& capture, const ReadOptions& options);
+
+/// What a capture is read with.
+CaptureOptions captureOptionsOf(const ReadOptions& options);
+/// The same of a scene that was read: for its sparse points.
+CaptureOptions captureOptionsOf(const Scene& scene);
+
 /// The first `n` bytes of a file; "" when it cannot be read. For recognising contents.
 std::string firstBytes(const std::filesystem::path& file, std::size_t n);
 

@@ -5,13 +5,12 @@
 #include <utility>
 
 #include "core/base/json_dom.h"
+#include "core/scene/scene_dom.h"
 #include "core/scene/scene_json.h"
 
 namespace glint {
 namespace fs = std::filesystem;
 using json_dom::Json;
-
-namespace {
 
 Json toJson(const Eigen::VectorXd& v) {
   Json j = Json::array();
@@ -24,6 +23,9 @@ Json toJson(const Eigen::Matrix4d& m) {
   for (int i = 0; i < 4; ++i) j.push_back(toJson(Eigen::VectorXd(m.row(i).transpose())));
   return j;
 }
+
+namespace {
+using glint::toJson;  // of vectors and matrices
 
 Json toJson(const Camera& camera) {
   const Eigen::Matrix3d& k = camera.pixelFromRay;
@@ -45,25 +47,6 @@ Json depthCameraJson(const Camera& camera) {
 
 bool sameIntrinsics(const Camera& a, const Camera& b) {
   return a.width == b.width && a.height == b.height && a.pixelFromRay == b.pixelFromRay && a.lens == b.lens;
-}
-
-Json toJson(const AnalyticSpec& spec) {
-  Json j = {{"type", spec.type}};
-  if (spec.type == "sphere" || spec.type == "cylinder") j["radius"] = spec.radius;
-  if (spec.type == "ellipsoid") j["semi_axes"] = toJson(Eigen::VectorXd(spec.semiAxes));
-  if (spec.type == "sheet") {
-    j["curvature"] = spec.curvature;
-    if (spec.length) j["length"] = *spec.length;
-    if (spec.width) j["width"] = *spec.width;
-  }
-  if (spec.type == "torus") {
-    j["major_radius"] = spec.majorRadius;
-    j["minor_radius"] = spec.minorRadius;
-  }
-  if (spec.type == "quadric") j["matrix"] = toJson(spec.matrix);
-  for (const auto& [name, value] : spec.numbers) j[name] = value;
-  j["world_from_surface"] = toJson(spec.worldFromSurface.matrix());
-  return j;
 }
 
 /// Puts kept unknown keys back; never overwrites a known one.
@@ -166,19 +149,7 @@ std::string sceneToJson(const Scene& scene, const fs::path& folder) {
   }
   root["surfaces"] = Json::object();
   for (const auto& [id, source] : scene.surfaces) {
-    Json j = Json::object();
-    const char* const kind = source.isCloud ? "points" : "mesh";
-    if (source.points)
-      throw InputError(
-          source.mesh->string(), "surfaces." + id,
-          "is made of the sparse points of a capture, which a scene file cannot name; write them as a PLY cloud and name "
-          "it by --surface FILE");
-    if (source.mesh) j[kind] = relative(*source.mesh, "surfaces." + id + "." + kind);
-    if (source.mesh && source.metresPerUnit != 1) {
-      const std::string unit = unitOfMetres(source.metresPerUnit);
-      j["units"] = unit == "cm" || unit == "mm" ? Json(unit) : Json(source.metresPerUnit);
-    }
-    if (source.analytic) j["analytic"] = toJson(*source.analytic);
+    Json j = toJson(source, "surfaces." + id, relative);
     restore(j, keptOf("surfaces", id));
     root["surfaces"][id] = std::move(j);
   }

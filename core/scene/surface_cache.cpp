@@ -6,13 +6,10 @@
 #include <mutex>
 
 #include "core/base/number_text.h"
-#include "core/scene/mesh_file.h"
 #include "core/scene/scene.h"
-#include "core/surface/analytic.h"
 #include "core/surface/depth_filter.h"
 #include "core/surface/depth_fusion.h"
 #include "core/surface/depth_map.h"
-#include "core/surface/mesh.h"
 
 namespace glint {
 
@@ -32,7 +29,7 @@ struct SurfaceCache::Impl {
   std::vector<Frame> frames;
   std::map<std::string, SurfaceSource> sources;
   mutable std::mutex mutex;
-  mutable std::map<std::string, std::shared_future<TriangleMesh>> meshes;              // by surface id, shared by the policies
+  mutable std::map<std::string, std::shared_future<SurfaceTriangles>> triangles;       // by surface id, shared by the policies
   mutable std::map<std::string, std::shared_future<Outcome<SharedSurface>>> surfaces;  // by key and policy
   mutable std::list<std::string> recentDepthMaps;                                      // keys, the last used one first
   mutable std::map<std::string, FusedDepth> fused;                                     // by frame id, without the depth itself
@@ -112,19 +109,8 @@ struct SurfaceCache::Impl {
     }
     const auto it = sources.find(frame.surface);
     if (it == sources.end()) return Failure{Reason::NoSurface, "surface '" + frame.surface + "' does not exist"};
-    if (it->second.analytic) return makeAnalytic(*it->second.analytic);
-    if (!it->second.mesh) return Failure{Reason::NoSurface, "surface '" + frame.surface + "' is neither a mesh nor analytic"};
-    if (it->second.isCloud || it->second.points) {
-      Outcome<PointSurface> made = readPointSurface(it->second);
-      if (!made) return made.failure();
-      return makeMesh(std::move(made->mesh), policy);
-    }
-    TriangleMesh mesh = once(meshes, frame.surface, [&] { return readMesh(it->second); });
-    try {
-      return makeMesh(std::move(mesh), policy);
-    } catch (const std::invalid_argument& e) {
-      throw InputError(it->second.mesh->string(), "", e.what());
-    }
+    return it->second.load(
+        policy, [&](const SurfaceSource& source) { return once(triangles, frame.surface, [&] { return source.triangles(); }); });
   }
 };
 
@@ -134,16 +120,14 @@ SurfaceCache::SurfaceCache(const Scene& scene) : impl_(std::make_unique<Impl>())
 }
 SurfaceCache::SurfaceCache(const Scene& scene, const SurfaceCache& other) : SurfaceCache(scene) {
   const std::lock_guard<std::mutex> lock(other.impl_->mutex);
-  const auto sameMesh = [&](const std::string& id) {
+  const auto isSame = [&](const std::string& id) {
     const auto mine = impl_->sources.find(id), theirs = other.impl_->sources.find(id);
-    return mine != impl_->sources.end() && theirs != other.impl_->sources.end() && mine->second.mesh &&
-           mine->second.mesh == theirs->second.mesh && mine->second.metresPerUnit == theirs->second.metresPerUnit &&
-           mine->second.isCloud == theirs->second.isCloud && mine->second.points == theirs->second.points;
+    return mine != impl_->sources.end() && theirs != other.impl_->sources.end() && mine->second.hasTrianglesOf(theirs->second);
   };
-  for (const auto& [id, mesh] : other.impl_->meshes)
-    if (sameMesh(id)) impl_->meshes.emplace(id, mesh);
+  for (const auto& [id, read] : other.impl_->triangles)
+    if (isSame(id)) impl_->triangles.emplace(id, read);
   for (const auto& [key, surface] : other.impl_->surfaces)
-    if (sameMesh(key.substr(0, key.rfind('|')))) impl_->surfaces.emplace(key, surface);
+    if (isSame(key.substr(0, key.rfind('|')))) impl_->surfaces.emplace(key, surface);
 }
 SurfaceCache::~SurfaceCache() = default;
 

@@ -8,7 +8,7 @@
 #include "core/base/number_text.h"
 #include "core/base/parallel.h"
 #include "core/capture/capture.h"
-#include "core/scene/capture_scene.h"
+#include "core/scene/scene_reader.h"
 
 namespace glint {
 namespace {
@@ -97,7 +97,7 @@ bool compareSurface(const Scene& scene, const std::vector<Sighting>& sightings, 
   for (const Sighting& s : sightings) {
     const Frame& frame = scene.frames[static_cast<std::size_t>(s.frames.front())];
     if (frame.surface.empty()) return false;  // depth maps are compared elsewhere
-    if (scene.surfaces.at(frame.surface).points) return false;
+    if (std::get_if<CapturePoints>(&scene.surfaces.at(frame.surface))) return false;
     const Outcome<std::shared_ptr<const Surface>> surface = surfaces.surfaceOf(s.frames.front(), {});
     if (!surface) return false;
     const Eigen::Vector3d eye = frame.camera.centreInWorld(), sight = s.point - eye;

@@ -124,9 +124,8 @@ Scene smallScene(const Inspection& inspection, const MinimalRepro& repro, const 
     f.highlights = evidenceOf(inspection, fault, frames[i], i < repro.kept.size());
     for (Highlight& h : f.highlights) h.fromScene = true;
     if (const auto source = from.surfaces.find(f.surface); source != from.surfaces.end() && !scene.surfaces.count(f.surface)) {
-      SurfaceSource surface = source->second;
-      if (surface.mesh) surface.mesh = copied(*surface.mesh, folder / "surface", done);
-      scene.surfaces[f.surface] = surface;
+      SurfaceSource& surface = scene.surfaces[f.surface] = source->second;
+      if (SurfaceFile* const read = surface.file()) read->file = copied(read->file, folder / "surface", done);
     }
     scene.frames.push_back(std::move(f));
   }

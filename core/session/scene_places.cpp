@@ -20,12 +20,12 @@ void requireFolder(const std::string& folder, const std::string& given) {
 /// The meshes' paths as the scene file writes them.
 std::set<std::string> meshNames(const Scene& scene) {
   std::set<std::string> names;
-  for (const auto& [id, source] : scene.surfaces) {
-    if (!source.mesh) continue;
-    const auto moved = std::find_if(scene.meshes.begin(), scene.meshes.end(),
-                                    [&, &mesh = *source.mesh](const auto& m) { return m.second == mesh; });
-    names.insert(moved != scene.meshes.end() ? moved->first : source.mesh->lexically_relative(scene.folder).generic_string());
-  }
+  for (const auto& [id, source] : scene.surfaces)
+    if (const SurfaceFile* const read = source.file()) {
+      const auto moved =
+          std::find_if(scene.meshes.begin(), scene.meshes.end(), [&](const auto& m) { return m.second == read->file; });
+      names.insert(moved != scene.meshes.end() ? moved->first : read->file.lexically_relative(scene.folder).generic_string());
+    }
   return names;
 }
 }  // namespace

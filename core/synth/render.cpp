@@ -176,8 +176,9 @@ std::string photographExtension(const RenderOptions& render) { return render.jpe
 /// none takes the place of another mesh of the scene.
 std::map<fs::path, std::string> namesOfMeshes(const Scene& scene) {
   std::map<fs::path, std::string> names;
+  std::vector<fs::path> files;
   for (const auto& [id, source] : scene.surfaces)
-    if (source.mesh) names[*source.mesh];
+    if (source.file() && names.emplace(source.file()->file, "").second) files.push_back(source.file()->file);
   std::set<std::string> taken;
   const auto isFree = [&](const std::string& name, const fs::path& mine) {
     std::error_code ignored;  // what is not there yet is no mesh
@@ -185,12 +186,11 @@ std::map<fs::path, std::string> namesOfMeshes(const Scene& scene) {
       return mesh.first != mine && fs::equivalent(mesh.first, scene.folder / "mesh" / name, ignored);
     });
   };
-  for (const auto& [id, source] : scene.surfaces) {
-    if (!source.mesh || !names[*source.mesh].empty()) continue;
-    std::string name = copyNameOf(*source.mesh);
-    for (int n = 2; !isFree(name, *source.mesh); ++n) name = copyNameOf(*source.mesh, n);
+  for (const fs::path& file : files) {
+    std::string name = copyNameOf(file);
+    for (int n = 2; !isFree(name, file); ++n) name = copyNameOf(file, n);
     taken.insert(name);
-    names[*source.mesh] = name;
+    names[file] = name;
   }
   return names;
 }
@@ -225,7 +225,7 @@ void copyMeshes(Scene& scene, const std::map<fs::path, std::string>& meshes, con
     atomicWrite(out / "mesh" / name, readFile(mesh));
   }
   for (auto& [id, source] : scene.surfaces)
-    if (source.mesh) source.mesh = scene.folder / "mesh" / meshes.at(*source.mesh);
+    if (SurfaceFile* const read = source.file()) read->file = scene.folder / "mesh" / meshes.at(read->file);
 }
 
 /// Photographs, radiance, depth, normals and masks of all frames, written into `out`, which will be the scene's folder.

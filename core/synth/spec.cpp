@@ -165,18 +165,16 @@ void readLights(const JsonNode& lights, Scene& scene) {
 }
 
 void readSurfaces(const JsonNode& surfaces, Scene& scene) {
+  const auto find = [&](const JsonNode& named) {
+    const std::filesystem::path file = resolveInside(scene.folder, named.text(), {}, named.file(), named.place());
+    std::error_code ignored;  // what cannot be asked about is not there
+    if (!std::filesystem::is_regular_file(file, ignored)) named.fail("file '" + named.text() + "' does not exist");
+    return file;
+  };
   for (const std::string& id : surfaces.keys()) {
     const JsonNode node = surfaces.at(id);
     if (!isIdentifier(id)) node.fail("an id must not be empty and must not contain control characters");
-    SurfaceSource source;
-    if (const auto n = node.find("mesh")) {
-      source.mesh = resolveInside(scene.folder, n->text(), {}, n->file(), n->place());
-      std::error_code ignored;  // what cannot be asked about is not there
-      if (!std::filesystem::is_regular_file(*source.mesh, ignored)) n->fail("file '" + n->text() + "' does not exist");
-    }
-    if (const auto n = node.find("analytic")) source.analytic = readAnalyticJson(*n);
-    if (source.mesh.has_value() == source.analytic.has_value()) node.fail("needs exactly one of mesh, analytic");
-    scene.surfaces[id] = source;
+    scene.surfaces[id] = readSurfaceJson(node, find, {"mesh", "analytic"}).source;
   }
   if (scene.surfaces.empty()) surfaces.fail("is empty");
 }
@@ -186,8 +184,8 @@ std::vector<std::string> stepSurface(const JsonNode& steps, Scene& scene) {
   const JsonNode name = steps.at("surface");
   const auto base = scene.surfaces.find(name.text());
   if (base == scene.surfaces.end()) name.fail("surface '" + name.text() + "' does not exist");
-  if (!base->second.analytic) name.fail("'" + name.text() + "' is a mesh: only analytic surfaces have parameters");
-  const AnalyticSpec original = *base->second.analytic;
+  if (!base->second.analytic()) name.fail("'" + name.text() + "' is a mesh: only analytic surfaces have parameters");
+  const AnalyticSpec original = *base->second.analytic();
   const std::string prefix = base->first;
   scene.surfaces.erase(base);
   std::vector<std::string> order;
@@ -197,7 +195,7 @@ std::vector<std::string> stepSurface(const JsonNode& steps, Scene& scene) {
     if (step.type == "torus" && step.minorRadius >= step.majorRadius)
       steps.fail("minor_radius " + shown(step.minorRadius) + " must be smaller than major_radius " + shown(step.majorRadius));
     order.push_back(prefix + "_" + padded(order.size()));
-    scene.surfaces[order.back()].analytic = step;
+    scene.surfaces[order.back()] = step;
   }
   return order;
 }

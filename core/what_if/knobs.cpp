@@ -85,9 +85,8 @@ void addLights(std::vector<WhatIfKnob>& knobs, const Scene& scene, double distan
 }
 
 void addSurface(std::vector<WhatIfKnob>& knobs, const Scene& scene, const std::string& id) {
-  const auto source = scene.surfaces.find(id);
-  if (source == scene.surfaces.end() || !source->second.analytic) return;
-  const std::optional<ShapeParameter> shape = shapeOf(*source->second.analytic);
+  const AnalyticSpec* const formula = scene.formulaOf(id);
+  const std::optional<ShapeParameter> shape = formula ? shapeOf(*formula) : std::nullopt;
   if (!shape) return;
   std::string title = shape->name;
   title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));

@@ -105,11 +105,8 @@ AnalyticSpec withShape(AnalyticSpec s, double value) {
 
 std::optional<Failure> whyNotSynthesised(const Scene& scene) {
   if (scene.lights.empty()) return Failure{Reason::NotSupported, "the scene does not say where its lights are"};
-  for (const Frame& f : scene.frames) {
-    const auto source = scene.surfaces.find(f.surface);
-    if (source == scene.surfaces.end() || !source->second.analytic)
-      return Failure{Reason::NotSupported, "frame " + f.id + " sees no analytic surface"};
-  }
+  for (const Frame& f : scene.frames)
+    if (!scene.formulaOf(f.surface)) return Failure{Reason::NotSupported, "frame " + f.id + " sees no analytic surface"};
   return std::nullopt;
 }
 
@@ -192,18 +189,18 @@ std::shared_ptr<const Scene> changedScene(const Scene& given, const WhatIf& what
   }
   AnalyticSurfaces surfaces;
   for (auto& [id, source] : scene->surfaces) {
-    if (!source.analytic) continue;
+    AnalyticSpec* const formula = source.analytic();
+    if (!formula) continue;
     if (const auto wanted = whatIf.surfaces.find(id); wanted != whatIf.surfaces.end())
-      source.analytic = withShape(*source.analytic, wanted->second);
+      *formula = withShape(*formula, wanted->second);
     try {
-      surfaces[id] = makeAnalytic(*source.analytic);
+      surfaces[id] = makeAnalytic(*formula);
     } catch (const std::invalid_argument& e) {
       refuse(given, "surface '" + id + "': " + e.what());
     }
   }
   for (const auto& [id, value] : whatIf.surfaces)
-    if (!surfaces.count(id) || !shapeOf(*scene->surfaces[id].analytic))
-      refuse(given, "surface '" + id + "' has no adjustable shape");
+    if (!surfaces.count(id) || !shapeOf(*scene->formulaOf(id))) refuse(given, "surface '" + id + "' has no adjustable shape");
 
   for (Frame& f : scene->frames) {
     f.image.clear();  // it shows what was captured
@@ -222,7 +219,7 @@ std::shared_ptr<const Scene> withContours(const Scene& changed, const WhatIf& wh
   auto scene = std::make_shared<Scene>(changed);
   AnalyticSurfaces surfaces;
   for (const auto& [id, source] : scene->surfaces)
-    if (source.analytic) surfaces[id] = makeAnalytic(*source.analytic);
+    if (const AnalyticSpec* const formula = source.analytic()) surfaces[id] = makeAnalytic(*formula);
   synthesise(*scene, surfaces, whatIf, level, frames, progress);
   return scene;
 }

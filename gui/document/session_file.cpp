@@ -9,7 +9,6 @@
 
 #include "core/base/atomic_file.h"
 #include "core/base/temporary_path.h"
-#include "core/scene/mesh_file.h"
 #include "core/session/session.h"
 #include "gui/base/text.h"
 #include "gui/document/figure.h"

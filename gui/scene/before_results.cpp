@@ -16,10 +16,8 @@ std::shared_ptr<const Inspection> knownBeforeResults(const Document& document) {
   for (int i = 0; i < document.frameCount(); ++i)
     if (document.role(i) == FrameRole::Training) known->train.frames.push_back(i);
   // A mesh takes seconds to read, and the run reads it, too.
-  const bool analytic = std::all_of(scene->frames.begin(), scene->frames.end(), [&](const Frame& frame) {
-    const auto source = scene->surfaces.find(frame.surface);
-    return source != scene->surfaces.end() && source->second.analytic;
-  });
+  const bool analytic = std::all_of(scene->frames.begin(), scene->frames.end(),
+                                    [&](const Frame& frame) { return scene->formulaOf(frame.surface); });
   if (analytic) known->surfaces = std::make_shared<SurfaceCache>(*scene);
   return known;
 }

@@ -395,7 +395,7 @@ QString SceneTreeModel::detailOf(const SceneObject& o) const {
     case Kind::Surface: {
       const auto found = scene.surfaces.find(o.key);
       if (found == scene.surfaces.end()) return tr("per frame");
-      return found->second.analytic ? toQString(found->second.analytic->type) : tr("mesh");
+      return toQString(found->second.shape());
     }
     case Kind::Camera: return roleName(document_.role(o.frame));
     case Kind::Highlight: return nameText(o.light);

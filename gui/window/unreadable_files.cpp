@@ -12,7 +12,6 @@
 #include <QVBoxLayout>
 #include <optional>
 
-#include "core/scene/mesh_file.h"
 #include "core/session/session.h"
 #include "gui/base/text.h"
 #include "gui/base/tips.h"

@@ -28,7 +28,7 @@ install(FILES ${PROJECT_BINARY_DIR}/GlintConfig.cmake ${PROJECT_BINARY_DIR}/Glin
 foreach(layer core io viz)
   # Those that are left out need libraries that programs outside are not asked for; only sources of core include them.
   install(DIRECTORY ${layer} DESTINATION ${glint_headers} COMPONENT development FILES_MATCHING PATTERN "*.h"
-    PATTERN "json_dom.h" EXCLUDE PATTERN "fifty_digits.h" EXCLUDE PATTERN "colmap_parts.h" EXCLUDE PATTERN "codec_table.h" EXCLUDE PATTERN "text_rows.h" EXCLUDE)
+    PATTERN "*_dom.h" EXCLUDE PATTERN "fifty_digits.h" EXCLUDE PATTERN "colmap_parts.h" EXCLUDE PATTERN "codec_table.h" EXCLUDE PATTERN "text_rows.h" EXCLUDE)
 endforeach()
 
 install(TARGETS glint RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT glint)

@@ -80,12 +80,12 @@ class CapturesTest : public QObject {
     window.open(path(""));
     QVERIFY2(press(window, "two.ply"), qPrintable(window.lastError()));
     QTRY_VERIFY_WITH_TIMEOUT(window.document().scene() && window.idle(), 20000);
-    QCOMPARE(toQString(window.document().scene()->surfaces.begin()->second.named), QStringLiteral("two.ply"));
+    QCOMPARE(toQString(window.document().scene()->surfaces.begin()->second.file()->named), QStringLiteral("two.ply"));
     QCOMPARE(window.document().scene()->frames.size(), std::size_t(2));
     // The session keeps the answer: opening it asks nothing.
     QVERIFY(window.findChild<FileActions*>()->saveAsTo(path("x.glint")));
     QTRY_VERIFY_WITH_TIMEOUT(QFile::exists(path("x.glint")) && window.idle(), 20000);
-    QCOMPARE(openSession(path("x.glint").toStdString()).scene->surfaces.begin()->second.named, std::string("two.ply"));
+    QCOMPARE(openSession(path("x.glint").toStdString()).scene->surfaces.begin()->second.file()->named, std::string("two.ply"));
   }
 
   void aMeshCanBeChosen() {
@@ -105,7 +105,8 @@ class CapturesTest : public QObject {
     });
     QVERIFY2(press(window, QString::fromUtf8("Choose mesh…")), qPrintable(window.lastError()));
     QTRY_VERIFY_WITH_TIMEOUT(window.document().scene() && window.idle(), 20000);
-    QCOMPARE(toQString(window.document().scene()->surfaces.begin()->second.mesh->string()), elsewhere.filePath("object.ply"));
+    QCOMPARE(toQString(window.document().scene()->surfaces.begin()->second.file()->file.string()),
+             elsewhere.filePath("object.ply"));
   }
 
   /// Who stands one level too high is led to the folder that is meant.

@@ -42,7 +42,7 @@ Fixture::Fixture(int frames) : scene_(std::make_shared<Scene>()) {
   AnalyticSpec ball;
   ball.type = "sphere";
   ball.radius = 0.4;
-  scene_->surfaces["ball"].analytic = ball;
+  scene_->surfaces["ball"] = ball;
 }
 
 Opened Fixture::opened() const {

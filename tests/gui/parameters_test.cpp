@@ -293,8 +293,8 @@ class ParametersTest : public QObject {
       }
       if (name == "bumpy") {
         const QString mesh = folder.filePath(QStringLiteral("body.ply"));
-        test::writePly(test::bumpyMesh(*made->surfaces.at("body").analytic, 0.02, 0.2, 5), mesh.toStdString());
-        made->surfaces["body"] = {mesh.toStdString(), std::nullopt};
+        test::writePly(test::bumpyMesh(*made->surfaces.at("body").analytic(), 0.02, 0.2, 5), mesh.toStdString());
+        made->surfaces["body"] = MeshFile{{mesh.toStdString()}};
       }
     }
     return kept = made;

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "core/base/number_text.h"
-#include "core/scene/mesh_file.h"
+#include "core/scene/surface_source.h"
 #include "core/surface/brightest_point.h"
 #include "core/surface/mesh.h"
 #include "tests/stability/cases.h"

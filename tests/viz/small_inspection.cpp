@@ -99,7 +99,7 @@ std::shared_ptr<Inspection> smallInspection(const std::filesystem::path& folder,
   AnalyticSpec sphere;
   sphere.type = "sphere";
   sphere.radius = radius;
-  scene->surfaces["ball"].analytic = sphere;
+  scene->surfaces["ball"] = sphere;
   TrueLight truth;
   truth.id = "lamp";
   truth.lamp = lampAt(light);

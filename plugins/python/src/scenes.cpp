@@ -126,16 +126,15 @@ SceneHandle sceneFrom(const std::vector<Frame>& frames, const std::map<std::stri
   scene->name = name;
   scene->folder = std::filesystem::current_path();
   for (const auto& [id, file] : meshes) {
-    SurfaceSource source;
-    source.mesh = std::filesystem::absolute(file).lexically_normal();
+    const MeshFile mesh{{std::filesystem::absolute(file).lexically_normal()}};
     std::error_code ignored;  // unreadable counts as missing
-    if (!std::filesystem::is_regular_file(*source.mesh, ignored))
+    if (!std::filesystem::is_regular_file(mesh.file, ignored))
       throw InputError(file, "surfaces." + id, "there is no such mesh file");
-    scene->surfaces[id] = source;
+    scene->surfaces[id] = mesh;
   }
   for (const auto& [id, spec] : analytic) {
     makeAnalytic(spec);  // says what is wrong with it
-    scene->surfaces[id].analytic = spec;
+    scene->surfaces[id] = spec;
   }
   std::set<std::string> ids;
   for (const Frame& f : frames) {

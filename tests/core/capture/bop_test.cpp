@@ -6,7 +6,7 @@
 
 #include "core/base/permitted.h"
 #include "core/capture/capture.h"
-#include "core/scene/capture_scene.h"
+#include "core/scene/scene_reader.h"
 #include "tests/core/capture/png_fixture.h"
 #include "tests/core/scene/scene_fixture.h"
 #include "tests/tolerances.h"

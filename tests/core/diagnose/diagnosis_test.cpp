@@ -202,7 +202,7 @@ TEST(Diagnosis, TheWorldsSizeChangesNothing) {
   const auto scaled = [](double s) {
     const std::shared_ptr<Scene> scene = withMovedContour(2);
     for (Frame& f : scene->frames) f.camera.camFromWorld.translation() *= s;
-    AnalyticSpec& ball = *scene->surfaces.at("body").analytic;
+    AnalyticSpec& ball = *scene->surfaces.at("body").analytic();
     ball.radius *= s;
     ball.worldFromSurface.translation() *= s;
     DiagnoseOptions options = quick();

@@ -31,8 +31,7 @@ class EaredBall {
 
   std::shared_ptr<Scene> scene() const {
     std::shared_ptr<Scene> scene = exactScene(sphere(kRadius), 9);
-    scene->surfaces.at("body") = {};
-    scene->surfaces.at("body").mesh = folder_ / "ears.obj";
+    scene->surfaces.at("body") = MeshFile{{folder_ / "ears.obj"}};
     return scene;
   }
 

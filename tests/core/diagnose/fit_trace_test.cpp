@@ -90,7 +90,7 @@ TEST(FitTrace, TheWorldsSizeScalesPlacesAndKeepsCosts) {
   const auto scaled = [](double s) {
     const std::shared_ptr<Scene> scene = noisyScene(0.2);
     for (Frame& f : scene->frames) f.camera.camFromWorld.translation() *= s;
-    AnalyticSpec& ball = *scene->surfaces.at("body").analytic;
+    AnalyticSpec& ball = *scene->surfaces.at("body").analytic();
     ball.radius *= s;
     ball.worldFromSurface.translation() *= s;
     return traced(scene, "limit-angle").at(0);

@@ -44,7 +44,7 @@ TrueLight tubeLamp() {
 Scene orbit(const AnalyticSpec& body, int frames = 10, double noisePx = 0, const TrueLight& lamp = pointLamp()) {
   Scene scene;
   scene.name = "orbit";
-  scene.surfaces["body"].analytic = body;
+  scene.surfaces["body"] = body;
   std::mt19937 random(5);
   std::normal_distribution<double> noise(0, 1);
   for (int i = 0; i < frames; ++i) {

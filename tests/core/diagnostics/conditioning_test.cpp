@@ -30,7 +30,7 @@ const Finding& finding(const Conditioning& c, const std::string& id) {
 /// A plane seen by eight cameras, everything `scale` times as large.
 std::shared_ptr<Scene> planeScene(double scale) {
   auto scene = std::make_shared<Scene>();
-  scene->surfaces["body"].analytic = sheet(0);
+  scene->surfaces["body"] = sheet(0);
   for (int i = 0; i < 8; ++i) {
     Frame f;
     f.id = std::to_string(i);

@@ -76,7 +76,7 @@ TEST(ExplainLight, AModelWithALightOfItsOwnShowsThatOne) {
 
 TEST(ExplainLight, WithAModelForEachSurfaceTheRaysAreThoseOfTheSurfaceConcerned) {
   const auto scene = litScene(sphere(0.5), 8);
-  scene->surfaces["other"].analytic = sphere(0.8);
+  scene->surfaces["other"] = sphere(0.8);
   for (int i = 5; i < 8; ++i) {  // five frames see the one body, three the other
     Frame& f = scene->frames[std::size_t(i)];
     f.surface = "other";

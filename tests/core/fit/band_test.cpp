@@ -321,7 +321,7 @@ TEST(Band, HoldsPosesThatAreOff) {
 TEST(Band, HoldsAScaleThatIsOffByItsTolerance) {
   constexpr double kOff = 0.01;
   const auto scene = exactScene(sphere(1), 12);
-  AnalyticSpec& body = *scene->surfaces["body"].analytic;
+  AnalyticSpec& body = *scene->surfaces["body"].analytic();
   // Away from the origin, about which the scale is off: the scene moved as a whole looks the same.
   const Eigen::Translation3d away(0, 0, 1);
   body.worldFromSurface = away * body.worldFromSurface;

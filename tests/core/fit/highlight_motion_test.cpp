@@ -244,8 +244,8 @@ TEST(HighlightMotion, WithoutOtherViewsOrASurfaceNothingIsSaid) {
 
 TEST(HighlightMotion, PanelsAreSpreadOverFramesOfTheSameSurface) {
   Scene scene;
-  scene.surfaces["body"].analytic = ball();
-  scene.surfaces["other"].analytic = ball();
+  scene.surfaces["body"] = ball();
+  scene.surfaces["other"] = ball();
   scene.frames.resize(33);
   for (std::size_t f = 0; f < 33; ++f) scene.frames[f].surface = f < 30 ? "body" : f == 30 ? "" : "other";
   scene.frames[10].highlights.resize(1);  // by hand: not asked

@@ -27,7 +27,7 @@ Painted painted() {
 
 std::shared_ptr<Scene> photographed(const Painted& p, const TemporaryFolder& folder, const std::vector<std::string>& lightsOn) {
   auto scene = std::make_shared<Scene>();
-  scene->surfaces["body"].analytic = p.surface;
+  scene->surfaces["body"] = p.surface;
   for (std::size_t f = 0; f < p.cameras.size(); ++f) {
     Frame frame;
     frame.id = std::to_string(f);

@@ -99,7 +99,7 @@ struct Judged {
 /// @param asTold  cameras that the judgement is told instead of the true ones; empty = the true ones
 inline Judged judged(const Painted& p, const std::vector<Camera>& asTold = {}, const AnalyticSpec* surfaceTold = nullptr) {
   Judged j;
-  j.scene.surfaces["body"].analytic = surfaceTold ? *surfaceTold : p.surface;
+  j.scene.surfaces["body"] = surfaceTold ? *surfaceTold : p.surface;
   const std::shared_ptr<const Surface> truth = makeAnalytic(p.surface);
   for (std::size_t f = 0; f < p.cameras.size(); ++f) {
     Frame frame;
@@ -126,7 +126,7 @@ inline Judged judged(const Painted& p, const std::vector<Camera>& asTold = {}, c
   }
   const SurfaceCache surfaces(j.scene);
   const std::vector<std::vector<int>> panels = motionPanels(j.scene, surfaces);
-  const std::shared_ptr<const Surface> told = makeAnalytic(*j.scene.surfaces["body"].analytic);
+  const std::shared_ptr<const Surface> told = makeAnalytic(*j.scene.surfaces["body"].analytic());
   for (std::size_t f = 0; f < p.cameras.size(); ++f)
     j.verdicts.push_back(motionVerdicts(j.scene, static_cast<int>(f), panels[f], j.evidence, told.get(), Settings()));
   return j;

@@ -8,7 +8,6 @@
 #include <filesystem>
 
 #include "core/inspect/summary.h"
-#include "core/scene/mesh_file.h"
 #include "core/selection/leave_one_out.h"
 #include "core/session/session.h"
 #include "core/surface/mesh_policy.h"
@@ -30,7 +29,7 @@ class RefinedNormalsTest : public testing::Test {
     auto scene = exactScene(sphere(0.5), kFrames);
     const std::filesystem::path file = folder_.path() / ("ball" + std::to_string(slope) + ".ply");
     test::writePly(test::bumpyMesh(sphere(0.5), slope, 0.12, 7, 200), file);
-    scene->surfaces["body"] = {file, std::nullopt};
+    scene->surfaces["body"] = MeshFile{{file}};
     return scene;
   }
   static InspectionRequest request(bool refine) {
@@ -109,7 +108,7 @@ TEST_F(RefinedNormalsTest, WhatHasNoNormalsToTurnStays) {
   EXPECT_TRUE(inspect(scene, triangulated).corrections.empty());
   // A frame that does not train and sees another surface keeps it; one that trains keeps all meshes as they are.
   AnalyticSpec other = sphere(0.5);
-  scene->surfaces["other"].analytic = other;
+  scene->surfaces["other"] = other;
   scene->frames[1].surface = "other";
   const Inspection mixed = inspect(scene, request(true));
   ASSERT_EQ(mixed.corrections.count({"lamp"}), 1u);

@@ -85,7 +85,7 @@ template <class On>
 std::shared_ptr<Scene> exactScene(const AnalyticSpec& spec, const std::vector<NamedLight>& lights, int frames, const On& on) {
   auto scene = std::make_shared<Scene>();
   scene->name = "exact";
-  scene->surfaces["body"].analytic = spec;
+  scene->surfaces["body"] = spec;
   for (int i = 0; i < frames; ++i) {
     Frame f;
     f.id = "v" + std::to_string(i);

@@ -85,7 +85,7 @@ TEST(LivePredictor, AFrameIsKnownByItsIdItsSurfaceAndItsLights) {
 TEST(LivePredictor, WhatIsNotKnownIsNamed) {
   const auto scene = exactScene(sphere(1.0), 7);
   scene->frames[6].camera.width = 600;  // cameras differ
-  scene->surfaces["another"].analytic = sphere(0.9);
+  scene->surfaces["another"] = sphere(0.9);
   scene->frames[6].surface = "another";  // and so do surfaces
   const LivePredictor live(scene, levelSets());
   const auto without = live.predict("new", between().camFromWorld, std::nullopt);

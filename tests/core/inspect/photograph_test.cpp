@@ -125,7 +125,7 @@ TEST(SynthesisedPhotograph, ScaleOfTheSceneDoesNotChangeThePicture) {
   constexpr double kFactor = 1000;
   for (Frame& f : large->frames) f.camera.camFromWorld.translation() *= kFactor;
   AnalyticSpec ball = sphere(0.5 * kFactor);
-  for (auto& [id, source] : large->surfaces) source.analytic = ball;
+  for (auto& [id, source] : large->surfaces) source = ball;
   large->lights[0].lamp = lampAt(scene->lights[0].lamp.position() * kFactor);
   const Outcome<Image> a = photographOf(inspect(scene, synthetic()), 1), b = photographOf(inspect(large, synthetic()), 1);
   ASSERT_TRUE(a && b);

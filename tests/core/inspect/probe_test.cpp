@@ -28,7 +28,7 @@ Inspection ballInFront() {
   AnalyticSpec ball;
   ball.type = "sphere";
   ball.radius = 1;
-  scene->surfaces["ball"].analytic = ball;
+  scene->surfaces["ball"] = ball;
   Inspection inspection;
   inspection.scene = scene;
   inspection.surfaces = std::make_shared<const SurfaceCache>(*scene);

@@ -239,7 +239,7 @@ TEST(Lights, OneSwitchedOff) {
   second.light = trueLampAt({-0.4, 0.5, 1.8});
   second.light.id = "other";
   auto scene = std::make_shared<Scene>();
-  scene->surfaces["sheet"].analytic = first.surface;
+  scene->surfaces["sheet"] = first.surface;
   scene->lights = {first.light, second.light};
   for (int i = 0; i < 8; ++i) {
     Frame f;

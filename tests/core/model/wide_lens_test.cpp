@@ -63,7 +63,7 @@ std::shared_ptr<Scene> sceneThrough(bool wide, std::vector<Highlight>* expected 
   AnalyticSpec body;
   body.type = "ellipsoid";
   body.semiAxes = {0.45, 0.35, 0.3};
-  scene->surfaces["body"].analytic = body;
+  scene->surfaces["body"] = body;
   const std::shared_ptr<const Surface> surface = makeAnalytic(body);
   TrueLight light;
   light.id = "lamp";
@@ -132,7 +132,7 @@ TEST(SeenWindow, OfAFisheyeByItsFormula) {
 
 TEST(WideLens, BrightestPointFarFromTheAxis) {
   const auto scene = sceneThrough(true);
-  const std::shared_ptr<const Surface> surface = makeAnalytic(*scene->surfaces.at("body").analytic);
+  const std::shared_ptr<const Surface> surface = makeAnalytic(*scene->surfaces.at("body").analytic());
   const Light light = lightOf(scene->lights.front().lamp);
   for (const Frame& f : scene->frames) {
     const auto found = predictedBrightestPoints(*surface, f.camera, light, {});
@@ -143,7 +143,7 @@ TEST(WideLens, BrightestPointFarFromTheAxis) {
 
 TEST(WideLens, ContourFarFromTheAxis) {
   const auto scene = sceneThrough(true);
-  const std::shared_ptr<const Surface> surface = makeAnalytic(*scene->surfaces.at("body").analytic);
+  const std::shared_ptr<const Surface> surface = makeAnalytic(*scene->surfaces.at("body").analytic());
   ExactOptions options;
   options.kind = ContourKind::LimitAngle;
   options.limitAngle = 0.08;

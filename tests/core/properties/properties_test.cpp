@@ -329,7 +329,7 @@ TEST_F(Properties, ScenesOfEveryKind) {
   for (int i = kFirst; i < kFirst + std::max(kScenes, kUsualScenes); ++i) {
     const RandomScene& s = scene(i);
     const SurfaceSource& body = s.scene->surfaces.at("body");
-    ++tally[body.mesh ? "mesh" : body.analytic->type];
+    ++tally[body.shape()];
     std::set<std::string> lights;
     for (const Frame& f : s.scene->frames)
       for (const Highlight& h : f.highlights) lights.insert(h.light);

@@ -13,7 +13,6 @@
 #include "core/geometry/conic.h"
 #include "core/geometry/light.h"
 #include "core/reflectance/lobe.h"
-#include "core/scene/mesh_file.h"
 #include "core/surface/brightest_point.h"
 #include "core/surface/mesh.h"
 
@@ -286,10 +285,10 @@ RandomScene randomScene(const Draw& what, const std::filesystem::path& folder) {
     if (what.kind == Kind::Mesh) {
       const TriangleMesh mesh = cap(random);
       surface = makeMesh(mesh, MeshPolicy{});
-      scene->surfaces["body"].mesh = writeMesh(mesh, folder);
+      scene->surfaces["body"] = MeshFile{{writeMesh(mesh, folder)}};
     } else {
-      scene->surfaces["body"].analytic = analytic(what.kind, random);
-      surface = makeAnalytic(*scene->surfaces["body"].analytic);
+      scene->surfaces["body"] = analytic(what.kind, random);
+      surface = makeAnalytic(*scene->surfaces["body"].analytic());
     }
     std::vector<Lamp> lamps;
     for (int i = 0; i < what.lights; ++i)
@@ -326,16 +325,16 @@ namespace {
 void mapSurfaces(Scene& scene, const Eigen::Affine3d& map, double scale, const std::filesystem::path& folder) {
   const bool mirror = map.linear().determinant() < 0;
   for (auto& [id, source] : scene.surfaces) {
-    if (source.mesh) {
-      TriangleMesh mesh = readMesh(*source.mesh);
+    if (source.file()) {
+      TriangleMesh mesh = readMesh(source.file()->file);
       for (Eigen::Vector3d& v : mesh.vertices) v = map * v;
       for (Eigen::Vector3d& n : mesh.normals) n = (map.linear() * n).normalized();
       if (mirror)
         for (Eigen::Vector3i& t : mesh.triangles) std::swap(t.y(), t.z());
-      source.mesh = writeMesh(mesh, folder);
+      source = MeshFile{{writeMesh(mesh, folder)}};
       continue;
     }
-    AnalyticSpec& spec = *source.analytic;
+    AnalyticSpec& spec = *source.analytic();
     spec.radius *= scale;
     spec.semiAxes *= scale;
     Eigen::Isometry3d pose;

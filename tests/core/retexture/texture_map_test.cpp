@@ -12,7 +12,7 @@ struct On {
   Scene scene;
   std::shared_ptr<const Surface> surface;
   explicit On(AnalyticSpec spec) : surface(makeAnalytic(spec)) {
-    scene.surfaces["body"].analytic = spec;
+    scene.surfaces["body"] = spec;
     scene.frames.resize(1);
     scene.frames[0].surface = "body";
   }
@@ -74,7 +74,7 @@ TEST(TextureCoordinates, OfOtherSurfacesAreTheBoxOrWhatIsAskedFor) {
   expectAt(on.at({0, 0.4, 0}, TextureMapping::Spherical), 0.25, 0.5);
   // A surface that is no analytic one has no coordinates of its own.
   On mesh(sphere);
-  mesh.scene.surfaces["body"].analytic.reset();
+  mesh.scene.surfaces["body"] = MeshFile{{"/body.ply"}};
   expectAt(mesh.at({0.1, 0.2, 0.3}), 0.6, 0.3);
   EXPECT_NE(TextureCoordinates(mesh.scene, 0, *mesh.surface, TextureMapping::Natural, 1).words().find("seams"),
             std::string::npos);

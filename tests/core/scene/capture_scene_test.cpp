@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // From a capture of another program to a scene: which reading, which surface, units, names, and what a session keeps of it.
-#include "core/scene/capture_scene.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/scene/mesh_file.h"
 #include "core/scene/relinked.h"
 #include "core/scene/scene_files.h"
+#include "core/scene/scene_reader.h"
 #include "core/session/session.h"
 #include "tests/core/scene/scene_fixture.h"
 
@@ -50,7 +48,7 @@ TEST(CaptureScene, OneMeshInTheFolderIsTheSurfaceAndTheNamesAreTheIds) {
   EXPECT_EQ(scene.frames[0].camera.pixelFromRay(0, 2), 31.5);
   EXPECT_EQ(scene.frames[0].camera.camFromWorld.translation().z(), 2);
   ASSERT_EQ(scene.surfaces.size(), 1u);
-  EXPECT_EQ(*scene.surfaces.begin()->second.mesh, folder / "object.ply");
+  EXPECT_EQ(scene.surfaces.begin()->second.file()->file, folder / "object.ply");
 }
 
 TEST(CaptureScene, SeveralMeshesAreListedAndRefused) {
@@ -61,7 +59,7 @@ TEST(CaptureScene, SeveralMeshesAreListedAndRefused) {
   EXPECT_THAT(inputErrorOf([&] { readScene(folder.path()); }),
               testing::AllOf(HasSubstr("one.ply, two.ply"), HasSubstr("--surface FILE")));
   folder.write("mesh.ply", kTriangle);
-  EXPECT_EQ(*readScene(folder.path()).surfaces.begin()->second.mesh, folder / "mesh.ply") << "mesh.* comes first";
+  EXPECT_EQ(readScene(folder.path()).surfaces.begin()->second.file()->file, folder / "mesh.ply") << "mesh.* comes first";
 }
 
 TEST(CaptureScene, WithoutSurfaceSaysHowToNameOne) {
@@ -83,9 +81,9 @@ TEST(CaptureScene, UnitsScalePosesAndMesh) {
   options.choices.surfaceMetresPerUnit = 0.001;
   const Scene scene = readScene(folder.path(), options);
   EXPECT_NEAR(scene.frames[0].camera.camFromWorld.translation().z(), 0.02, kRoundOff);
-  EXPECT_NEAR(readMesh(scene.surfaces.begin()->second).vertices[1].x(), 0.1, kRoundOff);
+  EXPECT_NEAR(scene.surfaces.begin()->second.triangles().mesh.vertices[1].x(), 0.1, kRoundOff);
   options.choices.surfaceMetresPerUnit.reset();  // as the poses
-  EXPECT_NEAR(readMesh(readScene(folder.path(), options).surfaces.begin()->second).vertices[1].x(), 1.0, kRoundOff);
+  EXPECT_NEAR(readScene(folder.path(), options).surfaces.begin()->second.triangles().mesh.vertices[1].x(), 1.0, kRoundOff);
 }
 
 TEST(CaptureScene, UnitOfTheMeshIsKeptInASceneFile) {
@@ -96,7 +94,7 @@ TEST(CaptureScene, UnitOfTheMeshIsKeptInASceneFile) {
   options.choices.surfaceMetresPerUnit = 0.001;
   writeScene(readScene(folder.path(), options), folder / "out.json");
   const Scene again = readScene(folder / "out.json");
-  EXPECT_NEAR(readMesh(again.surfaces.begin()->second).vertices[1].x(), 0.1, kRoundOff);
+  EXPECT_NEAR(again.surfaces.begin()->second.triangles().mesh.vertices[1].x(), 0.1, kRoundOff);
   EXPECT_THAT(testing_support::contentOf(folder / "out.json"), HasSubstr("\"units\": \"mm\""));
 }
 
@@ -169,7 +167,7 @@ TEST(CaptureScene, SessionKeepsHowItsInputIsRead) {
   writeSession(session, folder / "x.glint");
   const OpenedSession opened = openSession(folder / "x.glint");
   EXPECT_EQ(opened.scene->choices, scene.choices);
-  EXPECT_EQ(*opened.scene->surfaces.begin()->second.mesh, folder / "two.ply");
+  EXPECT_EQ(opened.scene->surfaces.begin()->second.file()->file, folder / "two.ply");
   EXPECT_NEAR(opened.scene->frames[0].camera.camFromWorld.translation().z(), 0.02, kRoundOff);
   // Every file that says what the capture is belongs to the inputs: a change of one is seen.
   EXPECT_THAT(changedFiles(opened.session), ElementsAre());
@@ -195,7 +193,7 @@ TEST(CaptureScene, MeshThatMovedIsFoundWhereItWasRelinked) {
   EXPECT_THROW(readScene(folder.path(), options), MissingMesh);
   options.meshes["gone.ply"] = elsewhere.write("found.ply", kTriangle);
   const Scene scene = readScene(folder.path(), options);
-  EXPECT_EQ(*scene.surfaces.begin()->second.mesh, elsewhere / "found.ply");
+  EXPECT_EQ(scene.surfaces.begin()->second.file()->file, elsewhere / "found.ply");
   EXPECT_EQ(scene.meshes.at("gone.ply"), elsewhere / "found.ply");
 }
 

@@ -10,7 +10,7 @@ namespace {
 Scene rowOfBalls(int count) {
   Scene scene;
   for (int i = 0; i < count; ++i) {
-    AnalyticSpec& ball = scene.surfaces[std::to_string(i)].analytic.emplace();
+    AnalyticSpec& ball = *scene.surfaces[std::to_string(i)].analytic();
     ball.type = "sphere";
     ball.radius = 0.25;
     ball.worldFromSurface.translation().x() = 3 * i;
@@ -47,7 +47,7 @@ TEST(ConventionReport, FramesOfManySurfacesSeeTheirOwn) {
 TEST(ConventionReport, AnObjectFarFromTheOriginIsAFinding) {
   const auto findingsAt = [](double distance) {
     Scene scene = rowOfBalls(1);
-    scene.surfaces.at("0").analytic->worldFromSurface.translation().x() += distance;
+    scene.surfaces.at("0").analytic()->worldFromSurface.translation().x() += distance;
     for (Frame& f : scene.frames) f.camera.camFromWorld.translation().x() -= distance;
     std::string all;
     for (const std::string& f : conventionReport(scene).findings) all += f + "\n";

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/scene/coordinate_grid.h"
 
 #include <gmock/gmock.h>
 

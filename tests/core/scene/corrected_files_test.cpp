@@ -9,7 +9,6 @@
 
 #include "core/base/number_text.h"
 #include "core/scene/geometry_check.h"
-#include "core/scene/mesh_file.h"
 #include "tests/core/scene/scene_fixture.h"
 
 namespace glint::corrected_files_tests {
@@ -103,12 +102,12 @@ TEST(CorrectedFor, WritesTheMeshBesideTheSceneInItsUnit) {
   const Scene scene = readScene(folder.write("scene.json", kScene));
   for (int again = 0; again < 2; ++again) {  // what it wrote itself, it replaces
     const Scene right = correctedFor(scene, {"flip-faces"}, folder / "right.json");
-    EXPECT_EQ(right.surfaces.at("body").mesh, folder / "right.body.ply");
-    EXPECT_DOUBLE_EQ(right.surfaces.at("body").metresPerUnit, 0.001);
+    EXPECT_EQ(right.surfaces.at("body").file()->file, folder / "right.body.ply");
+    EXPECT_DOUBLE_EQ(right.surfaces.at("body").file()->metresPerUnit, 0.001);
     writeScene(right, folder / "right.json");
   }
   const Scene back = readScene(folder / "right.json");
-  const TriangleMesh mesh = readMesh(back.surfaces.at("body"));
+  const TriangleMesh mesh = back.surfaces.at("body").triangles().mesh;
   EXPECT_LT((mesh.vertices[1] - Vector3d(0.001, 0, 0)).norm(), 1e-15);
   EXPECT_EQ(sidesOf(mesh), "");
 }

@@ -65,7 +65,7 @@ TEST(Corrections, UnitsOfMeshAndDepth) {
   "camera": {"width": 64, "height": 48, "fx": 80, "fy": 80, "cx": 31.5, "cy": 23.5},
   "frames": [{"id": "a", "surface": "body", "camera_from_world": [[1,0,0,0],[0,1,0,0],[0,0,1,2],[0,0,0,1]]}],
   "surfaces": {"body": {"mesh": "body.ply", "units": "cm"}}})"));
-  EXPECT_DOUBLE_EQ(corrected(scene, "mesh-mm").surfaces.at("body").metresPerUnit, 1e-5);  // on top of what the file says
+  EXPECT_DOUBLE_EQ(corrected(scene, "mesh-mm").surfaces.at("body").file()->metresPerUnit, 1e-5);  // on top of what the file says
   EXPECT_NE(inputErrorOf([&] { corrected(scene, "depth-scale=0.001"); }).find("no frame has an integer depth map"),
             std::string::npos);
   scene.frames[0].depthScale = 0.005;
@@ -100,7 +100,7 @@ TEST(Corrections, CamerasMoveIntoTheFrameOfTheMesh) {
   EXPECT_TRUE(moved.lights[0].lamp.position().isApprox(Eigen::Vector3d(2, 4, -2), 1e-12));
   EXPECT_DOUBLE_EQ(radiusOf(moved.lights[0].lamp), 0.1);
   EXPECT_TRUE(moved.lights[1].lamp.centre.head<3>().isApprox(Eigen::Vector3d(0, 1, 0), 1e-12));
-  EXPECT_DOUBLE_EQ(moved.surfaces.at("body").metresPerUnit, 1);
+  EXPECT_DOUBLE_EQ(moved.surfaces.at("body").file()->metresPerUnit, 1);
 }
 
 TEST(Corrections, ASimilarityComesBackFromItsText) {

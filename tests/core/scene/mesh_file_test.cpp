@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/scene/mesh_file.h"
-
 #include <gmock/gmock.h>
 
 #include <cstring>
 
+#include "core/scene/surface_source.h"
 #include "tests/core/scene/scene_fixture.h"
 #include "tests/shared_data.h"
 

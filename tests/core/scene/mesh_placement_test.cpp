@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/scene/mesh_placement.h"
-
 #include <gmock/gmock.h>
 
 #include "core/base/number_text.h"
+#include "core/scene/convention_report.h"
 #include "tests/core/scene/scene_fixture.h"
 #include "tests/core/surface/registration_fixture.h"
 
@@ -33,7 +32,7 @@ struct Misplaced {
     std::string obj;
     for (const Vector3d& v : mesh.vertices) obj += formatted("v %.17g %.17g %.17g\n", v.x(), v.y(), v.z());
     for (const Eigen::Vector3i& t : mesh.triangles) obj += formatted("f %d %d %d\n", t.x() + 1, t.y() + 1, t.z() + 1);
-    scene.surfaces["body"].mesh = folder.write("mesh.obj", obj);
+    scene.surfaces["body"] = MeshFile{{folder.write("mesh.obj", obj)}};
     Eigen::AlignedBox3d box;
     for (const Vector3d& v : mesh.vertices) box.extend(v);
     for (int i = 0; i < kCameras; ++i) {

@@ -7,7 +7,6 @@
 
 #include "core/capture/capture.h"
 #include "core/scene/convention_report.h"
-#include "core/scene/mesh_file.h"
 #include "core/session/session.h"
 #include "tests/core/capture/png_fixture.h"
 #include "tests/core/capture/video_fixture.h"
@@ -116,7 +115,8 @@ TEST(PosedScene, CloudIsASurfaceAndStaysOneInASceneFile) {
   folder.write("frames/0.04.png", pngOfSize(64, 48));
   folder.options.choices.surfaceMetresPerUnit = 10;
   const Scene scene = readScene(folder / "frames", folder.options);
-  EXPECT_TRUE(scene.surfaces.begin()->second.isCloud);
+  EXPECT_EQ(scene.surfaces.begin()->second.kind(), "points");
+  EXPECT_TRUE(std::get_if<PointsFile>(&scene.surfaces.begin()->second));
   writeScene(scene, folder / "out.json");
   EXPECT_THAT(contentOf(folder / "out.json"), HasSubstr("\"points\": \"cloud.ply\""));
   for (const Scene& s : {scene, readScene(folder / "out.json")}) {
@@ -138,8 +138,8 @@ TEST(PosedScene, SparsePointsAreASurfaceOnlyWhenAskedForAndEnough) {
   ReadOptions options;
   options.choices.surface = InputChoices::Surface::Points;
   const Scene scene = readScene(folder.path(), options);
-  ASSERT_TRUE(scene.surfaces.begin()->second.points);
-  EXPECT_EQ(scene.surfaces.begin()->second.points->points.size(), 1u);
+  ASSERT_TRUE(std::get_if<CapturePoints>(&scene.surfaces.begin()->second));
+  EXPECT_EQ(scene.surfaces.begin()->second.triangles().mesh.vertices.size(), 1u);
   const auto surface = SurfaceCache(scene).surfaceOf(0, {});
   ASSERT_FALSE(surface);
   EXPECT_EQ(surface.failure().reason, Reason::TooFewPoints);

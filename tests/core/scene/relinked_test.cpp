@@ -78,9 +78,9 @@ TEST(RelinkedMeshes, AFileTakesThePlaceOfEverySurfaceThatNamesIt) {
   ReadOptions options;
   options.meshes["m/a.ply"] = now;
   const Scene read = readScene(file, options);
-  EXPECT_EQ(*read.surfaces.at("a").mesh, now);
-  EXPECT_EQ(*read.surfaces.at("a2").mesh, now);
-  EXPECT_EQ(*read.surfaces.at("b").mesh, folder / "m/b.ply");
+  EXPECT_EQ(read.surfaces.at("a").file()->file, now);
+  EXPECT_EQ(read.surfaces.at("a2").file()->file, now);
+  EXPECT_EQ(read.surfaces.at("b").file()->file, folder / "m/b.ply");
   EXPECT_THAT(read.meshes, ElementsAre(Pair("m/a.ply", now)));
   EXPECT_THAT(read.warnings, IsEmpty());
   // Written again, the scene names the file where it is; what reads it needs to be told nothing.
@@ -88,7 +88,7 @@ TEST(RelinkedMeshes, AFileTakesThePlaceOfEverySurfaceThatNamesIt) {
   ReadOptions outside;
   outside.allowOutsidePaths = true;
   const Scene again = readScene(folder / "again.json", outside);
-  EXPECT_EQ(*again.surfaces.at("a2").mesh, now);
+  EXPECT_EQ(again.surfaces.at("a2").file()->file, now);
   EXPECT_THAT(again.meshes, IsEmpty());
 }
 
@@ -104,8 +104,8 @@ TEST(RelinkedMeshes, AFolderServesThoseThatAreNotInTheirPlace) {
   EXPECT_EQ(missingIn([&] { readScene(file, options); }).mesh(), folder / "m/b.ply");
   options.meshFolders.push_back(second.path());
   const Scene read = readScene(file, options);
-  EXPECT_EQ(*read.surfaces.at("a").mesh, folder / "m/a.ply");
-  EXPECT_EQ(*read.surfaces.at("b").mesh, longest);
+  EXPECT_EQ(read.surfaces.at("a").file()->file, folder / "m/a.ply");
+  EXPECT_EQ(read.surfaces.at("b").file()->file, longest);
   EXPECT_THAT(read.meshes, ElementsAre(Pair("m/b.ply", longest)));
 }
 
@@ -152,16 +152,16 @@ TEST(RelinkedMeshes, AreKeptByASessionRelativeToItself) {
   const fs::path now = moved / "else/a2.ply";
   EXPECT_THROW(openSession(moved / "sessions/x.glint"), OutsidePath) << "outside of the folders of the session and its scene";
   const OpenedSession opened = openSession(permitted(moved / "sessions/x.glint"));
-  EXPECT_EQ(*opened.scene->surfaces.at("a").mesh, now);
+  EXPECT_EQ(opened.scene->surfaces.at("a").file()->file, now);
   EXPECT_THAT(opened.session.meshes, ElementsAre(Pair("m/a.ply", now)));
   EXPECT_EQ(opened.warning, "");
-  EXPECT_EQ(*readScene(moved / "sessions/x.glint", allowingOutside()).surfaces.at("a2").mesh, now)
+  EXPECT_EQ(readScene(moved / "sessions/x.glint", allowingOutside()).surfaces.at("a2").file()->file, now)
       << "a session is an input like a scene";
   // Gone again, it is asked for again, and what is given now counts.
   EXPECT_EQ(missingIn([&] { openSession(permitted(folder / "sessions/x.glint")); }).mesh(), folder / "else/a2.ply");
   Relinked instead;
   instead.meshes["m/a.ply"] = now;
-  EXPECT_EQ(*openSession(folder / "sessions/x.glint", instead).scene->surfaces.at("a").mesh, now);
+  EXPECT_EQ(openSession(folder / "sessions/x.glint", instead).scene->surfaces.at("a").file()->file, now);
 }
 
 TEST(RelinkedMeshes, AnotherFileThanTheSessionWasMadeWithIsTold) {

@@ -91,9 +91,9 @@ TEST(WithMeshAt, EverySurfaceOfTheMeshHasTheOther) {
   EXPECT_EQ(meshNamedIn((folder / "a.ply").string() + ": vertices: is cut off", scene), "./a.ply");
   EXPECT_EQ(meshNamedIn((folder / "c.ply").string() + ": is cut off", scene), "");
   const Scene moved = withMeshAt(scene, "./a.ply", "/elsewhere/c.ply");
-  EXPECT_EQ(*moved.surfaces.at("ball").mesh, "/elsewhere/c.ply");
-  EXPECT_EQ(*moved.surfaces.at("a2").mesh, "/elsewhere/c.ply");
-  EXPECT_EQ(*moved.surfaces.at("b").mesh, folder / "b.ply");
+  EXPECT_EQ(moved.surfaces.at("ball").file()->file, "/elsewhere/c.ply");
+  EXPECT_EQ(moved.surfaces.at("a2").file()->file, "/elsewhere/c.ply");
+  EXPECT_EQ(moved.surfaces.at("b").file()->file, folder / "b.ply");
   EXPECT_THAT(moved.meshes, testing::ElementsAre(testing::Pair("./a.ply", "/elsewhere/c.ply")));
 }
 

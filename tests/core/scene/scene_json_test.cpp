@@ -33,7 +33,7 @@ TEST(ReadScene, MinimalFileWithItsDefaults) {
   EXPECT_TRUE(f.image.empty());
   // The camera stands at z = -2 and looks along +z: the world's origin lies 2 m in front of it.
   EXPECT_EQ(f.camera.depth(Eigen::Vector3d::Zero()), 2.0);
-  EXPECT_EQ(scene.surfaces.at("ball").analytic->radius, 0.4);
+  EXPECT_EQ(scene.surfaces.at("ball").analytic()->radius, 0.4);
   EXPECT_TRUE(scene.warnings.empty());
   EXPECT_TRUE(scene.unknownJson.empty());
 }
@@ -448,7 +448,7 @@ TEST(WriteScene, RoundTripIsExact) {
     move(f.depth);
   }
   for (auto& [id, s] : moved.surfaces)
-    if (s.mesh) move(*s.mesh);
+    if (s.file()) move(s.file()->file);
   writeScene(moved, folder / "scene.json");
   ReadOptions options;
   options.allowOutsidePaths = true;  // the folders are links
@@ -490,11 +490,11 @@ TEST(WriteScene, EveryKindOfSurfaceLightAndHighlightComesBack) {
   EXPECT_THAT(again.warnings, ElementsAre());
   EXPECT_EQ(Eigen::Vector3d(again.lights[1].lamp.centre.head<3>()), Eigen::Vector3d(0, 0, 1));
   EXPECT_EQ(endsOf(again.lights[2].lamp)->second, Eigen::Vector3d(0.6, 0, 2));
-  EXPECT_EQ(again.surfaces.at("t").analytic->minorRadius, 0.1);
-  EXPECT_EQ(again.surfaces.at("s").analytic->width, 2.0);
-  EXPECT_EQ(again.surfaces.at("q").analytic->matrix(2, 2), 3);
-  EXPECT_EQ(again.surfaces.at("e").analytic->worldFromSurface.matrix(),
-            scene.surfaces.at("e").analytic->worldFromSurface.matrix());
+  EXPECT_EQ(again.surfaces.at("t").analytic()->minorRadius, 0.1);
+  EXPECT_EQ(again.surfaces.at("s").analytic()->width, 2.0);
+  EXPECT_EQ(again.surfaces.at("q").analytic()->matrix(2, 2), 3);
+  EXPECT_EQ(again.surfaces.at("e").analytic()->worldFromSurface.matrix(),
+            scene.surfaces.at("e").analytic()->worldFromSurface.matrix());
   EXPECT_EQ(again.frames[0].depthScale, 0.0002);
   EXPECT_EQ(again.frames[0].surface, "");
   EXPECT_EQ(again.frames[1].camera.width, 32);

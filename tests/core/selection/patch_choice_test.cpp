@@ -161,7 +161,7 @@ TEST(PatchChoice, Noise) {
 // show does not count.
 TEST(PatchChoice, FramesToPredictMustAllowIt) {
   auto scene = exactScene(sphere(0.5), 6);
-  scene->surfaces["tube"].analytic = torus(0.1);
+  scene->surfaces["tube"] = torus(0.1);
   const auto more = exactScene(sphere(0.5), 4);
   for (Frame f : more->frames) {
     f.id += "tube";
@@ -179,9 +179,9 @@ TEST(PatchChoice, FramesToPredictMustAllowIt) {
 // The patch goes on where a sheet ends.
 TEST(PatchChoice, ABorderKeepsExactWalks) {
   auto scene = exactScene(sheet(0.5), 8);
-  scene->surfaces["strip"].analytic = sheet(0.5);
-  scene->surfaces["strip"].analytic->length = 0.08;
-  scene->surfaces["strip"].analytic->width = 2.0;
+  scene->surfaces["strip"] = sheet(0.5);
+  scene->surfaces["strip"].analytic()->length = 0.08;
+  scene->surfaces["strip"].analytic()->width = 2.0;
   for (int i = 6; i < 8; ++i) scene->frames[i].surface = "strip";
   const Chosen c = patchChoiceOn(scene, kWalks, "0-5");
   ASSERT_TRUE(c.selection.patches) << selectionTable(c.selection);
@@ -217,7 +217,7 @@ TEST(PatchChoice, FacetsHaveNoPatches) {
   for (const Eigen::Vector3i& t : mesh.triangles) ply << "3 " << t.x() << " " << t.y() << " " << t.z() << "\n";
   ply.close();
   auto scene = exactScene(sphere(0.5), 6);
-  scene->surfaces["facets"] = {file, std::nullopt};
+  scene->surfaces["facets"] = MeshFile{{file}};
   scene->frames[5].surface = "facets";
   for (const bool flat : {true, false}) {
     const Chosen c = patchChoiceOn(scene, kWalks, "0-4", 0, {{"surface.normals", flat ? "facet" : "interpolated"}});

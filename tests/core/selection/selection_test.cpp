@@ -135,7 +135,7 @@ TEST(SelectModel, TwoLightsAreLeftOutTogether) {
 TEST(SelectModel, AnEllipsoidOfTheSeenSurfaceDoesNotCarryOver) {
   auto scene = exactScene(sheet(0), 6);
   const auto bent = exactScene(sheet(1.5), 6);
-  scene->surfaces["bent"].analytic = sheet(1.5);
+  scene->surfaces["bent"] = sheet(1.5);
   for (Frame f : bent->frames) {
     f.id += "bent";
     f.surface = "bent";
@@ -193,7 +193,7 @@ TEST(SelectModel, AllViewsFromOnePlace) {
 std::shared_ptr<Scene> narrowScene(const AnalyticSpec& spec, double stepDeg = 0.3) {
   auto scene = std::make_shared<Scene>();
   scene->name = "narrow";
-  scene->surfaces["body"].analytic = spec;
+  scene->surfaces["body"] = spec;
   const NamedLight lamp{"lamp", {0.4, 1.2, 2.4}};
   for (int i = 0; i < 14; ++i) {
     const double azimuth = i < 6 ? 10 + stepDeg * i : 10 + 14 * (i - 9.5), elevation = i < 6 ? 50 + 0.3 * std::sin(2.0 * i) : 50;

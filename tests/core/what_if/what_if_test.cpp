@@ -122,7 +122,7 @@ TEST(WhatIf, SynthesisedContoursFollowTheCurvature) {
   w.surfaces["body"] = 1.0;
   const auto bent = changedScene(*scene, w, 0.5);
   EXPECT_LT(bent->frames[0].highlights[0].areaPx2, 0.8 * flat->frames[0].highlights[0].areaPx2);
-  EXPECT_EQ(bent->surfaces.at("body").analytic->curvature, 1.0);
+  EXPECT_EQ(bent->surfaces.at("body").analytic()->curvature, 1.0);
 }
 
 TEST(WhatIf, ALampThatNothingReflectsIsNamed) {
