@@ -18,8 +18,9 @@ struct FitTrace {
   std::optional<Failure> failure;  ///< of the fit
 };
 
-/// Fits the model once more, light by light, and records it: the light first where the model needs one, a lobe's fit to pixels as well.
-std::vector<FitTrace> traceFits(const Inspection& inspection, const HighlightModel& model);
+/// Fits the model once more, light by light, and records it: the light first where the model needs one, a lobe's fit to pixels as well. Stopped, within
+/// a fit to pixels or contours of a lobe too.
+std::vector<FitTrace> traceFits(const Inspection& inspection, const HighlightModel& model, const ProgressFn& progress = {});
 
 /// "light with one limit angle: 3 runs, 41 steps; the one that was taken: cost 812 -> 0.31 px^2 in 12 steps, moved 0.42 m". One line per kind of
 /// run; distances are of the light, or the centre of the ellipsoid.

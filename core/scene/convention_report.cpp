@@ -300,7 +300,7 @@ class Triangles {
     const auto found = known.find(id);
     if (found != known.end()) return found->second;
     if (source.isCloud || source.points) return known[id] = ofPoints(id, source);
-    if (source.mesh) return known[id] = readMesh(source);
+    if (source.mesh) return known[id] = readMesh(source, &report_.findings);
     if (known.size() >= kMostMade) known.clear();
     const std::shared_ptr<const Surface> surface = makeAnalytic(*source.analytic);
     return known[id] = surface->tessellate(regionOfInterest(scene_, surface->bounds()), kSteps);

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/base/progress.h"
 #include "core/scene/scene.h"
@@ -17,8 +19,9 @@ namespace glint {
 ///        header promises, has no triangle, a coordinate that is not finite, or a face with a vertex that does not exist.
 TriangleMesh readMesh(const std::filesystem::path& file);
 /// The same of a surface, in metres; of points the surface that is made from them. @pre it has a mesh
+/// @param findings  gets a line where facets of the file have a corner without a place and are left out
 /// @throw InputError also where no surface can be made of the points, with the named reason
-TriangleMesh readMesh(const SurfaceSource& source);
+TriangleMesh readMesh(const SurfaceSource& source, std::vector<std::string>* findings = nullptr);
 /// The points of a surface that is made of points (`isCloud` or `points`), in metres. InputError.
 PointCloud readCloud(const SurfaceSource& source);
 /// The surface of these points, with what was found about them. As surfaceOfPoints; InputError for the file.
