@@ -13,6 +13,7 @@ struct MeshContent {
   /// One per vertex, unit, or zero where the file has none; empty if no triangle has one.
   std::vector<Eigen::Vector3d> normals;
   std::vector<Eigen::Vector3i> triangles;
+  std::size_t leftOut = 0;  ///< facets of an STL with a corner that has no place
 };
 
 }  // namespace glint

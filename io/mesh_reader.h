@@ -31,7 +31,7 @@ MeshContent parsePly(std::string_view bytes, const std::string& file);
 /// statements are skipped. A vertex with two different normals becomes two. @see Wavefront, Object Files (.obj), Appendix B1.
 MeshContent parseObj(std::string_view bytes, const std::string& file);
 /// STL: corners at the same place become one vertex; the facets' normals are not read (the winding says the same). Facets with a
-/// corner that is not finite are left out.
+/// corner that is not finite are left out and counted.
 MeshContent parseStlText(std::string_view bytes, const std::string& file);
 MeshContent parseStlBinary(std::string_view bytes, const std::string& file);
 /// glTF 2.0, as text (.gltf) or in a container (.glb): triangles, strips and fans of the default scene's meshes, each at the

@@ -95,8 +95,7 @@ SceneLegend legendOf(const LayerInput& in, const std::vector<ShownLayer>& layers
       const std::string error = score.missed > 0 && score.matched > 0 ? "  " + missedText(score)
                                 : score.errorPct                      ? "  " + errorText(*score.errorPct) + " %"
                                                                       : "";
-      legend.entries.push_back(
-          {poor ? draw::pale(modelColour(model)) : modelColour(model), model + error + (poor ? ", poor" : ""), true});
+      legend.entries.push_back({draw::modelColour(model, poor), model + error + (poor ? ", poor" : ""), true});
       // A fault of the frame itself is listed once, not for every model; a fit that is no ellipsoid by its layer.
       if (!score.errorPct && !score.reason.empty() && score.reason != noEvidence &&
           !(shown("ellipsoids") && isItsQuadric(in, model, score.reason)))

@@ -19,8 +19,8 @@ constexpr std::size_t kMoreFrames = 12;   // twice the default: enough to tell w
 
 class Candidates {
  public:
-  Candidates(const Inspection& inspection, const std::string& model)
-      : r_(inspection), model_(modelByName(model)), evidence_(highlightEvidence(inspection, model_)) {}
+  Candidates(const Inspection& inspection, const std::string& model, const ProgressFn& progress)
+      : r_(inspection), model_(modelByName(model)), evidence_(highlightEvidence(inspection, model_, progress)) {}
 
   std::vector<CandidateChange> run() {
     filters();
@@ -151,8 +151,9 @@ class Candidates {
 
 }  // namespace
 
-std::vector<CandidateChange> candidateChanges(const Inspection& inspection, const std::string& model) {
-  return Candidates(inspection, model).run();
+std::vector<CandidateChange> candidateChanges(const Inspection& inspection, const std::string& model,
+                                              const ProgressFn& progress) {
+  return Candidates(inspection, model, progress).run();
 }
 
 }  // namespace glint

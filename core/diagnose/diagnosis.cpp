@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/base/number_text.h"
+#include "core/diagnose/by_contours.h"
 #include "core/diagnose/candidates.h"
 #include "core/diagnose/model_causes.h"
 #include "core/scene/frame_spec.h"
@@ -18,7 +19,7 @@ namespace {
 
 constexpr double kNotFar = 5;  // times the least error: a change may make a model with more the best one
 
-bool isAsItIs(const Change& change) { return !change.train && !change.set && !change.exclude; }
+bool isAsItIs(const Change& change) { return !change.train && !change.set && !change.exclude && change.alsoSet.empty(); }
 
 /// Null if the model was not computed as it is.
 const UnseenError* errorOf(const Diagnosis& d, const std::string& model) {
@@ -105,7 +106,7 @@ class Adviser {
 
   void compareComputed() {
     const std::size_t asked = r_.request.models.size(), others = modelIds().size() - std::min(asked, modelIds().size());
-    total_ = int(others + asked) + options_.mostTried + 2;
+    total_ = int(others + asked) + options_.mostTried + 3;
     const ProgressFn progress = step("compare the models");
     for (const std::string& model : r_.request.models)
       if (r_.models.count(model)) add(model, Results(Results(), &r_), unseenError(r_, model, progress));  // not owned
@@ -127,7 +128,7 @@ class Adviser {
     try {
       const auto of = std::make_shared<const Inspection>(inspect(r_.given, request, progress, &previous));
       error = unseenError(*of, model, progress);
-      ++d_.tried;
+      if (change.alsoSet.empty()) ++d_.tried;
       return of;
     } catch (const InputError&) {
       return nullptr;
@@ -149,6 +150,7 @@ class Adviser {
 
   /// What may help the best model and those close to it, their first changes first. If none answers, the present one.
   std::vector<CandidateChange> changesWorthATrial() {
+    const ProgressFn progress = step("find changes to try");
     std::vector<std::pair<double, std::string>> bases;
     for (const auto& [model, of] : results_) {
       const double pct = errorOf(d_, model)->pct();
@@ -157,7 +159,7 @@ class Adviser {
     std::sort(bases.begin(), bases.end());
     std::vector<std::pair<std::size_t, CandidateChange>> ranked;
     for (const auto& [pct, model] : bases) {
-      std::vector<CandidateChange> candidates = candidateChanges(*results_.at(model), model);
+      std::vector<CandidateChange> candidates = candidateChanges(*results_.at(model), model, progress);
       d_.known += int(candidates.size());
       const int most = model == bases.front().second ? options_.mostTried : (options_.mostTried + 2) / 3;
       candidates.resize(std::min(candidates.size(), std::size_t(most)));
@@ -172,30 +174,67 @@ class Adviser {
     return all;
   }
 
+  /// Where no lobe explained the pixels they will hardly be explained after a change: contours alone say first what each comes to.
+  std::vector<CandidateChange> quickFormsOf(const std::vector<CandidateChange>& all) const {
+    std::vector<CandidateChange> quick;
+    for (const CandidateChange& c : all)
+      if (const std::optional<Change> change = byContours(*results_.at(*c.change.model), c.change, *c.change.model))
+        quick.push_back({*change, c.why + "; by contours alone, as no lobe explains the pixels"});
+    return quick;
+  }
+
   void tryChanges() {
     if (d_.now.observed() == 0 || nothingIsLeft()) return;
-    const std::vector<CandidateChange> all = changesWorthATrial();
-    total_ = done_ + int(all.size() + r_.request.models.size()) + 1;
-    // By other training frames, whatever the model: their lobe costs most of a trial.
-    std::vector<std::pair<Change, Results>> onFrames;
-    for (const CandidateChange& c : all) {
-      const Change frames{.train = c.change.train, .exclude = c.change.exclude};
-      const auto known = std::find_if(onFrames.begin(), onFrames.end(), [&](const auto& entry) { return entry.first == frames; });
-      const Results previous = known == onFrames.end() ? results_.at(*c.change.model) : known->second;
-      UnseenError error;
-      const Results of = measured(*previous, c.change, *c.change.model, error);
-      if (!of) continue;
-      if (known == onFrames.end() && !isAsItIs(frames)) onFrames.emplace_back(frames, of);
-      d_.measured.push_back({c.change, c.why, std::move(error)});
-      tell();
-    }
+    std::vector<CandidateChange> all = changesWorthATrial();
+    const std::vector<CandidateChange> quick = quickFormsOf(all);
+    total_ = done_ + int(quick.size() + all.size() + r_.request.models.size()) + 1;
+    for (const CandidateChange& c : quick) tryOut(c);
+    // What is on show comes first: its command becomes shorter.
+    std::stable_partition(all.begin(), all.end(), [&](const CandidateChange& c) { return isShown(c.change); });
+    for (const CandidateChange& c : all) tryOut(c);
+  }
+
+  /// As a remedy, perhaps by contours alone.
+  bool isShown(const Change& change) const {
+    return std::any_of(d_.remedies.begin(), d_.remedies.end(), [&](const Remedy& r) {
+      Change shown = r.change;
+      shown.model = shown.model.value_or(d_.present);
+      shown.alsoSet.clear();
+      return shown == change;
+    });
+  }
+
+  void tryOut(const CandidateChange& c) {
+    UnseenError error;
+    const Results of = measured(*nearest(c.change), c.change, *c.change.model, error);
+    if (!of) return;
+    const Change seen = framesAndEvidence(c.change);
+    if (!isAsItIs(seen) && !nearby_.count(flagsOf(seen))) nearby_.emplace(flagsOf(seen), of);
+    std::erase_if(d_.measured, [&](const Measured& m) {  // the same by contours alone: two flags that are not needed
+      Change full = m.change;
+      full.alsoSet.clear();
+      return m.change != c.change && full == c.change && m.error.views == error.views;
+    });
+    d_.measured.push_back({c.change, c.why, std::move(error)});
+    tell();
+  }
+
+  static Change framesAndEvidence(const Change& change) {
+    return {.train = change.train, .exclude = change.exclude, .alsoSet = change.alsoSet};
+  }
+
+  /// Of the same frames and evidence, whatever the model: they cost most of a trial. Else of the same evidence, or the model as it is.
+  Results nearest(const Change& change) const {
+    for (const Change& seen : {framesAndEvidence(change), Change{.alsoSet = change.alsoSet}})
+      if (const auto known = nearby_.find(flagsOf(seen)); known != nearby_.end()) return known->second;
+    return results_.at(*change.model);
   }
 
   void explain() {
     for (const std::string& model : r_.request.models) {
       if (!r_.models.count(model)) continue;
-      step("say why " + model + " is as it is");
-      d_.models.push_back(diagnosisOf(r_, model, *errorOf(d_, model)));
+      const ProgressFn progress = step("say why " + model + " is as it is");
+      d_.models.push_back(diagnosisOf(r_, model, *errorOf(d_, model), progress));
     }
     tell();
   }
@@ -218,6 +257,7 @@ class Adviser {
   const ProgressFn& progress_;
   Diagnosis d_;
   std::map<std::string, Results> results_;  ///< of the models as they are
+  std::map<std::string, Results> nearby_;   ///< of changes, by the flags of their frames and evidence
   int done_ = 0, total_ = 0;                ///< steps
 };
 
@@ -232,17 +272,19 @@ std::string flagsOf(const Change& change) {
   add("--train", change.train);
   add("--set", change.set);
   add("--exclude", change.exclude);
+  for (const std::string& also : change.alsoSet) add("--set", also);
   return text;
 }
 
 InspectionRequest with(InspectionRequest request, const Change& change, const Scene& scene) {
   if (change.model) request.models = {*change.model};
   if (change.train) request.train = *change.train;
-  if (change.set) {
-    const std::size_t equals = change.set->find('=');
-    request.settings.setFromText(change.set->substr(0, equals),
-                                 equals == std::string::npos ? "" : change.set->substr(equals + 1));
-  }
+  const auto set = [&](const std::string& value) {
+    const std::size_t equals = value.find('=');
+    request.settings.setFromText(value.substr(0, equals), equals == std::string::npos ? "" : value.substr(equals + 1));
+  };
+  if (change.set) set(*change.set);
+  for (const std::string& also : change.alsoSet) set(also);
   if (change.exclude) {
     for (const int frame : parseFrames(*change.exclude, scene, "--exclude")) request.excluded.push_back(frame);
     std::sort(request.excluded.begin(), request.excluded.end());
@@ -258,11 +300,13 @@ std::string wordsOf(const Change& change) {
   };
   add("use ", change.model);
   add("train on ", change.train);
-  if (change.set) {
-    const std::size_t equals = change.set->find('=');
-    add("set ", change.set->substr(0, equals) + " = " + (equals == std::string::npos ? "" : change.set->substr(equals + 1)));
-  }
+  const auto set = [&](const std::string& value) {
+    const std::size_t equals = value.find('=');
+    add("set ", value.substr(0, equals) + " = " + (equals == std::string::npos ? "" : value.substr(equals + 1)));
+  };
+  if (change.set) set(*change.set);
   add("leave out ", change.exclude);
+  for (const std::string& also : change.alsoSet) set(also);
   return text;
 }
 

@@ -19,6 +19,7 @@ struct Change {
   std::optional<std::string> train = {};    ///< SPEC
   std::optional<std::string> set = {};      ///< "light.solver=triangulated"
   std::optional<std::string> exclude = {};  ///< SPEC of all frames to exclude, those that are excluded already among them
+  std::vector<std::string> alsoSet = {};    ///< further values, each as `set`
   friend bool operator==(const Change&, const Change&) = default;
 };
 /// "--model limit-angle", "--set light.solver=triangulated".

@@ -34,7 +34,7 @@ std::string movedText(const SolverRun& run) {
 
 }  // namespace
 
-std::vector<FitTrace> traceFits(const Inspection& inspection, const HighlightModel& model) {
+std::vector<FitTrace> traceFits(const Inspection& inspection, const HighlightModel& model, const ProgressFn& progress) {
   std::map<FitKey, Fold> folds;
   for (std::size_t i = 0; i < inspection.views.size(); ++i) {
     const TrainingView& v = inspection.views[i];
@@ -46,8 +46,9 @@ std::vector<FitTrace> traceFits(const Inspection& inspection, const HighlightMod
   }
   std::vector<FitTrace> traces;
   for (auto& [key, fold] : folds) {
+    if (!report(progress, {"fit", int(traces.size()), int(folds.size())})) throw Stopped{};
     SolverTrace trace;
-    const Outcome<ModelFit> fit = fitFold(fold, model, inspection.request.settings, PoorFits::Take);
+    const Outcome<ModelFit> fit = fitFold(fold, model, inspection.request.settings, PoorFits::Take, progress);
     traces.push_back({key, trace.runs(), fit ? std::nullopt : std::optional(fit.failure())});
   }
   return traces;

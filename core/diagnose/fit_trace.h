@@ -19,7 +19,8 @@ struct FitTrace {
 };
 
 /// Fits the model again, light by light, and records it: first the light if the model needs one, and a lobe's fit to pixels.
-std::vector<FitTrace> traceFits(const Inspection& inspection, const HighlightModel& model);
+/// Stopped, within a fit of a lobe to pixels or contours too.
+std::vector<FitTrace> traceFits(const Inspection& inspection, const HighlightModel& model, const ProgressFn& progress = {});
 
 /// "light with one limit angle: 3 runs, 41 steps; the one that was taken: cost 812 -> 0.31 px^2 in 12 steps, moved 0.42 m". One
 /// line per kind of run; distances are of the light, or the centre of the ellipsoid.

@@ -39,7 +39,8 @@ Outcome<LightEstimate> lightAnyway(const Inspection& inspection, const FitKey& k
 }
 
 /// The model's fit to the views of one key; where that failed, one that is refused by nothing.
-Outcome<ModelFit> fitAnyway(const Inspection& inspection, const HighlightModel& model, const FitKey& key) {
+Outcome<ModelFit> fitAnyway(const Inspection& inspection, const HighlightModel& model, const FitKey& key,
+                            const ProgressFn& progress) {
   if (const auto result = inspection.models.find(model.id()); result != inspection.models.end())
     for (const ModelResult::Fit& known : result->second.fits)
       if (known.key() == key && known.fit) return known.fit;
@@ -56,18 +57,20 @@ Outcome<ModelFit> fitAnyway(const Inspection& inspection, const HighlightModel& 
       if (v.seen && !v.canonical) addCanonicalContour(v, (*light)->light, settings);
   const auto pixels = inspection.pixelFits.find(key);
   return fitModel(model, std::move(views), light, settings,
-                  pixels != inspection.pixelFits.end() && pixels->second ? *pixels->second : nullptr);
+                  pixels != inspection.pixelFits.end() && pixels->second ? *pixels->second : nullptr, progress);
 }
 
 /// What the fit leaves of each of its views, by the view's place in Inspection::views.
-void addResiduals(const Inspection& inspection, const HighlightModel& model, std::vector<HighlightEvidence>& evidence) {
+void addResiduals(const Inspection& inspection, const HighlightModel& model, const ProgressFn& progress,
+                  std::vector<HighlightEvidence>& evidence) {
   std::map<FitKey, std::vector<std::size_t>> usedBy;
   for (std::size_t i = 0; i < inspection.views.size(); ++i) {
     const TrainingView& v = inspection.views[i];
     if (v.seen || !model.needsLight()) usedBy[inspection.keyFor(v.frame, v.highlight.light)].push_back(i);
   }
   for (const auto& [key, used] : usedBy) {
-    const Outcome<ModelFit> fit = fitAnyway(inspection, model, key);
+    if (!report(progress, {"fit", 0, 0})) throw Stopped{};
+    const Outcome<ModelFit> fit = fitAnyway(inspection, model, key, progress);
     if (!fit) continue;
     std::size_t next = 0;  // residualPx and frames are of the views that the fit used, in their order
     for (const std::size_t i : used) {
@@ -136,7 +139,8 @@ void weigh(const Inspection& inspection, const HighlightModel& model, std::vecto
 
 }  // namespace
 
-std::vector<HighlightEvidence> highlightEvidence(const Inspection& inspection, const HighlightModel& model) {
+std::vector<HighlightEvidence> highlightEvidence(const Inspection& inspection, const HighlightModel& model,
+                                                 const ProgressFn& progress) {
   std::vector<HighlightEvidence> all;
   for (const TrainingView& v : inspection.views) {
     HighlightEvidence e;
@@ -149,7 +153,7 @@ std::vector<HighlightEvidence> highlightEvidence(const Inspection& inspection, c
     e.radiusPx = radiusPx(v.highlight.contour);
     all.push_back(std::move(e));
   }
-  addResiduals(inspection, model, all);
+  addResiduals(inspection, model, progress, all);
   addLimitAngles(inspection, all);
   weigh(inspection, model, all);
   return all;

@@ -26,9 +26,10 @@ struct HighlightEvidence {
 };
 
 /// Highlights of the training frames, in the order of Inspection::views. A fit that failed is made again with fit.most_residual
-/// at its largest, so that it shows what it leaves.
+/// at its largest, so that it shows what it leaves. Stopped, as traceFits().
 /// @param inspection  with evidence, views, and the lights if the model needs one
-std::vector<HighlightEvidence> highlightEvidence(const Inspection& inspection, const HighlightModel& model);
+std::vector<HighlightEvidence> highlightEvidence(const Inspection& inspection, const HighlightModel& model,
+                                                 const ProgressFn& progress = {});
 
 /// Two highlights of one light whose limit angles lie too far apart for one limit angle to fit both; null without such a pair.
 struct LimitConflict {

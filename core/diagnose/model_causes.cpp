@@ -49,13 +49,13 @@ std::string twoLimitAngles(const Inspection& r, const HighlightModel& model, con
 
 }  // namespace
 
-ModelDiagnosis diagnosisOf(const Inspection& r, const std::string& name, const UnseenError& error) {
+ModelDiagnosis diagnosisOf(const Inspection& r, const std::string& name, const UnseenError& error, const ProgressFn& progress) {
   const ModelResult& result = r.models.at(name);
   const HighlightModel& model = modelByName(name);
   ModelDiagnosis d;
   d.model = name;
   d.error = error;
-  d.evidence = highlightEvidence(r, model);
+  d.evidence = highlightEvidence(r, model, progress);
   const auto worst = [&](const char* status) {
     return std::any_of(result.fits.begin(), result.fits.end(),
                        [&](const auto& f) { return std::string(fitStatus(f)) == status; });
@@ -75,7 +75,7 @@ ModelDiagnosis diagnosisOf(const Inspection& r, const std::string& name, const U
       if (c.model == name && f.verdict == Verdict::Red && f.id != "fit")
         add(lightName(c.light) + ", " + f.title + ": " + f.reason);
   add(goneAstray(r, error));
-  if (d.status != "ok") d.fits = traceFits(r, model);
+  if (d.status != "ok") d.fits = traceFits(r, model, progress);
   return d;
 }
 

@@ -94,6 +94,7 @@ class Findings {
     c_.model = result.model;
     c_.light = fit.light;
     c_.surface = fit.surface;
+    c_.poor = fit.fit && !fit.fit->poor.empty();
     estimate_ = inspection.lightOf(fit.key());
     outlines_ = outlinesOf(model_, views_);
     if (model_.traits().mirrored) findStrayPeaks();  // without a mirror it looks at ellipses only

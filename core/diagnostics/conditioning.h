@@ -29,6 +29,7 @@ struct Finding {
 struct Conditioning {
   std::string model, light;
   std::optional<std::string> surface;
+  bool poor = false;                   ///< the fit answers, and explains its training views badly
   std::vector<double> singularValues;  ///< of the linear system for Q*, descending; empty for models without one
   /// describe() of the linear solution's Q*: "ellipsoid", "hyperboloid of two sheets", ...; "" without one.
   std::string quadricKind;

@@ -21,6 +21,8 @@ inline Colour pale(Colour colour) {
   for (double& channel : colour) channel = 0.5 * (channel + 0.5);
   return colour;
 }
+/// Of what a model says: paler where its fit is poor, in every view and report.
+inline Colour modelColour(const std::string& model, bool poor) { return poor ? pale(modelColour(model)) : modelColour(model); }
 /// What lies on the tangent planes: canonical contours, their ellipses and the walks to them.
 inline Colour canonicalColour() { return modelColour(canonicalModel().id()); }
 inline constexpr Colour kObserved{1.0, 1.0, 1.0};  ///< drawn with a dark halo

@@ -165,19 +165,20 @@ class FrameLayers {
     const ModelResult& result = inspection_.models.at(model);
     FrameScore score = frameScore(result, frame_);
     const Colour roleColour = training_ ? kTraining : heldOut_ ? kHeldOut : kExcluded;
-    bool answered = false;
+    bool answered = false, anyPoor = false;
     for (const FrameComparison& comparison : result.frames) {
       if (comparison.frame != frame_) continue;
       answered = true;
-      if (const std::string why = poorFit(result, comparison); !why.empty() && score.reason.empty())
-        score.reason = "poor: " + why;
+      const std::string why = poorFit(result, comparison);
+      const bool poor = !why.empty();
+      anyPoor = anyPoor || poor;
+      if (poor && score.reason.empty()) score.reason = "poor: " + why;
       if (!drawn_(model)) continue;
       OverlayLine line;
       line.model = model;
       line.light = comparison.light;
       line.colour = options_.colourByRole ? roleColour : modelColour(model);
       line.halo = options_.colourByRole;
-      const bool poor = !poorFit(result, comparison).empty();
       line.label = model + (score.errorPct ? " " + errorText(*score.errorPct) + " %" : std::string{}) + (poor ? ", poor" : "") +
                    (options_.predictionsEarlier ? ", updating" : "");
       if (poor || options_.predictionsEarlier) line.colour = pale(line.colour);
@@ -186,7 +187,7 @@ class FrameLayers {
       for (const FilteredHighlight& filtered : comparison.prediction.filtered) addGhost(filtered, line);
     }
     if (answered)
-      addCaption(model, score);
+      addCaption(model, score, anyPoor);
     else
       addNoAnswer(model, result);
   }
@@ -299,14 +300,14 @@ class FrameLayers {
     overlay_.lines.push_back(std::move(style));
   }
 
-  void addCaption(const std::string& model, FrameScore score) {
+  void addCaption(const std::string& model, FrameScore score, bool poor) {
     if (unreadable_ && score.reason == unreadable_->message()) {
       score.reason = "not compared";  // the frame says why, once
       score.spurious = 0;
     }
     // Drawn like a held-out frame's prediction, but it counts in no summary.
     const bool excluded = !training_ && !heldOut_;
-    overlay_.captions.push_back({modelColour(model), model,
+    overlay_.captions.push_back({modelColour(model, poor), model,
                                  scoreText(model, score) + (excluded ? "   excluded, not evaluated" : ""),
                                  score.matched == 0 || score.missed > 0 || score.spurious > 0, score});
   }

@@ -26,7 +26,7 @@ inline PlotData nothing(PlotData plot, std::string why) {
 inline PlotSeries modelSeries(const std::string& model, bool poor, PlotShape shape) {
   PlotSeries series;
   series.name = poor ? model + ", poor" : model;
-  series.colour = poor ? pale(modelColour(model)) : modelColour(model);
+  series.colour = modelColour(model, poor);
   series.dash = poor ? Dash::Dashed : Dash::Solid;
   series.shape = shape;
   return series;

@@ -57,6 +57,21 @@ const std::vector<PlotKind>& plotKinds() {
 }
 
 namespace {
+std::set<std::string> poorLightsIn(const Inspection& inspection, int frame, const std::string& model) {
+  std::set<std::string> lights;
+  if (const auto it = inspection.models.find(model); it != inspection.models.end())
+    for (const FrameComparison& c : it->second.frames)
+      if (c.frame == frame && !poorFit(it->second, c).empty()) lights.insert(c.light);
+  return lights;
+}
+
+PlotSeries observedSeries() {
+  PlotSeries series;
+  series.colour = kObserved;
+  series.halo = true;
+  return series;
+}
+
 void storeSamples(FrameSamples::Lobe& lobe, Outcome<LobeSamples> samples) {
   if (!samples) {
     lobe.failure = samples.failure();
@@ -80,6 +95,7 @@ FrameSamples frameSamples(const Inspection& inspection, int frame, const std::st
     result.failure = "No such frame.";
     return result;
   }
+  result.poorLights = poorLightsIn(inspection, frame, model);
   const FrameEvidence& evidence = inspection.evidence[std::size_t(frame)];
   const Frame& source = inspection.scene->frames[std::size_t(frame)];
   if (evidence.scored().empty()) {
@@ -192,9 +208,10 @@ PlotData lobePlot(const FrameSamples& samples, int highlight) {
     plot.series.push_back(std::move(curve));
   };
   if (s.fit) addCurve(formatted("fitted lobe, m = %.4g, rms %.2g", s.fit->m, s.fit->rms), s.fit->m, kFittedLobe, Dash::Solid);
-  if (lobe->roughness)
-    addCurve(samples.model + formatted(", m = %.4g", *lobe->roughness), *lobe->roughness, modelColour(samples.model),
-             Dash::Dashed);
+  if (lobe->roughness) {
+    const PlotSeries own = modelSeries(samples.model, samples.poorLights.count(lobe->light) > 0, PlotShape::Line);
+    addCurve(own.name + formatted(", m = %.4g", *lobe->roughness), *lobe->roughness, own.colour, Dash::Dashed);
+  }
   if (lobe->level > 0 && lobe->level < 1) {
     PlotSeries level;
     level.name = formatted("level %.3g", lobe->level);
@@ -334,11 +351,8 @@ PlotData limitAnglePlot(const FrameSamples& samples, int highlight) {
   if (!chosen)
     return nothing(
         plot, samples.model.empty() ? "No results yet" : "The model '" + samples.model + "' has no light for this highlight");
-  const auto add = [&](const char* name, const std::vector<DirectionSample>& values, const Colour& colour, bool observed) {
-    PlotSeries series;
+  const auto add = [&](PlotSeries series, const char* name, const std::vector<DirectionSample>& values, bool observed) {
     series.name = name;
-    series.colour = colour;
-    series.halo = observed;
     series.shape = PlotShape::LineAndPoints;
     series.pointSize = 4;
     bool any = false;
@@ -348,13 +362,15 @@ PlotData limitAnglePlot(const FrameSamples& samples, int highlight) {
       p.y = s.value ? degrees(*s.value) : std::nan("");
       any = any || s.value.has_value();
       p.target = {samples.frame, observed ? std::string() : samples.model, chosen->light, chosen->observed, s.direction, -1};
-      p.label = std::string(name) + formatted("\ndirection %.0f\u00b0\nalpha %.4g\u00b0", p.x, p.y);
+      p.label = series.name + formatted("\ndirection %.0f\u00b0\nalpha %.4g\u00b0", p.x, p.y);
       series.points.push_back(std::move(p));
     }
     if (any) plot.series.push_back(std::move(series));
   };
-  add("observed contour", chosen->measured, kObserved, true);
-  add("predicted contour", chosen->predicted, modelColour(samples.model), false);
+  add(observedSeries(), "observed contour", chosen->measured, true);
+  const bool poor = samples.poorLights.count(chosen->light) > 0;
+  add(modelSeries(samples.model, poor, PlotShape::LineAndPoints), poor ? "predicted contour, poor" : "predicted contour",
+      chosen->predicted, false);
   if (plot.series.empty()) return nothing(plot, "No contour point lies on the lit surface");
   if (chosen->limitAngle) {
     PlotSeries line;
@@ -394,12 +410,9 @@ PlotData singularValuePlot(const std::vector<Conditioning>& conditioning) {
   std::vector<std::string> named;
   for (const Conditioning& c : conditioning) {
     if (c.singularValues.empty() || !(c.singularValues.front() > 0)) continue;
-    PlotSeries series;
-    series.name = c.model;
-    series.inLegend = std::find(named.begin(), named.end(), c.model) == named.end();
-    named.push_back(c.model);
-    series.colour = modelColour(c.model);
-    series.shape = PlotShape::LineAndPoints;
+    PlotSeries series = modelSeries(c.model, c.poor, PlotShape::LineAndPoints);
+    series.inLegend = std::find(named.begin(), named.end(), series.name) == named.end();
+    named.push_back(series.name);
     series.pointSize = 7;
     for (std::size_t i = 0; i < c.singularValues.size(); ++i) {
       PlotPoint p;

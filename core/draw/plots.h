@@ -28,6 +28,7 @@ struct FrameSamples {
   int frame = -1;
   std::string frameId;
   std::string model;
+  std::set<std::string> poorLights{};  ///< for which the model's fit is poor
   std::vector<AngleByDirection> angles;
   struct Lobe {
     int observed = -1;

@@ -17,8 +17,10 @@ FitInput fitInputOf(const Inspection& in, const HighlightModel& model, const Fit
   // Corrected normals are not those that the stage saw.
   const bool known = havePixels(views) && !in.corrections.count(key);
   const auto light = in.lights.find(key);
-  return fitInput(model, std::move(views), light == in.lights.end() ? std::nullopt : std::optional(light->second),
-                  in.request.settings, known ? pixelFitFor(in, key) : nullptr);
+  FitInput input = fitInput(model, std::move(views), light == in.lights.end() ? std::nullopt : std::optional(light->second),
+                            in.request.settings, known ? pixelFitFor(in, key) : nullptr);
+  if (const auto failed = in.unexplained.find(key); known && failed != in.unexplained.end()) input.unexplained = failed->second;
+  return input;
 }
 
 FittedBand bandOf(const Inspection& in, const HighlightModel& model, const ModelResult::Fit& fit) {

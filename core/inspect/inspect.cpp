@@ -207,6 +207,7 @@ void Run::lobes() {
   if (unchanged(Stage::Lobes) && !pixelsCome()) {
     r_.patches = previous_->patches;
     r_.pixelFits = previous_->pixelFits;
+    r_.unexplained = previous_->unexplained;
   } else {
     fitLobes(r_, surface, lightsAreOpen(), progress_);
   }

@@ -93,6 +93,7 @@ struct Inspection {
   std::map<int, TrainingView> viewsAsGiven;  ///< by index into `views`: of those, on the surface as given; see viewAsGiven()
   std::map<std::pair<int, int>, std::shared_ptr<const PixelPatch>> patches;  ///< pixels by (training frame, highlight as found)
   std::map<FitKey, Outcome<std::shared_ptr<const PixelFit>>> pixelFits;      ///< the lobe of the training frames' pixels
+  std::map<FitKey, std::shared_ptr<const UnexplainedPixels>> unexplained;    ///< what was asked where that failed
   bool pixelsLeft = false;                                 ///< patches and pixelFits are still to be made, see firstLook()
   std::map<FitKey, Outcome<LightEstimate>> lights;         ///< see lightOf(), lightFor()
   std::map<FitKey, SurfaceCorrection> corrections;         ///< of the views' and predictions' surfaces, where there is one

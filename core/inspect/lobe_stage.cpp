@@ -57,6 +57,23 @@ InspectionRequest atHalf(InspectionRequest request) {
   return request;
 }
 
+/// One light's. What fails is kept with its question.
+void fitLobe(Inspection& r, const FitKey& key, const std::vector<TrainingView>& views, const ProgressFn& goesOn) {
+  // The start is the same whatever the settings of the light are: they do not matter to where the fit ends.
+  const Outcome<LightEstimate> estimate = estimateLight(views, Settings{});
+  const std::optional<LightEstimate> light = estimate ? std::optional(*estimate) : std::nullopt;
+  const Settings settings = anyLobe(r.request.settings);
+  Outcome<PixelFit> fit = fitViewsPixels(views, light, settings, goesOn);
+  ++r.work.pixelFits;
+  if (fit) {
+    r.pixelFits.insert_or_assign(key, std::make_shared<const PixelFit>(*std::move(fit)));
+    return;
+  }
+  r.pixelFits.insert_or_assign(key, fit.failure());
+  r.unexplained.insert_or_assign(
+      key, std::make_shared<const UnexplainedPixels>(UnexplainedPixels{views, light, settings, fit.failure()}));
+}
+
 }  // namespace
 
 bool looksAtPixels(const InspectionRequest& request) {
@@ -140,16 +157,8 @@ void fitLobes(Inspection& r, const SurfaceOfFrame& surfaceOf, bool together, con
   const auto goesOn = [&](const StageEvent&) { return report(progress, {"lobe", done, static_cast<int>(groups.size())}); };
   for (const auto& [key, views] : groups) {
     if (!goesOn({})) throw Stopped{};
-    // The start is the same whatever the settings of the light are: they do not matter to where the fit ends.
-    const Outcome<LightEstimate> light = estimateLight(views, Settings{});
-    Outcome<PixelFit> fit =
-        fitViewsPixels(views, light ? std::optional<LightEstimate>(*light) : std::nullopt, anyLobe(r.request.settings), goesOn);
+    fitLobe(r, key, views, goesOn);
     ++done;
-    ++r.work.pixelFits;
-    if (fit)
-      r.pixelFits.insert_or_assign(key, std::make_shared<const PixelFit>(*std::move(fit)));
-    else
-      r.pixelFits.insert_or_assign(key, fit.failure());
   }
 }
 

@@ -29,6 +29,7 @@ namespace glint {
 
 struct PixelPatch;
 struct PixelFit;
+struct UnexplainedPixels;
 struct ModelFit;
 
 /// One direction of the walk from the brightest point (method.md section 6): a point or a named reason.
@@ -88,10 +89,11 @@ struct LightEstimate {
 
 /// What a fit may use. Views are of one light (and one surface, when models are per surface).
 struct FitInput {
-  std::vector<TrainingView> views;           ///< those that were not `seen` are skipped
-  std::optional<LightEstimate> light;        ///< for models with needsLight()
-  std::optional<Failure> lightFailure;       ///< why there is none
-  std::shared_ptr<const PixelFit> pixelFit;  ///< of the pixels of exactly these views, where it is known already
+  std::vector<TrainingView> views;                       ///< those that were not `seen` are skipped
+  std::optional<LightEstimate> light;                    ///< for models with needsLight()
+  std::optional<Failure> lightFailure;                   ///< why there is none
+  std::shared_ptr<const PixelFit> pixelFit;              ///< of the pixels of exactly these views, where it is known already
+  std::shared_ptr<const UnexplainedPixels> unexplained;  ///< of a fit to pixels that failed: serves where it was asked the same
   /// By the same model, of nearly these views: cameras moved a little. `reflectance` starts from its lamp and keeps the lamp's
   /// shape.
   std::shared_ptr<const ModelFit> near;

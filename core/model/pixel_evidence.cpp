@@ -121,6 +121,14 @@ std::optional<std::string> contradiction(const std::vector<TrainingView>& views,
       std::sqrt(squares / count), 100 * std::sqrt(shares / count));
 }
 
+/// To the last bit, in all that a fit to pixels looks at beside the surface.
+bool showTheSame(const TrainingView& a, const TrainingView& b) {
+  const Highlight &h = a.highlight, &k = b.highlight;
+  return a.frame == b.frame && a.pixels == b.pixels && a.camera.pixelFromRay == b.camera.pixelFromRay &&
+         a.camera.camFromWorld.matrix() == b.camera.camFromWorld.matrix() && h.level == k.level && h.clipped == k.clipped &&
+         h.peak == k.peak && h.contour.points == k.contour.points;
+}
+
 }  // namespace
 
 bool havePixels(const std::vector<TrainingView>& views) {
@@ -168,8 +176,26 @@ Outcome<PixelFit> fitViewsPixels(const std::vector<TrainingView>& views, const s
   return best;
 }
 
+const Failure* UnexplainedPixels::answerTo(const std::vector<TrainingView>& otherViews,
+                                           const std::optional<LightEstimate>& otherLight, const Settings& otherSettings) const {
+  std::vector<const TrainingView*> asked, other;
+  for (const TrainingView& v : views)
+    if (v.seen) asked.push_back(&v);
+  for (const TrainingView& v : otherViews)
+    if (v.seen) other.push_back(&v);
+  const auto start = [](const std::optional<LightEstimate>& l) {
+    return l ? std::optional(l->light.homogeneous()) : std::nullopt;
+  };
+  const bool same = settings == otherSettings && start(light) == start(otherLight) &&
+                    std::equal(asked.begin(), asked.end(), other.begin(), other.end(),
+                               [](const TrainingView* a, const TrainingView* b) { return showTheSame(*a, *b); });
+  return same ? &failure : nullptr;
+}
+
 Outcome<ModelFit> reflectanceFromPixels(const FitInput& input, const Settings& settings) {
   if (!havePixels(input.views)) return Failure{Reason::NotSupported, "not every training view has pixels"};
+  if (input.unexplained && !input.pixelFit)
+    if (const Failure* const before = input.unexplained->answerTo(input.views, input.light, settings)) return *before;
   const Outcome<PixelFit> known =
       input.pixelFit ? Outcome<PixelFit>(*input.pixelFit) : fitViewsPixels(input.views, input.light, settings, input.progress);
   if (!known) return known.failure();

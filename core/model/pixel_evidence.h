@@ -18,7 +18,18 @@ bool havePixels(const std::vector<TrainingView>& views);
 Outcome<PixelFit> fitViewsPixels(const std::vector<TrainingView>& views, const std::optional<LightEstimate>& light,
                                  const Settings& settings, const ProgressFn& progress = {});
 
-/// The reflectance model from the pixels of a fit's views, taken from FitInput::pixelFit where that is known.
+/// A fit to pixels that failed, with all that it was asked. It takes as long as one that succeeds, so that the same question is asked once.
+struct UnexplainedPixels {
+  std::vector<TrainingView> views;
+  std::optional<LightEstimate> light;
+  Settings settings;
+  Failure failure;
+  /// The answer, where fitViewsPixels() would be asked the same: views that were seen, on the same surfaces.
+  const Failure* answerTo(const std::vector<TrainingView>& otherViews, const std::optional<LightEstimate>& otherLight,
+                          const Settings& otherSettings) const;
+};
+
+/// The reflectance model from the pixels of a fit's views, taken from FitInput::pixelFit or FitInput::unexplained where these know it.
 /// NotSupported where a view has no pixels; the failures of fitViewsPixels().
 Outcome<ModelFit> reflectanceFromPixels(const FitInput& input, const Settings& settings);
 

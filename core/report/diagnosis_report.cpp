@@ -46,6 +46,7 @@ Ordered remedyJson(const Remedy& r) {
           {"train", textOrNull(r.change.train)},
           {"set", textOrNull(r.change.set)},
           {"exclude", textOrNull(r.change.exclude)},
+          {"also_set", r.change.alsoSet},
           {"flags", flagsOf(r.change)},
           {"words", wordsOf(r.change)},
           {"why", r.why},
@@ -153,7 +154,7 @@ std::string diagnosisText(const Inspection& inspection, const Diagnosis& d) {
   text += commandText(inspection, d) + "Evidence, measured in " + placeText(d) + ":\n";
   for (const std::string& note : d.notes) text += "  " + note + "\n";
   for (const Measured& m : d.measured)
-    if (!m.change.train && !m.change.set && !m.change.exclude)
+    if (!m.change.train && !m.change.set && !m.change.exclude && m.change.alsoSet.empty())
       text += formatted("  %-12s %s\n", m.change.model->c_str(), textOf(m.error).c_str());
   text += formatted("  %d of %d known changes were tried%s.\n", d.tried, d.known,
                     d.tried < d.known ? "; --thorough or --most N tries more" : "");

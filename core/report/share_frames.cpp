@@ -137,7 +137,7 @@ std::string onSurfaceJson(const Inspection& inspection, int frame, const Surface
     for (const FrameComparison& comparison : inspection.models.at(name).frames) {
       if (comparison.frame != frame) continue;
       const bool poor = !poorFit(inspection.models.at(name), comparison).empty();
-      const draw::Colour colour = poor ? draw::pale(draw::modelColour(name)) : draw::modelColour(name);
+      const draw::Colour colour = draw::modelColour(name, poor);
       for (const PredictedHighlight& h : comparison.prediction.highlights())
         for (const draw::ContourRun& run : draw::contourRuns(h)) add(name, {run.points, run.closed}, colour, run.gap || poor);
     }

@@ -309,6 +309,10 @@ class Triangles {
   TriangleMesh read(const std::string& id, const SurfaceSource& source) {
     SurfaceTriangles triangles = source.triangles();
     if (!triangles.of.empty()) report_.facts.push_back("surface '" + id + "' is made of points: " + triangles.of);
+    if (triangles.leftOut > 0)
+      report_.findings.push_back(formatted("%s lacks %zu of its %zu facets: a corner of each has no place",
+                                           source.file()->file.string().c_str(), triangles.leftOut,
+                                           triangles.mesh.triangles.size() + triangles.leftOut));
     if (triangles.failure)
       report_.findings.push_back("no surface can be made of the points of '" + id + "': " + triangles.failure->message());
     return std::move(triangles.mesh);

@@ -54,7 +54,9 @@ TriangleMesh meshOf(std::string_view bytes, const fs::path& file) { return meshO
 bool isCloudFile(const fs::path& file) { return looksLikeCloud(firstBytes(file, kCloudHeader)); }
 
 SurfaceTriangles MeshFile::triangles() const {
-  SurfaceTriangles own{readMesh(file)};
+  MeshContent content = readMeshContent(file);
+  SurfaceTriangles own{.mesh = {}, .leftOut = content.leftOut};
+  own.mesh = meshOf(std::move(content));
   toMetres(own.mesh.vertices, metresPerUnit);
   return own;
 }

@@ -26,6 +26,7 @@ struct SurfaceTriangles {
   TriangleMesh mesh;                    ///< the points alone, without triangles, where no surface can be made of them
   std::string of = {};                  ///< what was found about the points, in words; "" = the triangles are the file's own
   std::optional<Failure> failure = {};  ///< why no surface can be made
+  std::size_t leftOut = 0;              ///< facets of the file with a corner that has no place
 };
 
 /// A file from which a surface is read.

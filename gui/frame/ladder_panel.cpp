@@ -179,6 +179,7 @@ void LadderPanel::showTile(Tile& tile) {
   tile.failed = false;
   for (const draw::OverlayCaption& c : overlay.captions) {
     if (c.model != tile.model) continue;
+    tile.colour = toQColor(c.colour);
     tile.failed = !wholeErrorPct(c.score);
     const bool some = c.score.missed > 0 && c.score.matched > 0;
     tile.below = some          ? toQString(missedText(c.score))
@@ -227,7 +228,7 @@ void LadderPanel::showCaption(const Tile& tile) {
   const QString below = left > 0 ? plain.elidedText(fitting, Qt::ElideRight, left).toHtmlEscaped() : QString();
   tile.text->setText(
       QStringLiteral("<span style='color:%1'>%2</span>%3<b>%4</b>%5%6")
-          .arg(toQColor(draw::modelColour(tile.model)).name(), QString(kSquare), space, model.toHtmlEscaped(),
+          .arg(tile.colour.name(), QString(kSquare), space, model.toHtmlEscaped(),
                lines_ == 2 ? QStringLiteral("<br>") : space + space,
                tile.failed ? QStringLiteral("<span style='color:%1'>%2</span>").arg(warningColour().name(), below) : below));
 }

@@ -47,6 +47,7 @@ class LadderPanel : public QWidget {
     QString below = {};  ///< error or reason
     QString brief = {};  ///< where there is no room for that
     bool failed = false;
+    QColor colour = {};  ///< of the caption's square
   };
   void scheduleRefresh();
   void markStale();

@@ -201,9 +201,7 @@ QVariant ErrorModel::data(const QModelIndex& index, int role) const {
     case Qt::DisplayRole: return cell(index.row(), column);
     case kSortRole: return sorted(index.row(), column);
     case Qt::DecorationRole:
-      if (column == Model)
-        return colourSwatch(
-            toQColor(poor_.count(row.model) ? draw::pale(draw::modelColour(row.model)) : draw::modelColour(row.model)));
+      if (column == Model) return colourSwatch(toQColor(draw::modelColour(row.model, poor_.count(row.model) > 0)));
       return {};
     case Qt::ForegroundRole: return colour(index.row(), column);
     case Qt::ToolTipRole: return tip(index.row(), column);

@@ -277,9 +277,12 @@ void ErrorTable::showSummary() {
        {}});
   for (const std::string& name : modelsInOrder(*inspection)) {
     const ModelSummary s = summarise(*inspection, inspection->models.at(name));
-    SummaryRow row{
-        toQColor(draw::modelColour(name)).name(), toQString(name) + (s.poor ? tr(", poor") : QString()), {}, {}, toQString(name),
-        s.poor ? toQString(s.reason) : QString()};
+    SummaryRow row{toQColor(draw::modelColour(name, s.poor)).name(),
+                   toQString(name) + (s.poor ? tr(", poor") : QString()),
+                   {},
+                   {},
+                   toQString(name),
+                   s.poor ? toQString(s.reason) : QString()};
     if (s.answered) {
       const Statistic& e = s.contourErrorPct;
       // As many decimals as the table below, so that points are under points.

@@ -352,7 +352,7 @@ void ConditioningPanel::build() {
     auto* head = new QLabel(name);
     head->setToolTip(toQString(c.model + ", " + lightName(c.light) + (c.surface ? ", surface " + *c.surface : std::string())));
     head->setStyleSheet(
-        QStringLiteral("border-bottom: 2px solid %1; font-size: 8pt;").arg(toQColor(draw::modelColour(c.model)).name()));
+        QStringLiteral("border-bottom: 2px solid %1; font-size: 8pt;").arg(toQColor(draw::modelColour(c.model, c.poor)).name()));
     head->setAlignment(Qt::AlignHCenter | Qt::AlignBottom);
     head->setMinimumWidth(40);
     grid->addWidget(head, 0, at + 1);

@@ -406,13 +406,7 @@ QString SceneTreeModel::detailOf(const SceneObject& o) const {
       return estimated ? tr("estimated") : known ? tr("truth only") : QString();
     }
     case Kind::Ellipsoid: {
-      if (!inspection) return {};
-      const auto found = inspection->models.find(o.key);
-      if (found == inspection->models.end()) return {};
-      const std::string here = surfaceKeyOf(scene.frames[std::size_t(document_.selection().frame)]);
-      const ModelResult::Fit* shown = nullptr;
-      for (const ModelResult::Fit& fit : found->second.fits)
-        if (fit.light == o.light && (!shown || (fit.surface && *fit.surface == here))) shown = &fit;
+      const ModelResult::Fit* const shown = fitOf(o);
       if (!shown) return {};
       if (!shown->fit) return tr("no fit");
       const EllipsoidFit* const fitted = shown->fit->as<EllipsoidFit>();
@@ -420,6 +414,16 @@ QString SceneTreeModel::detailOf(const SceneObject& o) const {
     }
   }
   return {};
+}
+
+const ModelResult::Fit* SceneTreeModel::fitOf(const SceneObject& o) const {
+  const std::shared_ptr<const Inspection> inspection = document_.inspection();
+  if (!inspection || !inspection->models.count(o.key)) return nullptr;
+  const std::string here = surfaceKeyOf(document_.scene()->frames[std::size_t(document_.selection().frame)]);
+  const ModelResult::Fit* shown = nullptr;
+  for (const ModelResult::Fit& fit : inspection->models.at(o.key).fits)
+    if (fit.light == o.light && (!shown || (fit.surface && *fit.surface == here))) shown = &fit;
+  return shown;
 }
 
 QString SceneTreeModel::tipOf(const SceneObject& o, int column) const {
@@ -510,7 +514,10 @@ QVariant SceneTreeModel::objectData(const SceneObject& o, const Group& group, in
       return isHiddenIn(hidden_, o) ? Qt::Unchecked : Qt::Checked;
     case Qt::DecorationRole:
       if (column == Detail && o.kind == Kind::Camera) return colourSwatch(toQColor(roleColour(document_.role(o.frame))));
-      if (column == Name && o.kind == Kind::Ellipsoid) return colourSwatch(toQColor(draw::modelColour(o.key)));
+      if (column == Name && o.kind == Kind::Ellipsoid) {
+        const ModelResult::Fit* const fit = fitOf(o);
+        return colourSwatch(toQColor(draw::modelColour(o.key, fit && fit->fit && !fit->fit->poor.empty())));
+      }
       return {};
     case Qt::FontRole: {
       const bool shownSurface = o.kind == Kind::Surface && groups_[0].objects.size() > 1 &&

@@ -69,7 +69,7 @@ void TimelineStrip::paintMissed(QPainter& painter) {
   painter.setBrush(Qt::NoBrush);
   const double line = row.height() / double(marked.size()), r = std::clamp(0.5 * line - 0.75, 1.0, 3.0);
   for (std::size_t k = 0; k < marked.size(); ++k) {
-    QColor colour = toQColor(draw::modelColour(marked[k]->model));
+    QColor colour = toQColor(draw::modelColour(marked[k]->model, marked[k]->poor));
     if (badge_->marks()) colour.setAlpha(90);
     painter.setPen(QPen(colour, 1.5));
     const auto shownOf = [&](std::vector<char> marks) {
@@ -141,7 +141,7 @@ void TimelineStrip::paintErrors(QPainter& painter) {
   const bool perFrame = columns >= int(inView_);
   for (const viz::TimelineData::Series& series : data_.series) {
     if (bars_ && series.model != plotted_) continue;
-    QColor colour = toQColor(series.poor ? draw::pale(draw::modelColour(series.model)) : draw::modelColour(series.model));
+    QColor colour = toQColor(draw::modelColour(series.model, series.poor));
     if (badge_->marks()) colour.setAlpha(90);
     std::vector<std::optional<double>> shown = series.errorPct;
     for (const int frame : shownExcluded(document_))

@@ -292,6 +292,23 @@ class LinkingTest : public QObject {
     QVERIFY2(numbers.contains("Warning: the fit explains <b>its</b> views poorly"), qPrintable(numbers));
   }
 
+  /// As in plots and photographs: the square before the name of a model that is poor.
+  void aPoorModelsSquareIsPale() {
+    auto* summary = table_->findChild<QLabel*>(QStringLiteral("errorSummary"));
+    auto inspection = std::make_shared<Inspection>(*document_->inspection());
+    const std::string model = document_->plottedModel();
+    const QString strong = toQColor(draw::modelColour(model)).name(),
+                  pale = toQColor(draw::pale(draw::modelColour(model))).name();
+    QVERIFY2(summary->text().contains(strong) && !summary->text().contains(pale), qPrintable(summary->text()));
+    ModelFit fit;
+    fit.model = model;
+    fit.light = "lamp";
+    fit.poor = "a fifth of the radius remains";
+    inspection->models[model].fits = {{"lamp", {}, fit, {}}};
+    document_->setInspection(inspection, document_->request());
+    QVERIFY2(summary->text().contains(pale) && !summary->text().contains(strong), qPrintable(summary->text()));
+  }
+
   void staleResultsAreMarked() {
     auto* summary = table_->findChild<QLabel*>(QStringLiteral("errorSummary"));
     const auto* badge = table_->findChild<StaleBadge*>();

@@ -359,6 +359,7 @@ TEST(MeshReader, NormalsOfObj) {
 
 TEST(MeshReader, AFacetOfStlWithoutAPlaceIsLeftOut) {
   const std::string text = stlText();
+  EXPECT_EQ(parsed(text).leftOut, 0u);
   const std::size_t corner = 84 + 12, facet = 50;  // bytes before the first corner, and of a facet
   for (const float bad : {std::nanf(""), std::numeric_limits<float>::infinity(), 3e38f}) {
     std::string binary = stlBinary();
@@ -366,12 +367,14 @@ TEST(MeshReader, AFacetOfStlWithoutAPlaceIsLeftOut) {
     const MeshContent second = parsed(binary, "a.stl");
     EXPECT_THAT(second.vertices, ElementsAre(Vector3d(0, 0, 0), Vector3d(1, 1, 0), Vector3d(0, 1, 0)));
     EXPECT_THAT(second.triangles, ElementsAre(Vector3i(0, 1, 2)));
+    EXPECT_EQ(second.leftOut, 1u);
     std::memcpy(binary.data() + corner + facet, &bad, sizeof bad);
     EXPECT_THAT(inputErrorOf([&] { parseMesh(binary, "a.stl"); }), HasSubstr("byte 84, facet 0: a vertex is"));
   }
   for (const char* bad : {"nan", "-nan(ind)", "inf", "1e31"}) {
     const std::string once = with(text, "vertex 1 0 0", std::string("vertex 1 0 ") + bad);
     EXPECT_THAT(parsed(once).vertices, ElementsAre(Vector3d(0, 0, 0), Vector3d(1, 1, 0), Vector3d(0, 1, 0))) << bad;
+    EXPECT_EQ(parsed(once).leftOut, 1u) << bad;
     EXPECT_THAT(inputErrorOf([&] { parseMesh(with(once, "vertex 0 1 0", std::string("vertex 0 1 ") + bad), "m"); }),
                 HasSubstr("line 6: a vertex is"));
   }

@@ -12,6 +12,7 @@
 #include <sstream>
 
 #include "core/base/atomic_file.h"
+#include "core/draw/frame_overlay.h"
 #include "core/draw/plot_view.h"
 #include "core/draw/scatter_plot.h"
 #include "tests/viz/small_inspection.h"
@@ -330,6 +331,19 @@ TEST(Plots, WhatIsPoorIsPaleDashedAndNamedSo) {
   const TemporaryFolder folder;
   const auto inspection = smallInspection(folder.path());
   ModelResult& result = inspection->models["canonical"];
+  const auto samples = [&] { return frameSamples(*inspection, 5, "canonical"); };
+  const auto conditioning = [&] {  // its views are made up: no linear system follows from them
+    Conditioning c = conditioningOf(*inspection).at(0);
+    c.singularValues = {3, 2, 1};
+    return c;
+  };
+  const auto lobe = [&] {  // the model's own, as if it had one
+    FrameSamples of = samples();
+    of.lobes.at(0).samples = LobeSamples{};
+    of.lobes.at(0).samples->samples = {{{10, 20}, 0.1, 0, 0, true}};
+    of.lobes.at(0).roughness = 0.1;
+    return lobePlot(of, -1).series.at(2);
+  };
   const auto series = [&]() -> std::map<std::string, PlotSeries> {
     Tradeoff tradeoff;
     tradeoff.points.resize(1);
@@ -341,19 +355,30 @@ TEST(Plots, WhatIsPoorIsPaleDashedAndNamedSo) {
             {"dial", residualDial(*inspection, 5, -1).series.at(0)},
             {"axes", semiAxesPlot(*inspection).series.at(0)},
             {"scatter", scatterPlot(*inspection, highlightRows(*inspection), {}).plot.series.at(0)},
-            {"tradeoff", tradeoffPlot(tradeoff).series.back()}};
+            {"tradeoff", tradeoffPlot(tradeoff).series.back()},
+            {"limit-angle", limitAnglePlot(samples(), -1).series.at(1)},
+            {"singular", singularValuePlot({conditioning()}).series.at(0)}};
   };
   for (const auto& [plot, s] : series()) {
     EXPECT_EQ(s.colour, modelColour("canonical")) << plot;
     EXPECT_EQ(s.dash, Dash::Solid) << plot;
     EXPECT_EQ(s.name.find("poor"), std::string::npos) << plot;
   }
+  EXPECT_EQ(lobe().colour, modelColour("canonical"));
+  EXPECT_EQ(lobe().name.rfind("canonical, m = ", 0), 0u) << lobe().name;
+  EXPECT_EQ(frameOverlay(*inspection, 5, {}).captions.at(0).colour, modelColour("canonical"));
   for (ModelResult::Fit& fit : result.fits) fit.fit->poor = "a fifth of the radius remains";
   for (const auto& [plot, s] : series()) {
     EXPECT_EQ(s.colour, pale(modelColour("canonical"))) << plot;
     if (s.shape != PlotShape::Points) EXPECT_EQ(s.dash, Dash::Dashed) << plot;
-    EXPECT_EQ(s.name.rfind("canonical, poor", 0), 0u) << plot << ": " << s.name;
+    EXPECT_EQ(s.name.rfind(plot == "limit-angle" ? "predicted contour, poor" : "canonical, poor", 0), 0u)
+        << plot << ": " << s.name;
   }
+  EXPECT_EQ(lobe().colour, pale(modelColour("canonical")));
+  EXPECT_EQ(lobe().dash, Dash::Dashed);
+  EXPECT_EQ(lobe().name.rfind("canonical, poor, m = ", 0), 0u) << lobe().name;
+  EXPECT_EQ(frameOverlay(*inspection, 5, {}).captions.at(0).colour, pale(modelColour("canonical")))
+      << "the chip beside the numbers";
 }
 
 TEST(Plots, EveryKindHasAName) {

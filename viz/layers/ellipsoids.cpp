@@ -102,7 +102,7 @@ LayerContent ellipsoidsLayer(const LayerInput& in) {
       info.text = fitText(*fit, *fitted) + line("centre", e.centre(), "m") + line("semi-axes", e.semiAxes(), "m");
       content.behindSurface = content.behindSurface || hiddenBySurface(in, e.centre());
       const bool poor = !fit->poor.empty();  // pale and dashed, as its contours in the frames
-      const Colour colour = poor ? draw::pale(modelColour(model)) : modelColour(model);
+      const Colour colour = draw::modelColour(model, poor);
       // A vanishing axis would make the unit sphere's normals undefined: keep it thinner than a line.
       const Eigen::Vector3d axes = e.semiAxes().cwiseMax(1e-5 * std::max(e.semiAxes().maxCoeff(), 1e-300));
       const Eigen::Affine3d worldFromUnit = Eigen::Affine3d(e.worldFromBody()) * Eigen::Scaling(axes);

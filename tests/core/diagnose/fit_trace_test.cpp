@@ -41,6 +41,28 @@ const SolverRun* answerOf(const FitTrace& fit, const std::string& what) {
   return it == fit.runs.end() ? nullptr : &*it;
 }
 
+/// Of one light: all questions but the first come from within its fit.
+TEST(FitTrace, AStopIsAcknowledgedWithinAFit) {
+  InspectionRequest request;
+  request.models = {"limit-angle"};
+  request.train = "0-5";
+  const Inspection inspection = inspect(noisyScene(0.1), request);
+  const HighlightModel& model = modelByName("reflectance");  // has no fit yet
+  const auto fit = [&](bool again, const ProgressFn& progress) {
+    if (again)
+      traceFits(inspection, model, progress);
+    else
+      highlightEvidence(inspection, model, progress);
+  };
+  for (const bool again : {true, false}) {
+    int all = 0, asked = 0;
+    fit(again, [&](const StageEvent&) { return ++all > 0; });
+    ASSERT_GT(all, 10) << again;
+    EXPECT_THROW(fit(again, [&](const StageEvent&) { return ++asked < all / 2; }), Stopped) << again;
+    EXPECT_EQ(asked, all / 2) << "no question after the stop";
+  }
+}
+
 TEST(FitTrace, ExactContoursEndAtTheLamp) {
   const std::vector<FitTrace> fits = traced(exactScene(sphere(0.5), 9), "limit-angle");
   ASSERT_EQ(fits.size(), 1U);

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/scene/convention_report.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "tests/core/scene/scene_fixture.h"
 
 namespace glint {
 namespace {
@@ -41,6 +44,24 @@ TEST(ConventionReport, FramesOfManySurfacesSeeTheirOwn) {
     EXPECT_EQ(f.verticesInFront, f.vertices) << f.id;
     EXPECT_NEAR(f.distance, 2, 1e-9) << f.id;
   }
+}
+
+TEST(ConventionReport, CountsTheFacetsThatAnStlLeavesOut) {
+  const testing_support::TemporaryFolder folder;
+  const auto facet = [](const char* last) {
+    return std::string("facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex ") + last + "\nendloop\nendfacet\n";
+  };
+  const auto findings = [&](const std::string& facets) {
+    Scene scene = rowOfBalls(1);
+    scene.surfaces.at("0") = {};
+    scene.surfaces.at("0").mesh = folder.write("m.stl", "solid m\n" + facets + "endsolid m\n");
+    return conventionReport(scene).findings;
+  };
+  const std::string good = facet("0 1 0") + facet("1 1 0");
+  const auto saysSo = testing::Contains(testing::HasSubstr("facets: a corner of each has no place"));
+  EXPECT_THAT(findings(good), testing::Not(saysSo));
+  EXPECT_THAT(findings(good + facet("0 nan 0") + facet("inf 1 0") + facet("0 1e31 0")),
+              testing::Contains((folder / "m.stl").string() + " lacks 3 of its 5 facets: a corner of each has no place"));
 }
 
 /// IEEE 754: from 2^29 to 2^30 numbers of 53 bits are 2^-23 apart, those of 24 bits 2^6.
