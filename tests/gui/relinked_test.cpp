@@ -203,7 +203,7 @@ class RelinkedTest : public QObject {
     const std::string left = inRecoveryFolder("mesh.glint");
     coreEngine().autosave(window.document().toSave(), left);
     const Opened recovered = openInput(left);
-    QCOMPARE(toQString(recovered.scene->surfaces.at("g00").mesh->string()), found);
+    QCOMPARE(toQString(recovered.scene->surfaces.at("g00").file()->file.string()), found);
 
     QVERIFY(window.files()->save());
     QTRY_VERIFY_WITH_TIMEOUT(window.idle() && !window.document().hasUnsavedChanges(), 60000);
@@ -248,9 +248,9 @@ class RelinkedTest : public QObject {
     QCOMPARE(locate(window, path("second/c.ply")), QStringLiteral("Where is c.ply?"));  // b.ply lies beside the first
     computed(window);
     const auto& surfaces = window.document().scene()->surfaces;
-    QCOMPARE(toQString(surfaces.at("g00").mesh->string()), path("first/mesh/geom_00.ply"));
-    QCOMPARE(toQString(surfaces.at("g01").mesh->string()), path("first/mesh/b.ply"));
-    QCOMPARE(toQString(surfaces.at("g02").mesh->string()), path("second/c.ply"));
+    QCOMPARE(toQString(surfaces.at("g00").file()->file.string()), path("first/mesh/geom_00.ply"));
+    QCOMPARE(toQString(surfaces.at("g01").file()->file.string()), path("first/mesh/b.ply"));
+    QCOMPARE(toQString(surfaces.at("g02").file()->file.string()), path("second/c.ply"));
     QVERIFY(window.document().hasUnsavedChanges() && window.document().sessionFile().isEmpty());
     checkedCommand(window);
   }
@@ -446,7 +446,7 @@ class RelinkedTest : public QObject {
  private:
   static QString vase() { return QStringLiteral(GLINT_SOURCE_DIR "/sessions/vase"); }
   QString path(const QString& name) const { return folder_->filePath(name); }
-  static QString meshOf(MainWindow& window) { return toQString(window.document().scene()->surfaces.at("g00").mesh->string()); }
+  static QString meshOf(MainWindow& window) { return toQString(window.document().scene()->surfaces.at("g00").file()->file.string()); }
   std::unique_ptr<QTemporaryDir> folder_;
 };
 

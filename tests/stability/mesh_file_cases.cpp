@@ -110,7 +110,7 @@ std::string fileOf(const Bowl& bowl, const Eigen::Vector3d& offset, Format forma
 
 /// The surface that Glint makes of the file.
 std::shared_ptr<const Surface> surfaceOf(const Bowl& bowl, const Eigen::Vector3d& offset, Format format, NormalPolicy policy) {
-  return makeMesh(meshOf(fileOf(bowl, offset, format), format == Format::Obj ? "case.obj" : "case.ply"), policy);
+  return makeMesh(glint::meshOf(fileOf(bowl, offset, format), format == Format::Obj ? "case.obj" : "case.ply"), policy);
 }
 
 /// A place inside a triangle of the inner part of the bowl, another one for every i.

@@ -69,7 +69,7 @@ struct Case {
     }
   }
   double lightError(const Light& light) const {
-    return (light.position() - *scene.light.position).norm() / scene.light.position->norm();
+    return (light.position() - scene.light.lamp.position()).norm() / scene.light.lamp.position().norm();
   }
 };
 
@@ -87,7 +87,7 @@ DepthCorrection error(double size) {
 
 TEST(RefineDepth, Nominal) {
   const Case c(ellipsoidScene(7), error(kError));
-  const Light start = Light::at(1.1 * *c.scene.light.position);
+  const Light start = Light::at(1.1 * c.scene.light.lamp.position());
   const Outcome<Bundle> plain = bundleLight(c.views, start);
   const Outcome<DepthRefinement> r = refineDepth(c.views, start, kPrior);
   ASSERT_TRUE(plain && r) << (r ? "" : r.failure().message());
@@ -101,11 +101,11 @@ TEST(RefineDepth, Nominal) {
 
 TEST(RefineDepth, Scale) {
   const Case one(ellipsoidScene(7), error(kError));
-  const Outcome<DepthRefinement> reference = refineDepth(one.views, Light::at(1.1 * *one.scene.light.position), kPrior);
+  const Outcome<DepthRefinement> reference = refineDepth(one.views, Light::at(1.1 * one.scene.light.lamp.position()), kPrior);
   ASSERT_TRUE(reference);
   for (const double scale : {1e-4, 1e4}) {
     const Case c(moved(ellipsoidScene(7), Eigen::Isometry3d::Identity(), scale), error(kError));
-    const Outcome<DepthRefinement> r = refineDepth(c.views, Light::at(1.1 * *c.scene.light.position), kPrior);
+    const Outcome<DepthRefinement> r = refineDepth(c.views, Light::at(1.1 * c.scene.light.lamp.position()), kPrior);
     ASSERT_TRUE(r) << scale;
     // The contours are traced anew at every scale, to 1e-9 px; the differences that give the normals keep 1e-9 of the depth.
     EXPECT_LT((r->correction.coefficients - reference->correction.coefficients).norm(),
@@ -124,7 +124,7 @@ TEST(RefineDepth, Noise) {
   constexpr unsigned kSeeds = 4;
   for (unsigned seed = 1; seed <= kSeeds; ++seed) {
     const Case c(ellipsoidScene(7), error(2 * kError), 0.3, seed);
-    const Light start = Light::at(1.1 * *c.scene.light.position);
+    const Light start = Light::at(1.1 * c.scene.light.lamp.position());
     const Outcome<Bundle> plain = bundleLight(c.views, start);
     const Outcome<DepthRefinement> r = refineDepth(c.views, start, kPrior);
     ASSERT_TRUE(plain && r) << seed;
@@ -141,7 +141,7 @@ TEST(RefineDepth, Noise) {
 TEST(RefineDepth, ACleanDepthStaysAsItIs) {
   for (const double noise : {0.0, 0.3}) {
     const Case c(ellipsoidScene(7), {}, noise);
-    const Light start = Light::at(1.1 * *c.scene.light.position);
+    const Light start = Light::at(1.1 * c.scene.light.lamp.position());
     const Outcome<DepthRefinement> r = refineDepth(c.views, start, kPrior);
     ASSERT_TRUE(r);
     EXPECT_FALSE(r->correction.changesAnything()) << noise;
@@ -156,7 +156,7 @@ TEST(RefineDepth, Degenerate) {
   Synthetic same = ellipsoidScene(7);
   same.cameras.assign(4, same.cameras[3]);
   const Case c(same, error(kError));
-  const Outcome<DepthRefinement> r = refineDepth(c.views, Light::at(*c.scene.light.position), kPrior);
+  const Outcome<DepthRefinement> r = refineDepth(c.views, Light::at(c.scene.light.lamp.position()), kPrior);
   if (r) {
     EXPECT_TRUE(r->correction.coefficients.allFinite());
     EXPECT_GT(r->openShare(1), 0.8);

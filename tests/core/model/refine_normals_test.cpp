@@ -38,7 +38,7 @@ struct Case {
       views.push_back({scene.cameras[i], mesh.get(), h.contour.points, {}});
     }
   }
-  Light start() const { return Light::at(1.05 * *scene.light.position); }
+  Light start() const { return Light::at(1.05 * scene.light.lamp.position()); }
   /// RMS angle between the true shape's normals and a mesh's along the contours, each pixel's own: what a highlight there is off
   /// by.
   double normalsOff(const Surface& other) const {
@@ -54,7 +54,7 @@ struct Case {
     return std::sqrt(sum / count);
   }
   double lightError(const Light& light) const {
-    return (light.position() - *scene.light.position).norm() / scene.light.position->norm();
+    return (light.position() - scene.light.lamp.position()).norm() / scene.light.lamp.position().norm();
   }
 };
 

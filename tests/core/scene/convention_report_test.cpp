@@ -53,8 +53,7 @@ TEST(ConventionReport, CountsTheFacetsThatAnStlLeavesOut) {
   };
   const auto findings = [&](const std::string& facets) {
     Scene scene = rowOfBalls(1);
-    scene.surfaces.at("0") = {};
-    scene.surfaces.at("0").mesh = folder.write("m.stl", "solid m\n" + facets + "endsolid m\n");
+    scene.surfaces.at("0") = MeshFile{{folder.write("m.stl", "solid m\n" + facets + "endsolid m\n")}};
     return conventionReport(scene).findings;
   };
   const std::string good = facet("0 1 0") + facet("1 1 0");

@@ -15,7 +15,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 namespace fs = std::filesystem;
 
-const char* const kTriangle = "v 0 0 0\nv 2 0 0\nv 0 2 0\nf 1 2 3\n";
+const char* const kRightTriangle = "v 0 0 0\nv 2 0 0\nv 0 2 0\nf 1 2 3\n";
 
 AnalyticSpec ball() {
   AnalyticSpec s;
@@ -52,7 +52,7 @@ TEST(SurfaceSource, EveryKindSaysWhatItIsAndWhatItReads) {
 
 TEST(SurfaceSource, TrianglesAreInMetres) {
   const TemporaryFolder folder;
-  const SurfaceSource mesh = MeshFile{{folder.write("body.obj", kTriangle), "", 0.1}};
+  const SurfaceSource mesh = MeshFile{{folder.write("body.obj", kRightTriangle), "", 0.1}};
   EXPECT_NEAR(mesh.triangles().mesh.vertices[1].x(), 0.2, 1e-15);
   CapturePoints tracks = tracksOf(3);
   tracks.metresPerUnit = 0.01;
@@ -73,7 +73,7 @@ TEST(SurfaceSource, TrianglesAreTheSameOfTheSameFileUnitAndKind) {
 
 TEST(SurfaceSource, LoadsEveryKindAndReadsTrianglesAsTheCallerDoes) {
   const TemporaryFolder folder;
-  const SurfaceSource mesh = MeshFile{{folder.write("body.obj", kTriangle)}}, tracks = tracksOf(), formula = ball();
+  const SurfaceSource mesh = MeshFile{{folder.write("body.obj", kRightTriangle)}}, tracks = tracksOf(), formula = ball();
   for (const SurfaceSource* s : {&mesh, &tracks, &formula}) {
     const auto surface = s->load({});
     ASSERT_TRUE(surface) << surface.failure().message();
