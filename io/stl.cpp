@@ -64,7 +64,8 @@ class Welder {
   std::uint64_t seed_ = static_cast<std::uint64_t>(std::chrono::steady_clock::now().time_since_epoch().count());
 };
 
-/// Leaves a facet out, and counts it, if a corner of it has no place. @param bad  takes the first such facet, for a file that has no other
+/// Leaves a facet out, and counts it, if a corner of it has no place. @param bad  takes the first such facet, for a file without
+/// others
 void addFacet(MeshContent& mesh, Welder& welder, const Vector3d (&corners)[3], const std::string& file, const std::string& place,
               std::optional<InputError>& bad) {
   for (const Vector3d& corner : corners)

@@ -8,7 +8,8 @@
 
 namespace glint {
 
-/// The change with contours alone as evidence, which takes seconds where pixels take a minute. Where pixels fail again, both predict the same.
+/// The change with contours alone as evidence, which takes seconds where pixels take a minute. If pixels fail again, both predict
+/// the same.
 /// Nothing where that saves nothing: the pixels of the base were explained, or the change does not fit them again.
 /// @param base   complete, with the model
 /// @param model  of the change

@@ -174,7 +174,7 @@ class Adviser {
     return all;
   }
 
-  /// Where no lobe explained the pixels they will hardly be explained after a change: contours alone say first what each comes to.
+  /// If no lobe explained the pixels, a change will hardly alter that: contours alone say first what each change comes to.
   std::vector<CandidateChange> quickFormsOf(const std::vector<CandidateChange>& all) const {
     std::vector<CandidateChange> quick;
     for (const CandidateChange& c : all)
@@ -223,7 +223,8 @@ class Adviser {
     return {.train = change.train, .exclude = change.exclude, .alsoSet = change.alsoSet};
   }
 
-  /// Of the same frames and evidence, whatever the model: they cost most of a trial. Else of the same evidence, or the model as it is.
+  /// Results with the same frames and evidence, whatever the model: these cost most of a trial. Else those with the same
+  /// evidence, or the model as it is.
   Results nearest(const Change& change) const {
     for (const Change& seen : {framesAndEvidence(change), Change{.alsoSet = change.alsoSet}})
       if (const auto known = nearby_.find(flagsOf(seen)); known != nearby_.end()) return known->second;

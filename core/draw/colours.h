@@ -21,7 +21,7 @@ inline Colour pale(Colour colour) {
   for (double& channel : colour) channel = 0.5 * (channel + 0.5);
   return colour;
 }
-/// Of what a model says: paler where its fit is poor, in every view and report.
+/// The colour of a model is paler where its fit is poor, in every view and report.
 inline Colour modelColour(const std::string& model, bool poor) { return poor ? pale(modelColour(model)) : modelColour(model); }
 /// What lies on the tangent planes: canonical contours, their ellipses and the walks to them.
 inline Colour canonicalColour() { return modelColour(canonicalModel().id()); }

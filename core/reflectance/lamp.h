@@ -51,8 +51,9 @@ struct SphereShape {
   static constexpr const char *kName = "sphere", *kWords = "a lamp with a size";
   static constexpr int kUnknowns = 1, kLength = 2, kMostSteps = 25;
   static constexpr bool kMayVanish = true;
-  static constexpr double kLeast = 1e-10, kLeastStep = 1e-12, kRatioReserve = 1,
-                          kLargestRatio = 2.5;  // a larger disc takes minutes
+  static constexpr double kLeast = 1e-10;                          // keeps the derivative of a square root finite
+  static constexpr double kLeastStep = 1e-12;                      // keeps differences finite
+  static constexpr double kRatioReserve = 1, kLargestRatio = 2.5;  // sums over a larger disc take minutes
   T squaredRadius{0.0};
   static SphereShape of(double radius) { return {radius * radius}; }
   T* unknowns() { return &squaredRadius; }
@@ -68,7 +69,8 @@ struct SegmentShape {
   static constexpr const char *kName = "segment", *kWords = "a lamp with a length";
   static constexpr int kUnknowns = 3, kLength = 1, kMostSteps = 60;
   static constexpr bool kMayVanish = false;
-  static constexpr double kLeast = 0, kLeastStep = 1e-7, kRatioReserve = 1.3, kLargestRatio = 12;
+  static constexpr double kLeast = 0, kRatioReserve = 1.3, kLargestRatio = 12;
+  static constexpr double kLeastStep = 1e-7;                // of the distance: beyond round-off
   Eigen::Matrix<T, 3, 1> halfAxis{T(0.0), T(0.0), T(0.0)};  ///< from the centre to one end
   double radius = 0;                                        ///< of the tube, as a scene states it; fits are of a thin one
   T* unknowns() { return halfAxis.data(); }

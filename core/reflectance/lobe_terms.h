@@ -133,7 +133,8 @@ struct PhongLobe : CosinePower {
   static Eight largest(double m, const PartBounds& parts) {
     const float m2 = float(m) * float(m);
     const Eight& t = parts.tanSquared;
-    return 0.5f / m2 * (-2 * t / (1 + t) * parts.cosHalf.square()).max(-1 + 1e-7f).log1p();
+    constexpr float kAboveZero = 1e-7f;  // of 1, in single precision
+    return 0.5f / m2 * (-2 * t / (1 + t) * parts.cosHalf.square()).max(-1 + kAboveZero).log1p();
   }
 };
 

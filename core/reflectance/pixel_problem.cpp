@@ -29,11 +29,12 @@ std::vector<double*> blocksOf(State& s) {
   return blocks;
 }
 
-/// Step of the differences by the unknowns of a shape: a small share of them. The second order stays below 1e-4.
+/// Step of the differences by the unknowns of a shape: a small share of them.
 double shapeStep(LampShape shape) {
   const std::span<const double> own = unknownsOf(shape);
   const double least = std::visit([](const auto& s) { return s.kLeastStep; }, shape);
-  return std::max(least, 1e-4 * Eigen::Map<const Eigen::VectorXd>(own.data(), static_cast<Eigen::Index>(own.size())).norm());
+  constexpr double kShare = 1e-4;  // its second order stays below this
+  return std::max(least, kShare * Eigen::Map<const Eigen::VectorXd>(own.data(), static_cast<Eigen::Index>(own.size())).norm());
 }
 State alongShape(const State& at, int k, double step) {
   State moved = at;

@@ -22,7 +22,7 @@ constexpr int kLeftOutPoints = 24;  // a view: enough to compare two models
 constexpr double kSameSegment =
     1e-2;  // of a unit vector L, log m and the half axis over the distance: far less than a basin is wide
 constexpr double kProbedLength = 0.4;  // of the lobe's width, as angles of the light: it would show little
-constexpr double kStartLength = 0.1;  // half the lamp's length over its distance
+constexpr double kStartLength = 0.1;   // half the lamp's length over its distance
 // Where a lamp's length takes a part of the width that is seen, the lobe is narrower than the contours; both are tried.
 constexpr std::array<double, 2> kStartWidths{0.7, 0.35};
 

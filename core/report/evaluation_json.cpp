@@ -100,6 +100,18 @@ Json selectionJson(const Selection& s) {
   return j;
 }
 
+/// The shape of a lobe's lamp: every key that some shape has.
+void lampJson(const std::optional<Lamp>& lamp, Json& j) {
+  j["light_radius"] = 0.0;
+  for (const PlacedShape& shape : placedShapes()) j["light_" + shape.name] = nullptr;
+  for (const LampField& field : lamp ? fieldsOf(*lamp) : std::vector<LampField>()) {
+    if (field.value.size() == 1)
+      j["light_" + field.name] = numberOrNull(field.value(0));
+    else if (field.value.rows() > 1)
+      j["light_" + field.name] = rows(field.value);
+  }
+}
+
 Json fitJson(const Inspection& inspection, const ModelResult::Fit& entry) {
   Json j;
   j["light"] = entry.light;
@@ -131,15 +143,7 @@ Json fitJson(const Inspection& inspection, const ModelResult::Fit& entry) {
   if (contours && contours->extent) j["light_extent"] = rows(*contours->extent);
   if (lobe) {
     j["lobe"] = nameOf(lobe->lobe);
-    j["light_radius"] = 0.0;
-    for (const PlacedShape& shape : placedShapes()) j["light_" + shape.name] = nullptr;
-    if (const std::optional<Lamp> lamp = f.lamp())
-      for (const LampField& field : fieldsOf(*lamp)) {
-        if (field.value.size() == 1)
-          j["light_" + field.name] = numberOrNull(field.value(0));
-        else if (field.value.rows() > 1)
-          j["light_" + field.name] = rows(field.value);
-      }
+    lampJson(f.lamp(), j);
   }
   const bool isSolved = quadric && !quadric->singularValues.empty();
   j["gap_ratio"] = isSolved ? numberOrNull(quadric->gapRatio) : Json(nullptr);

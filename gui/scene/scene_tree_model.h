@@ -96,7 +96,7 @@ class SceneTreeModel : public QAbstractItemModel {
   QVariant groupData(const Group& group, int column, int role) const;
   QVariant objectData(const SceneObject& object, const Group& group, int row, int column, int role) const;
   QString detailOf(const SceneObject& object) const;
-  const ModelResult::Fit* fitOf(const SceneObject& model) const;  ///< for the frame that is selected; null where there is none
+  const ModelResult::Fit* fitOf(const SceneObject& model) const;  ///< for the frame that is selected; null without one
   QString tipOf(const SceneObject& object, int column) const;
   QString highlightTip(const SceneObject& object) const;
 

@@ -446,7 +446,9 @@ class RelinkedTest : public QObject {
  private:
   static QString vase() { return QStringLiteral(GLINT_SOURCE_DIR "/sessions/vase"); }
   QString path(const QString& name) const { return folder_->filePath(name); }
-  static QString meshOf(MainWindow& window) { return toQString(window.document().scene()->surfaces.at("g00").file()->file.string()); }
+  static QString meshOf(MainWindow& window) {
+    return toQString(window.document().scene()->surfaces.at("g00").file()->file.string());
+  }
   std::unique_ptr<QTemporaryDir> folder_;
 };
 

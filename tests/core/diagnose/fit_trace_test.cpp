@@ -41,7 +41,7 @@ const SolverRun* answerOf(const FitTrace& fit, const std::string& what) {
   return it == fit.runs.end() ? nullptr : &*it;
 }
 
-/// Of one light: all questions but the first come from within its fit.
+/// With one light, all questions but the first come from within its fit.
 TEST(FitTrace, AStopIsAcknowledgedWithinAFit) {
   InspectionRequest request;
   request.models = {"limit-angle"};
