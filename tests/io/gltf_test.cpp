@@ -467,7 +467,7 @@ TEST(Gltf, DamageIsNamedWithItsPlace) {
       {nodes(R"({"mesh":0,"rotation":[0,0,0,0]})"), "nodes[0].rotation: is a quaternion of length 0"},
       {nodes(R"({"mesh":0,"rotation":[0,0,1]})"), "nodes[0].rotation: must have 4 numbers, has 3"},
       {nodes(R"({"mesh":0,"matrix":[1,0,0,5, 0,1,0,0, 0,0,1,0, 0,0,0,1]})"), "nodes[0].matrix: its last row"},
-      {nodes(R"({"mesh":0,"matrix":[1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1],"scale":[1,1,1]})"), "nodes[0].matrix: stands beside"},
+      {nodes(R"({"mesh":0,"matrix":[1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1],"scale":[1,1,1]})"), "nodes[0].matrix: is beside"},
       {nodes(R"({"mesh":0,"children":[0]})"), "nodes[0]: is its own ancestor"},
       {nodes(R"({"mesh":0},{"children":[2]},{"children":[1]})"), "nodes[1]: is its own ancestor"},
       {nodes(R"({"children":[2]},{"children":[2]},{"mesh":0})"), "nodes[1].children[0]: names node 2 a second time"},
