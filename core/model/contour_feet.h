@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/geometry/camera.h"
+#include "core/geometry/polyline.h"
 
 namespace glint {
 
