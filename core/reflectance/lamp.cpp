@@ -32,6 +32,12 @@ LampChoices choicesNamed(const std::string& name, std::index_sequence<I...>) {
 }
 
 template <std::size_t... I>
+constexpr int mostUnknowns(std::index_sequence<I...>) {
+  return std::max({std::variant_alternative_t<I, LampShape>::kUnknowns...});
+}
+static_assert(mostUnknowns(std::make_index_sequence<std::variant_size_v<LampShape>>()) == kMostShapeUnknowns);
+
+template <std::size_t... I>
 std::vector<LampShape> shapesOf(std::index_sequence<I...>) {
   return {LampShape(std::in_place_index<I + 1>)..., PointShape<>{}};
 }
