@@ -39,7 +39,6 @@ constexpr double kHalfGain = 0.7;       // of a half's residual as given that a 
 // By how much mirrored rays pass a lamp, rad. Off-specular peaks, blur and lamps with a size move them by a few degrees.
 constexpr double kMeets = 0.05, kMayMeet = 0.2;
 
-using Change = CameraChange;
 constexpr double kDegrees = 180 / double(EIGEN_PI);
 
 class Check {
@@ -152,7 +151,7 @@ class Check {
 
   /// The lamp that the mirrored rays of all highlights share; `chosen` are places among the highlights of each view.
   /// @param withCamera  in the axes of each camera, where a lamp that moves with it stands still
-  std::optional<SharedLamp> lampAfter(const Change& change, bool withCamera = false) const {
+  std::optional<SharedLamp> lampAfter(const CameraChange& change, bool withCamera = false) const {
     stopIfAsked(0, 0);
     std::vector<std::vector<ReflectedRay>> rays(views_.size());
     std::vector<std::vector<int>> places(views_.size());
@@ -207,7 +206,7 @@ class Check {
 
   /// Light and lobe of some views as if the cameras were changed. @param lamp  names the highlight of each view
   /// @param near  a fit for cameras that differ little, if there is one
-  std::optional<Fitted> fit(const Change& change, const SharedLamp& lamp, const std::vector<int>& which, const Kind& kind,
+  std::optional<Fitted> fit(const CameraChange& change, const SharedLamp& lamp, const std::vector<int>& which, const Kind& kind,
                             const Fitted* near = nullptr) const {
     stopIfAsked(0, 0);
     if (which.empty()) return std::nullopt;
@@ -337,8 +336,8 @@ class Check {
     return best;
   }
 
-  static Change shiftedBy(const Eigen::Vector3d& metres) {
-    Change change;
+  static CameraChange shiftedBy(const Eigen::Vector3d& metres) {
+    CameraChange change;
     change.camerasFromMesh.translation = metres;
     return change;
   }
@@ -486,14 +485,14 @@ class Check {
     result_.findings.push_back(words);
   }
 
-  static Change along(const Change& direction, double by) {
+  static CameraChange along(const CameraChange& direction, double by) {
     return {by * direction.cx, by * direction.cy, by * direction.logFocal};
   }
 
   /// How far to go along a change until the sum of squares is least: a parabola through three fits, then one about its end, where
   /// another lobe may fit better than for the wrong cameras. The shape of the lamp stays, small errors of cameras do not hide it;
   /// every fit starts from the lamp of the one about which it lies.
-  std::optional<double> least(const Change& direction, const Fitted& given) const {
+  std::optional<double> least(const CameraChange& direction, const Fitted& given) const {
     const std::vector<int> which = agreeing(*asGiven_);
     double at = 0;
     Fitted here = given;
@@ -516,7 +515,7 @@ class Check {
   }
 
   /// Both halves of the views fit better after the change, too.
-  bool bothHalvesGain(const Change& change, const Fitted& whole) const {
+  bool bothHalvesGain(const CameraChange& change, const Fitted& whole) const {
     for (const int first : {0, 1}) {
       const std::vector<int> half = agreeing(*asGiven_, first, 2);
       const std::optional<Fitted> before = fit({}, *asGiven_, half, whole.kind, &whole),
@@ -529,10 +528,10 @@ class Check {
   void intrinsics(const Fitted& given) {
     if (given.rmsPx < kDetectionPx) return;
     // Steps are large against detection and small against what bends the parabola.
-    const Change shift{0.25, 0.25, 0}, focal{0, 0, 0.005};
+    const CameraChange shift{0.25, 0.25, 0}, focal{0, 0, 0.005};
     const std::optional<double> byShift = least(shift, given), byFocal = least(focal, given);
     std::optional<Fitted> atHalf, atFocal;
-    Change half, longer;
+    CameraChange half, longer;
     if (byShift) {
       result_.shiftPx = *byShift * shift.cx;
       half.cx = half.cy = *byShift < 0 ? -0.5 : 0.5;
@@ -545,7 +544,7 @@ class Check {
       atFocal = fit(longer, *asGiven_, agreeing(*asGiven_), {"auto", given.kind.lamp}, &given);
       add(formatted("focal length %+.2g %%", *result_.focalPct), atFocal);
     }
-    const auto clear = [&](const std::optional<Fitted>& here, const std::optional<Fitted>& other, const Change& change) {
+    const auto clear = [&](const std::optional<Fitted>& here, const std::optional<Fitted>& other, const CameraChange& change) {
       return here && here->rmsPx < kClearly * given.rmsPx && !(other && other->rmsPx < here->rmsPx) &&
              bothHalvesGain(change, *here);
     };

@@ -18,7 +18,6 @@
 namespace glint {
 namespace {
 
-constexpr double kOwnSizePct = 100;  // of the highlight's diameter: beyond, the outline is not that of the highlight
 constexpr const char* kLightOfOneAngle =
     " It covers noise only: a real lobe moves the light of one limit angle off the lamp by more than that. `glint lights` "
     "measures lamps.";

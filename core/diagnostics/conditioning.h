@@ -11,6 +11,9 @@
 
 namespace glint {
 
+/// Error of a contour, in percent of the highlight's diameter: beyond, the predicted contour lies beside the highlight.
+inline constexpr double kOwnSizePct = 100;
+
 /// How far a number can be trusted. Unknown: it does not exist here, which is no fault.
 enum class Verdict { Green, Amber, Red, Unknown };
 const char* nameOf(Verdict verdict);

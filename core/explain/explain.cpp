@@ -21,7 +21,7 @@
 
 namespace glint {
 
-using namespace explaining;
+using namespace explain_steps;
 
 namespace {
 constexpr double kSameLimit = 0.05;      // relative spread over the directions: beyond, one limit angle is not the contour
@@ -29,7 +29,6 @@ constexpr double kPricePct = 1;          // of the highlight's size: below, a br
 constexpr double kEllipticShare = 0.01;  // of the size: a contour this near to its ellipse looks like one
 constexpr double kWeakGap = 0.5;         // of the last two singular values: above, two quadrics fit almost alike
 constexpr double kNeedle = 10;           // longest over middle semi-axis: a lamp's blurred image is about as wide as it is long
-constexpr double kOwnSizePct = 100;      // of the highlight's diameter: beyond, the prediction lies beside it
 // Below these a number is what rounding leaves: contours are followed to about 1e-3 px.
 constexpr double kLeastPx = 1e-3, kLeastPct = 1e-3;
 constexpr double kLeastDeg = 1e-4;     // 1e-3 px at a focal length of 600 px

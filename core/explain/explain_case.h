@@ -9,7 +9,7 @@
 #include "core/model/model.h"
 
 // What the steps of an explanation read from, and how they write their numbers. Used by the steps alone.
-namespace glint::explaining {
+namespace glint::explain_steps {
 
 ExplainNumber one(const std::string& symbol, const std::string& name, double value, const std::string& unit = "");
 ExplainNumber point(const std::string& symbol, const std::string& name, const Eigen::Vector3d& p, const std::string& unit = "m");
@@ -48,4 +48,4 @@ void lightStep(const Case& c, ExplainStep& step);
 /// Tells, in a step based on the common light, that the model has another one.
 void addOtherLight(const Case& c, ExplainStep& step);
 
-}  // namespace glint::explaining
+}  // namespace glint::explain_steps

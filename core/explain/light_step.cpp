@@ -9,7 +9,7 @@
 #include "core/explain/explain_case.h"
 #include "core/light/estimate.h"
 
-namespace glint::explaining {
+namespace glint::explain_steps {
 namespace {
 
 constexpr double kRoundOff = 1e-9;   // of a vector's length: coordinates are known to 1e-7 at best, so this is a zero
@@ -110,4 +110,4 @@ void lightStep(const Case& c, ExplainStep& step) {
   }
 }
 
-}  // namespace glint::explaining
+}  // namespace glint::explain_steps

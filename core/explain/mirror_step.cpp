@@ -9,7 +9,7 @@
 #include "core/light/estimate.h"
 
 // The step of the virtual camera: what the tangent plane shows, and how far the surface is from it within the highlight.
-namespace glint::explaining {
+namespace glint::explain_steps {
 namespace {
 
 constexpr double kFlatShare = 0.05;     // of the limit angle: a normal that turns less across the highlight is that of a plane
@@ -187,4 +187,4 @@ void virtualCameraStep(const Case& c, ExplainStep& step) {
   addTurn(c, *k, step);
 }
 
-}  // namespace glint::explaining
+}  // namespace glint::explain_steps

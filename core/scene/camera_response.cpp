@@ -35,7 +35,7 @@ std::vector<std::string_view> wordsOf(std::string_view line, std::string& scratc
   return words;
 }
 
-struct Row {
+struct ResponseRow {
   std::size_t line = 0;
   std::vector<double> numbers;
 };
@@ -43,15 +43,15 @@ struct Row {
 std::string lineText(std::size_t line) { return "line " + std::to_string(line); }
 
 /// The numbers of a response file. The first line with words may be a heading.
-std::vector<Row> rowsOf(const std::string& text, const std::string& file) {
-  std::vector<Row> rows;
+std::vector<ResponseRow> rowsOf(const std::string& text, const std::string& file) {
+  std::vector<ResponseRow> rows;
   std::string scratch;
   io::Lines lines(text);
   bool first = true;
   while (const auto line = lines.next()) {
     const std::vector<std::string_view> words = wordsOf(*line, scratch);
     if (words.empty()) continue;
-    Row row{lines.number(), {}};
+    ResponseRow row{lines.number(), {}};
     for (const std::string_view word : words) {
       const std::optional<double> number = io::numberOf(word);
       if (number && std::isfinite(*number)) {
@@ -75,11 +75,11 @@ std::vector<Row> rowsOf(const std::string& text, const std::string& file) {
 }
 
 /// As one number a line, a file whose numbers stand in one line.
-std::vector<Row> inColumn(std::vector<Row> rows, const std::string& file) {
+std::vector<ResponseRow> inColumn(std::vector<ResponseRow> rows, const std::string& file) {
   if (rows.size() != 1 || rows.front().numbers.size() < kFewestInLine) return rows;
   if (rows.front().numbers.size() > kMostCodes)
     throw InputError(file, lineText(rows.front().line), "there are more than 65536 codes");
-  std::vector<Row> column;
+  std::vector<ResponseRow> column;
   for (const double v : rows.front().numbers) column.push_back({rows.front().line, {v}});
   return column;
 }
@@ -131,7 +131,7 @@ CameraResponse CameraResponse::ofText(const std::string& text, const fs::path& f
 }
 
 CameraResponse::Table CameraResponse::readTable(const std::string& text, const std::string& file) {
-  const std::vector<Row> rows = inColumn(rowsOf(text, file), file);
+  const std::vector<ResponseRow> rows = inColumn(rowsOf(text, file), file);
   if (rows.size() < 2) throw InputError(file, "", "is no camera response: it needs the light of two codes at least");
   const std::size_t columns = rows.front().numbers.size();
   if (columns > 4)
@@ -147,7 +147,7 @@ CameraResponse::Table CameraResponse::readTable(const std::string& text, const s
     throw InputError(file, lineText(rows.front().line), "the first code must be 0");
   Table table;
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    const Row& row = rows[i];
+    const ResponseRow& row = rows[i];
     table.codes.push_back((hasCodes ? row.numbers.front() : double(i)) / last);
     if (i > 0 && !(table.codes[i] > table.codes[i - 1])) throw InputError(file, lineText(row.line), "the codes must rise");
     for (std::size_t c = 0; c < 3; ++c) {
