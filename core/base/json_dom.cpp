@@ -119,9 +119,64 @@ class Builder final : public nlohmann::json_sax<Json> {
 
 }  // namespace
 
-std::string textWithPaths(const Json& document, const std::string& file) {
+namespace {
+
+/// A scalar, or a list of at most 16 scalars without text: what fits on a line.
+bool isShort(const Json& j) {
+  if (j.is_object()) return j.empty();
+  if (!j.is_array()) return true;
+  if (j.size() > 16) return false;
+  for (const Json& e : j)
+    if (e.is_structured()) return false;
+  return true;
+}
+
+void print(const Json& j, int depth, std::string& out) {
+  const std::string indent(static_cast<std::size_t>(2 * depth), ' ');
+  if (!j.is_structured() || j.empty()) {
+    out += j.dump(-1, ' ', false, Json::error_handler_t::replace);
+  } else if (j.is_object()) {
+    out += "{\n";
+    bool first = true;
+    for (const auto& item : j.items()) {
+      if (!first) out += ",\n";
+      first = false;
+      out += indent + "  " + Json(item.key()).dump(-1, ' ', false, Json::error_handler_t::replace) + ": ";
+      print(item.value(), depth + 1, out);
+    }
+    out += "\n" + indent + "}";
+  } else {
+    bool flat = true;
+    for (const Json& e : j) flat = flat && isShort(e);
+    bool first = true;
+    out += "[";
+    for (const Json& e : j) {
+      if (!first) out += flat ? ", " : ",";
+      first = false;
+      if (flat) {
+        out += e.dump(-1, ' ', false, Json::error_handler_t::replace);
+      } else {
+        out += "\n" + indent + "  ";
+        print(e, depth + 1, out);
+      }
+    }
+    if (!flat) out += "\n" + indent;
+    out += "]";
+  }
+}
+
+}  // namespace
+
+std::string pretty(const Json& document) {
+  std::string out;
+  print(document, 0, out);
+  return out + "\n";
+}
+
+std::string prettyWithPaths(const Json& document, const std::string& file) {
   try {
-    return document.dump(-1, ' ', false, Json::error_handler_t::strict);
+    static_cast<void>(document.dump(-1, ' ', false, Json::error_handler_t::strict));
+    return pretty(document);
   } catch (const Json::type_error&) {
     throw InputError(file, "",
                      "cannot be written: it names a file or folder whose path is not UTF-8; rename that file or folder");

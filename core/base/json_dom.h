@@ -8,6 +8,10 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+namespace glint {
+class JsonNode;
+}
+
 namespace glint::json_dom {
 
 using Json = nlohmann::ordered_json;
@@ -22,13 +26,21 @@ inline void append(Json& object, const std::string& key, Json value) {
   static_cast<Json::object_t::Container&>(members).emplace_back(key, std::move(value));
 }
 
-/// The text of a document that names files. @param file  that it will be
+/// The text for people: two blanks a level, arrays of numbers (and of short arrays of numbers) on one line. Bytes that are not
+/// UTF-8 are replaced, numbers that are not finite become null.
+std::string pretty(const Json& document);
+/// The same of a document that names files. @param file  that it will be
 /// @throw InputError if a path or name is not UTF-8: JSON could hold another one only, and nothing would be found there.
-std::string textWithPaths(const Json& document, const std::string& file);
+std::string prettyWithPaths(const Json& document, const std::string& file);
 
 /// `file` names the text in messages.
 /// @throw InputError (file; line and column, or the place of the value) for wrong syntax, a repeated key in an object,
 ///        nesting deeper than 100, and beyond the limits json.megabytes and json.values.
 Json parse(const std::string& text, const std::string& file);
+
+/// The value at a place of a document that was read, which lives as long as the place.
+struct NodeValue {
+  static const Json& of(const JsonNode& node);
+};
 
 }  // namespace glint::json_dom

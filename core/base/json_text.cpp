@@ -90,6 +90,8 @@ std::string childPlace(const std::string& place, const std::string& key) { retur
 JsonNode::JsonNode(std::shared_ptr<const Document> document, const void* value, std::string place)
     : document_(std::move(document)), value_(value), place_(std::move(place)) {}
 
+const Json& json_dom::NodeValue::of(const JsonNode& node) { return json(node.value_); }
+
 JsonNode JsonNode::parse(const std::string& text, const std::string& file) {
   const auto document = std::make_shared<Document>();
   document->file = file;
@@ -206,65 +208,5 @@ std::vector<std::string> JsonNode::unknownKeys(const std::set<std::string>& know
 }
 
 std::string JsonNode::dump() const { return json(value_).dump(-1, ' ', false, Json::error_handler_t::replace); }
-
-namespace {
-
-/// A scalar, or a list of at most 16 scalars without text: what fits on a line.
-bool isShort(const Json& j) {
-  if (j.is_object()) return j.empty();
-  if (!j.is_array()) return true;
-  if (j.size() > 16) return false;
-  for (const Json& e : j)
-    if (e.is_structured()) return false;
-  return true;
-}
-
-void print(const Json& j, int depth, std::string& out) {
-  const std::string indent(static_cast<std::size_t>(2 * depth), ' ');
-  if (!j.is_structured() || j.empty()) {
-    out += j.dump(-1, ' ', false, Json::error_handler_t::replace);
-  } else if (j.is_object()) {
-    out += "{\n";
-    bool first = true;
-    for (const auto& item : j.items()) {
-      if (!first) out += ",\n";
-      first = false;
-      out += indent + "  " + Json(item.key()).dump(-1, ' ', false, Json::error_handler_t::replace) + ": ";
-      print(item.value(), depth + 1, out);
-    }
-    out += "\n" + indent + "}";
-  } else {
-    bool flat = true;
-    for (const Json& e : j) flat = flat && isShort(e);
-    bool first = true;
-    out += "[";
-    for (const Json& e : j) {
-      if (!first) out += flat ? ", " : ",";
-      first = false;
-      if (flat) {
-        out += e.dump(-1, ' ', false, Json::error_handler_t::replace);
-      } else {
-        out += "\n" + indent + "  ";
-        print(e, depth + 1, out);
-      }
-    }
-    if (!flat) out += "\n" + indent;
-    out += "]";
-  }
-}
-
-}  // namespace
-
-std::string prettyJson(const std::string& text) {
-  Json j;
-  try {
-    j = json_dom::parse(text, "");
-  } catch (const InputError&) {
-    require(false, "prettyJson: not JSON");
-  }
-  std::string out;
-  print(j, 0, out);
-  return out + "\n";
-}
 
 }  // namespace glint

@@ -9,6 +9,9 @@
 #include <vector>
 
 namespace glint {
+namespace json_dom {
+struct NodeValue;  // core/base/json_dom.h
+}
 
 /// A place in a JSON document, with checked reading: every error is an InputError `file: place: reason`, where place is
 /// a path such as `frames[3].camera_from_world` (or line and column for wrong syntax). Cheap to copy; the document lives
@@ -54,15 +57,12 @@ class JsonNode {
   [[noreturn]] void fail(const std::string& reason) const;
 
  private:
+  friend struct json_dom::NodeValue;
   struct Document;
   JsonNode(std::shared_ptr<const Document> document, const void* value, std::string place);
   std::shared_ptr<const Document> document_;
   const void* value_;  // nlohmann::ordered_json
   std::string place_;
 };
-
-/// JSON text laid out for people: two blanks a level, arrays of numbers (and of short arrays of numbers) on one line.
-/// The values are not touched. std::invalid_argument if the text is not JSON.
-std::string prettyJson(const std::string& json);
 
 }  // namespace glint

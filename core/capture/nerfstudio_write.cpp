@@ -3,7 +3,6 @@
 
 #include "core/base/atomic_file.h"
 #include "core/base/json_dom.h"
-#include "core/base/json_text.h"
 #include "core/capture/parts.h"
 #include "core/capture/write.h"
 
@@ -105,7 +104,7 @@ void writeTransforms(const std::vector<PosedImage>& images, const std::filesyste
     frames.push_back(std::move(frame));
   }
   json_dom::append(root, "frames", std::move(frames));
-  atomicWrite(file, prettyJson(json_dom::textWithPaths(root, target)));
+  atomicWrite(file, json_dom::prettyWithPaths(root, target));
 }
 
 }  // namespace glint

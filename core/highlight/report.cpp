@@ -3,11 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "core/base/atomic_file.h"
-#include "core/base/json_text.h"
+#include "core/base/json_dom.h"
 #include "core/codecs/codecs.h"
 #include "core/highlight/clipped_flank.h"
 
@@ -128,7 +127,7 @@ std::string detectionJson(const std::string& input, double level, const std::str
     list.push_back(std::move(j));
   }
   root["frames"] = std::move(list);
-  return prettyJson(root.dump(-1, ' ', false, Json::error_handler_t::replace));
+  return json_dom::pretty(root);
 }
 
 Image drawDetection(const Image& photograph, const Camera& camera, const std::vector<Highlight>& highlights) {

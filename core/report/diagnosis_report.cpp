@@ -2,11 +2,9 @@
 #include "core/report/diagnosis_report.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "core/base/angle.h"
 #include "core/base/json_dom.h"
-#include "core/base/json_text.h"
 #include "core/base/light_name.h"
 #include "core/base/number_text.h"
 #include "core/base/version.h"
@@ -137,7 +135,7 @@ std::string diagnosisJson(const Inspection& inspection, const Diagnosis& d, cons
                {"tried", d.tried},
                {"known", d.known},
                {"models", std::move(models)}};
-  return prettyJson(j.dump(-1, ' ', false, Ordered::error_handler_t::replace));
+  return json_dom::pretty(j);
 }
 
 std::vector<std::string> adviceOf(const Diagnosis& d) {

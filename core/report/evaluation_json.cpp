@@ -11,7 +11,7 @@
 #include "core/report/detection_error.h"
 #include "core/report/warnings.h"
 #include "core/scene/frame_name.h"
-#include "core/what_if/json.h"
+#include "core/what_if/what_if_dom.h"
 
 namespace glint {
 namespace evaluation {
@@ -344,7 +344,7 @@ std::string evaluationJson(const Inspection& inspection, const ReportContext& co
   if (!context.levelReason.empty()) j["level_reason"] = context.levelReason;
   j["source"] = inspection.request.source == FrameSource::Image ? "image" : "radiance";
   j["settings"] = settingsJson(inspection.request.settings);
-  if (!inspection.request.whatIf.none()) j["what_if"] = Json::parse(whatIfJson(inspection.request.whatIf));
+  if (!inspection.request.whatIf.none()) j["what_if"] = toJson(inspection.request.whatIf);
   j["scored_against"] = scoredAgainst(inspection);
   std::vector<std::string> warnings = warningsOf(inspection);
   if (context.selection && context.selection->poor) warnings.push_back("auto: " + context.selection->why);

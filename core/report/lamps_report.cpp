@@ -3,12 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "core/base/angle.h"
 #include "core/base/csv_text.h"
 #include "core/base/json_dom.h"
-#include "core/base/json_text.h"
 #include "core/base/number_text.h"
 
 namespace glint {
@@ -152,7 +150,7 @@ std::string lampsJson(const LampsReport& report) {
     root["degrees_of_freedom"] = report.balls->degreesOfFreedom;
   }
   if (!report.warnings.empty()) root["warnings"] = report.warnings;
-  return prettyJson(root.dump(-1, ' ', false, Ordered::error_handler_t::replace));
+  return json_dom::pretty(root);
 }
 
 std::string lampsCsv(const LampsReport& report) {

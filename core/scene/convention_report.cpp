@@ -5,9 +5,8 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <nlohmann/json.hpp>
 
-#include "core/base/json_text.h"
+#include "core/base/json_dom.h"
 #include "core/base/median.h"
 #include "core/base/number_text.h"
 #include "core/scene/corrected_files.h"
@@ -586,13 +585,13 @@ std::string toJson(const ConventionReport& r) {
                    {"on_surface", r.tracks->onSurface},
                    {"depth_ratio", r.tracks->depthRatio}};
   addConclusions(r, j);
-  return prettyJson(j.dump(-1, ' ', false, Json::error_handler_t::replace));
+  return json_dom::pretty(j);
 }
 
 std::string withFindings(const std::string& json, const ConventionReport& report) {
   Json j = Json::parse(json);
   addFindings(report, j);
-  return prettyJson(j.dump(-1, ' ', false, Json::error_handler_t::replace));
+  return json_dom::pretty(j);
 }
 
 }  // namespace glint

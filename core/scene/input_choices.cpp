@@ -4,17 +4,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "core/base/bounded_json.h"
 #include "core/base/outcome.h"
 #include "core/base/shortest_text.h"
+#include "core/scene/scene_dom.h"
 #include "io/text_scan.h"
 
 namespace glint {
 namespace {
-using Json = nlohmann::ordered_json;
+using json_dom::Json;
 
 constexpr std::array<std::pair<const char*, double>, 3> kUnits{{{"m", 1.0}, {"cm", 0.01}, {"mm", 0.001}}};
 constexpr const char* kCameraForm = "expected fx,fy,cx,cy or fx,fy,cx,cy,k1,k2,p1,p2[,k3]";
@@ -217,7 +217,7 @@ InputChoices readInputChoices(const JsonNode& node, const std::filesystem::path&
   return c;
 }
 
-std::string inputChoicesJson(const InputChoices& c, const std::function<std::string(const std::filesystem::path&)>& relative) {
+Json toJson(const InputChoices& c, const std::function<std::string(const std::filesystem::path&)>& relative) {
   Json j = Json::object();
   if (!c.as.empty()) j["as"] = c.as;
   switch (c.surface) {
@@ -241,7 +241,7 @@ std::string inputChoicesJson(const InputChoices& c, const std::function<std::str
     j["response_file"] = relative(file);
   else if (!c.response.empty())
     j["response"] = c.response;
-  return j.dump();
+  return j;
 }
 
 }  // namespace glint

@@ -61,8 +61,5 @@ std::filesystem::path responseFileOf(const InputChoices& choices);
 
 /// `input.reading` of a session. @param folder  of the session, absolute: paths are relative to it. InputError.
 InputChoices readInputChoices(const JsonNode& node, const std::filesystem::path& folder);
-/// Its JSON text. @param relative  the path of a file relative to the session's folder; asked for those that are named
-std::string inputChoicesJson(const InputChoices& choices,
-                             const std::function<std::string(const std::filesystem::path&)>& relative);
 
 }  // namespace glint

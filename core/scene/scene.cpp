@@ -131,7 +131,7 @@ std::unique_ptr<const SceneReader> makeSessionSceneReader() { return std::make_u
 
 void writeScene(const Scene& scene, const fs::path& file) {
   const fs::path folder = fs::absolute(file).lexically_normal().parent_path();
-  atomicWrite(file, prettyJson(sceneToJson(scene, folder)));
+  atomicWrite(file, sceneToJson(scene, folder));
 }
 
 }  // namespace glint

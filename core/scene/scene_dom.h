@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "core/base/json_dom.h"
+#include "core/scene/input_choices.h"
 #include "core/scene/surface_source.h"
 
 namespace glint {
@@ -16,5 +17,7 @@ json_dom::Json toJson(const Eigen::Matrix4d& m);
 using WrittenPath = std::function<std::string(const std::filesystem::path& file, const std::string& place)>;
 /// As `readSurfaceJson` reads it. InputError (place) for a surface that a scene file cannot name.
 json_dom::Json toJson(const SurfaceSource& source, const std::string& place, const WrittenPath& written);
+/// As `readInputChoices` reads it. @param relative  the path of a file relative to the session's folder; asked for those that are named
+json_dom::Json toJson(const InputChoices& choices, const std::function<std::string(const std::filesystem::path&)>& relative);
 
 }  // namespace glint

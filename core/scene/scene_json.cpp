@@ -36,7 +36,7 @@ struct Unknown {
     for (const std::string& key : keys) {
       const JsonNode value = node.at(key);
       if (keys.size() <= kEach) scene.warnings.push_back(value.place() + ": unknown key, kept");
-      json_dom::append(rest, key, json_dom::parse(value.dump(), node.file()));
+      json_dom::append(rest, key, json_dom::NodeValue::of(value));
     }
     return rest;
   }

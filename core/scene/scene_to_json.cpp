@@ -162,7 +162,7 @@ std::string sceneToJson(const Scene& scene, const fs::path& folder) {
     }
   }
   if (kept.contains("scene")) restore(root, kept["scene"]);
-  return json_dom::textWithPaths(root, folder.string());
+  return json_dom::prettyWithPaths(root, folder.string());
 }
 
 }  // namespace glint

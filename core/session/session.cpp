@@ -13,12 +13,14 @@
 #include "core/base/json_text.h"
 #include "core/base/permitted.h"
 #include "core/base/sha256.h"
+#include "core/scene/scene_dom.h"
 #include "core/scene/scene_files.h"
 #include "core/scene/scene_json.h"
 #include "core/scene/session_input.h"
 #include "core/session/session_plugins.h"
 #include "core/session/session_rights.h"
-#include "core/what_if/json.h"
+#include "core/tradeoff/tradeoff_dom.h"
+#include "core/what_if/what_if_dom.h"
 
 namespace glint {
 namespace fs = std::filesystem;
@@ -257,7 +259,7 @@ Session parseSession(const std::string& json, const fs::path& file) {
   for (const std::string& key : root.unknownKeys(
            {"glint_session", "input", "request", "frames", "view", "notes", "tradeoff", "results", "recovery", "plugins"})) {
     session.warnings.push_back(key + ": unknown key, kept");
-    json_dom::append(unknown, key, json_dom::parse(root.at(key).dump(), file.string()));
+    json_dom::append(unknown, key, json_dom::NodeValue::of(root.at(key)));
   }
   if (!unknown.empty()) session.unknownJson = unknown.dump();
   return session;
@@ -277,9 +279,7 @@ std::string sessionText(const Session& session, const fs::path& file) {
   for (const FilesFolder& f : session.folders)
     root["input"]["folders"].push_back({{"of", nameOf(f.kind)}, {"folder", relative(f.folder)}});
   for (const auto& [named, mesh] : session.meshes) root["input"]["meshes"][named] = relative(mesh);
-  if (!session.choices.none()) {
-    root["input"]["reading"] = Json::parse(inputChoicesJson(session.choices, relative));
-  }
+  if (!session.choices.none()) root["input"]["reading"] = toJson(session.choices, relative);
   for (const SessionFile& f : session.files)
     root["input"]["files"].push_back({{"path", relative(f.path)}, {"sha256", hash(f.sha256)}});
 
@@ -292,7 +292,7 @@ std::string sessionText(const Session& session, const fs::path& file) {
   root["request"]["noise_px"] = q.noisePx;
   root["request"]["seed"] = q.seed;
   root["request"]["truth"] = q.truthFolder.empty() ? Json() : Json(relative(q.truthFolder));
-  if (!q.whatIf.none()) root["request"]["what_if"] = Json::parse(whatIfJson(q.whatIf));
+  if (!q.whatIf.none()) root["request"]["what_if"] = toJson(q.whatIf);
   root["frames"] = {{"training", session.training}, {"held_out", session.heldOut}};
 
   const SessionView& v = session.view;
@@ -305,7 +305,7 @@ std::string sessionText(const Session& session, const fs::path& file) {
   for (const SessionPlugin& p : pluginsToRecord(session.plugins))
     root["plugins"].push_back({{"name", p.name}, {"version", p.version}, {"adds", p.adds}});
   root["notes"] = session.notes;
-  if (session.tradeoff) root["tradeoff"] = Json::parse(tradeoffJson(*session.tradeoff));
+  if (session.tradeoff) root["tradeoff"] = toJson(*session.tradeoff);
   if (!session.keyResults.empty()) {
     Json key = Json::object();
     for (const auto& [name, value] : session.keyResults) key[name] = std::isfinite(value) ? Json(value) : Json();
@@ -318,7 +318,7 @@ std::string sessionText(const Session& session, const fs::path& file) {
     for (const auto& item : unknown.items())
       if (!known.count(item.key())) json_dom::append(root, item.key(), item.value());
   }
-  return prettyJson(json_dom::textWithPaths(root, file.string()));
+  return json_dom::prettyWithPaths(root, file.string());
 }
 
 void writeSession(const Session& session, const fs::path& file) { atomicWrite(file, sessionText(session, file)); }

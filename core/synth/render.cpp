@@ -10,7 +10,6 @@
 
 #include "core/base/atomic_file.h"
 #include "core/base/atomic_folder.h"
-#include "core/base/json_text.h"
 #include "core/base/light_name.h"
 #include "core/base/parallel.h"
 #include "core/base/safe_text.h"
@@ -271,7 +270,7 @@ void renderFrames(Scene& scene, const RenderOptions& render, const Material& mat
 /// What the scene's file holds, with the sign that `synth` wrote it.
 std::string textOf(Scene scene) {
   scene.unknownJson = std::string("{\"scene\": {\"") + kMadeBy + "\": \"" + kMadeBySynth + "\"}}";
-  return prettyJson(sceneToJson(scene, scene.folder));
+  return sceneToJson(scene, scene.folder);
 }
 
 /// What is known of a scene before anything is written.

@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cmath>
 #include <map>
-#include <nlohmann/json.hpp>
 
 #include "core/base/json_dom.h"
 #include "core/base/json_text.h"
 #include "core/base/outcome.h"
 #include "core/tradeoff/knobs.h"
-#include "core/tradeoff/tradeoff.h"
+#include "core/tradeoff/tradeoff_dom.h"
 
 namespace glint {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using json_dom::Json;
 using json_dom::numberOrNull;
 
 Json settingJson(const SettingValue& value) {
@@ -54,7 +53,7 @@ Settings readSet(const JsonNode& node) {
 
 }  // namespace
 
-std::string tradeoffJson(const Tradeoff& t) {
+Json toJson(const Tradeoff& t) {
   Json j = {{"glint_tradeoff", 1},     {"input", t.input},          {"train", t.train},
             {"train_ids", t.trainIds}, {"train_spec", t.trainSpec}, {"knobs", t.knobs}};
   j["points"] = Json::array();
@@ -95,8 +94,10 @@ std::string tradeoffJson(const Tradeoff& t) {
     pruned["predict_us"] = numberOrNull(p.predictUs);
     j["pruned"].push_back(pruned);
   }
-  return prettyJson(j.dump(-1, ' ', false, Json::error_handler_t::replace)) + "\n";
+  return j;
 }
+
+std::string tradeoffJson(const Tradeoff& t) { return json_dom::pretty(toJson(t)) + "\n"; }
 
 Tradeoff readTradeoff(const JsonNode& node) {
   Tradeoff t;

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <limits>
-#include <nlohmann/json.hpp>
 
-#include "core/base/json_text.h"
+#include "core/base/json_dom.h"
 #include "core/base/number_text.h"
 #include "tests/stability/stability.h"
 
@@ -80,7 +79,7 @@ std::string stabilityJson(const std::vector<StabilityResult>& results) {
                      {"tolerance", r.tolerance},
                      {"verdict", nameOf(r.verdict)},
                      {"reason", r.reason}});
-  return prettyJson(nlohmann::ordered_json{{"glint_stability", 1}, {"cases", cases}}.dump()) + "\n";
+  return json_dom::pretty({{"glint_stability", 1}, {"cases", cases}}) + "\n";
 }
 
 }  // namespace glint

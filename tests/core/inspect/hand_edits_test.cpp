@@ -15,7 +15,7 @@
 
 #include "core/base/json_text.h"
 #include "core/inspect/summary.h"
-#include "core/what_if/json.h"
+#include "core/what_if/what_if_dom.h"
 #include "tests/core/inspect/exact_scene.h"
 
 namespace glint::hand_edits_tests {
@@ -362,7 +362,7 @@ TEST(EditsInJson, RoundTripAndAreRefusedByName) {
              {HighlightEdit::Kind::Merge, 0, {{1, 2}, {3, 4}}},
              {HighlightEdit::Kind::Split, 1, {{1, 2}, {3, 4}, {0.1, 1e-7}}},
              {HighlightEdit::Kind::Seed, 2, {{7, 8}}, "lamp"}};
-  EXPECT_EQ(readWhatIf(JsonNode::parse(whatIfJson(w), "x")), w);
+  EXPECT_EQ(readWhatIf(JsonNode::parse(toJson(w).dump(), "x")), w);
   for (const char* bad : {R"({"edits": [{"frame": 0, "kind": "melt", "places": [[1,2]]}]})",
                           R"({"edits": [{"frame": -1, "kind": "ignore", "places": [[1,2]]}]})",
                           R"({"edits": [{"frame": 0, "kind": "merge", "places": [[1,2]]}]})",

@@ -9,6 +9,7 @@
 
 #include "core/base/number_text.h"
 #include "core/scene/scene.h"
+#include "core/scene/scene_dom.h"
 #include "core/scene/scene_files.h"
 #include "core/scene/scene_json.h"
 #include "tests/core/scene/scene_fixture.h"
@@ -239,7 +240,7 @@ TEST(CameraResponse, ASessionKeepsTheOption) {
   };
   for (const std::string& text : {std::string("srgb"), std::string("gamma:2.2"), curve.string()}) {
     const InputChoices c = given(text);
-    const std::string json = inputChoicesJson(c, [&](const fs::path& p) { return p.lexically_relative(folder.path()).string(); });
+    const std::string json = toJson(c, [&](const fs::path& p) { return p.lexically_relative(folder.path()).string(); }).dump();
     const InputChoices again = readInputChoices(JsonNode::parse(json, "s.glint"), folder.path());
     EXPECT_EQ(again, c) << json;
     EXPECT_EQ(responseOf(again).text(), text);

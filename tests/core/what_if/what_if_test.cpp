@@ -9,7 +9,7 @@
 #include "core/inspect/fitted_lobe.h"
 #include "core/inspect/inspection.h"
 #include "core/session/session.h"
-#include "core/what_if/json.h"
+#include "core/what_if/what_if_dom.h"
 #include "core/what_if/knobs.h"
 #include "tests/core/inspect/exact_scene.h"
 
@@ -370,7 +370,7 @@ TEST(WhatIf, JsonRoundTrip) {
   w.lightsSwitched[{3, "b"}] = true;
   w.lightsBy["a \"quoted\" lamp"] = {1, 2, 3};
   w.surfaces["body"] = 0.4;
-  EXPECT_EQ(readWhatIf(JsonNode::parse(whatIfJson(w), "x")), w);
+  EXPECT_EQ(readWhatIf(JsonNode::parse(toJson(w).dump(), "x")), w);
   EXPECT_TRUE(readWhatIf(JsonNode::parse("{}", "x")).none());
   EXPECT_THROW(
       (void)readWhatIf(JsonNode::parse(R"({"poses": [{"frame": -1, "rotation": [0,0,0], "translation": [0,0,0]}]})", "x")),

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <string>
+// Internal to core, as json_dom.h.
 
+#include "core/base/json_dom.h"
 #include "core/base/json_text.h"
 #include "core/what_if/what_if.h"
 
 namespace glint {
 
 /// As sessions keep it (resources/session.schema.json, "what_if"). What is switched off with `synthesise` is not kept.
-std::string whatIfJson(const WhatIf& whatIf);
+json_dom::Json toJson(const WhatIf& whatIf);
 /// InputError with file, place and reason.
 WhatIf readWhatIf(const JsonNode& node);
 

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/what_if/json.h"
+#include "core/what_if/what_if_dom.h"
 
 #include <algorithm>
 #include <iterator>
-#include <nlohmann/json.hpp>
 
 #include "core/base/bounded_json.h"
 
 namespace glint {
-using Json = nlohmann::ordered_json;
+using json_dom::Json;
 
 namespace {
 Json toJson(const Eigen::Vector3d& v) { return Json::array({v.x(), v.y(), v.z()}); }
@@ -38,7 +37,7 @@ HighlightEdit editOf(const JsonNode& node) {
 }
 }  // namespace
 
-std::string whatIfJson(const WhatIf& w) {
+Json toJson(const WhatIf& w) {
   Json root = {{"poses", Json::array()}, {"highlights", Json::array()}};
   for (const auto& [frame, change] : w.poses)
     root["poses"].push_back(
@@ -66,7 +65,7 @@ std::string whatIfJson(const WhatIf& w) {
     for (const auto& [id, value] : w.surfaces) synthetic["surfaces"][id] = value;
     root["synthesise"] = std::move(synthetic);
   }
-  return root.dump();
+  return root;
 }
 
 WhatIf readWhatIf(const JsonNode& node) {
