@@ -9,42 +9,31 @@ namespace {
 
 std::vector<ParamSpec> filterParams() {
   return {
-      {"predict.filter_area",
-       "Filter by area",
-       "A_min",
-       "",
-       false,
-       0,
-       0,
-       0,
-       {},
-       "Leave out predicted highlights that are smaller than detection takes (detect.min_area). Views draw them faintly; nothing "
-       "compares them. Kept: area A >= A_min.",
-       "predict"},
-      {"predict.filter_brightness",
-       "Filter by brightness",
-       "b_min",
-       "",
-       0.0,
-       0.0,
-       1.0,
-       0.01,
-       {},
-       "Leave out predicted highlights that are fainter than this share of the brightest one in the same frame; 0 keeps all. "
-       "Models without a light keep all. Kept: I / I_brightest >= b_min, log I = log q (tan α / tan α_lim)².",
-       "predict"},
-      {"predict.filter_shadow",
-       "Filter own shadow",
-       "P L",
-       "",
-       false,
-       0,
-       0,
-       0,
-       {},
-       "Leave out predicted highlights whose middle the object itself hides from the lamp. Models without a light keep "
-       "all. Kept: P + t (L - P) meets no surface for 0 < t < 1; a filtered one = a shadow.",
-       "predict"}};
+      {.key = "predict.filter_area",
+       .title = "Filter by area",
+       .symbol = "A_min",
+       .defaultValue = false,
+       .help = "Leave out predicted highlights that are smaller than detection takes (detect.min_area). Views draw them faintly; "
+               "nothing "
+               "compares them. Kept: area A >= A_min.",
+       .stage = "predict"},
+      {.key = "predict.filter_brightness",
+       .title = "Filter by brightness",
+       .symbol = "b_min",
+       .defaultValue = 0.0,
+       .max = 1.0,
+       .step = 0.01,
+       .help =
+           "Leave out predicted highlights that are fainter than this share of the brightest one in the same frame; 0 keeps all. "
+           "Models without a light keep all. Kept: I / I_brightest >= b_min, log I = log q (tan α / tan α_lim)².",
+       .stage = "predict"},
+      {.key = "predict.filter_shadow",
+       .title = "Filter own shadow",
+       .symbol = "P L",
+       .defaultValue = false,
+       .help = "Leave out predicted highlights whose middle the object itself hides from the lamp. Models without a light keep "
+               "all. Kept: P + t (L - P) meets no surface for 0 < t < 1; a filtered one = a shadow.",
+       .stage = "predict"}};
 }
 
 }  // namespace

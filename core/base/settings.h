@@ -9,18 +9,20 @@
 namespace glint {
 
 using SettingValue = std::variant<bool, int, double, std::string>;
+/// As people read it, without its unit: "0.5", "refined", "on".
+std::string settingText(const SettingValue& value);
 
 /// Describes one setting: enough to build a panel row, a `--set` parser and a table of settings from it.
 struct ParamSpec {
-  std::string key;     ///< dotted name, "predict.directions"
-  std::string title;   ///< "Directions"
-  std::string symbol;  ///< symbol in method.md, "n"; may be empty
-  std::string unit;    ///< "px", "deg", "" for none
-  SettingValue defaultValue;
-  double min = 0, max = 0, step = 0;  ///< numeric settings only; closed range
-  std::vector<std::string> choices;   ///< string settings only; the legal values
-  std::string help;                   ///< one or two sentences, with the equation where there is one
-  std::string stage;  ///< first pipeline stage that depends on it: "detect", "surface", "light", "fit", "predict", "evaluate"
+  std::string key{};     ///< dotted name, "predict.directions"
+  std::string title{};   ///< "Directions"
+  std::string symbol{};  ///< symbol in method.md, "n"; may be empty
+  std::string unit{};    ///< "px", "deg", "" for none
+  SettingValue defaultValue{};
+  double min = 0, max = 0, step = 0;   ///< numeric settings only; closed range
+  std::vector<std::string> choices{};  ///< string settings only; the legal values
+  std::string help{};                  ///< one or two sentences, with the equation where there is one
+  std::string stage{};  ///< first pipeline stage that depends on it: "detect", "surface", "light", "fit", "predict", "evaluate"
 };
 
 /// Every setting of the program, in the order of the pipeline. The one place that defines them.
@@ -35,6 +37,7 @@ class Settings {
   int integer(const std::string& key) const;
   double number(const std::string& key) const;  ///< also converts an integer setting
   const std::string& text(const std::string& key) const;
+  const SettingValue& value(const std::string& key) const;
 
   /// InputError (place "--set KEY") if the key is unknown, the text does not parse, or the range is left.
   void setFromText(const std::string& key, const std::string& valueText);
@@ -45,7 +48,6 @@ class Settings {
   bool operator==(const Settings& other) const { return values_ == other.values_; }
 
  private:
-  const SettingValue& value(const std::string& key) const;
   std::map<std::string, SettingValue> values_;
 };
 

@@ -38,11 +38,7 @@ class Candidates {
   void set(const std::string& key, const std::string& value, const std::string& why) {
     Settings other = r_.request.settings;
     other.setFromText(key, value);
-    if (!(valueOf(other, key) == valueOf(r_.request.settings, key))) all_.push_back({{.set = key + "=" + value}, why});
-  }
-  static SettingValue valueOf(const Settings& settings, const std::string& key) {
-    const auto it = settings.values().find(key);
-    return it == settings.values().end() ? paramSpec(key).defaultValue : it->second;
+    if (!(other.value(key) == r_.request.settings.value(key))) all_.push_back({{.set = key + "=" + value}, why});
   }
 
   void filters() {

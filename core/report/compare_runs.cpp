@@ -10,7 +10,6 @@
 #include "core/base/number_text.h"
 #include "core/inspect/frame_score.h"
 #include "core/inspect/summary.h"
-#include "core/report/setting_text.h"
 
 namespace glint {
 namespace {
@@ -100,13 +99,8 @@ void addRequest(Values& out, const Inspection& a, const Inspection& b) {
   out.add("request", "noise on training contours", sixDigits(qa.noisePx), sixDigits(qb.noisePx), "px");
   if (qa.noisePx > 0 || qb.noisePx > 0) out.add("request", "noise seed", std::to_string(qa.seed), std::to_string(qb.seed));
   out.add("request", "truth", fs::path(qa.truthFolder).filename().string(), fs::path(qb.truthFolder).filename().string());
-  for (const ParamSpec& p : allParams()) {
-    const auto valueOf = [&](const InspectionRequest& q) {
-      const auto found = q.settings.values().find(p.key);
-      return settingText(found == q.settings.values().end() ? p.defaultValue : found->second);
-    };
-    out.add("settings", p.key, valueOf(qa), valueOf(qb), p.unit);
-  }
+  for (const ParamSpec& p : allParams())
+    out.add("settings", p.key, settingText(qa.settings.value(p.key)), settingText(qb.settings.value(p.key)), p.unit);
 }
 
 /// One text for each change, by what it changes.

@@ -5,6 +5,7 @@
 
 #include "core/base/csv_text.h"
 #include "core/base/json_dom.h"
+#include "core/base/settings_dom.h"
 #include "core/diagnose/mismatch.h"
 #include "core/model/star.h"
 #include "core/report/band_text.h"
@@ -44,21 +45,6 @@ Json statistic(const Statistic& s) {
           {"median", numberOrNull(s.median)},
           {"p95", numberOrNull(s.p95)},
           {"max", numberOrNull(s.max)}};
-}
-
-Json settingsJson(const Settings& settings) {
-  Json out = Json::object();
-  for (const ParamSpec& p : allParams()) {
-    if (std::holds_alternative<bool>(p.defaultValue))
-      out[p.key] = settings.flag(p.key);
-    else if (std::holds_alternative<int>(p.defaultValue))
-      out[p.key] = settings.integer(p.key);
-    else if (std::holds_alternative<double>(p.defaultValue))
-      out[p.key] = settings.number(p.key);
-    else
-      out[p.key] = settings.text(p.key);
-  }
-  return out;
 }
 
 Json selectionJson(const Selection& s) {
@@ -343,7 +329,7 @@ std::string evaluationJson(const Inspection& inspection, const ReportContext& co
   j["level"] = inspection.request.settings.number("detect.level");
   if (!context.levelReason.empty()) j["level_reason"] = context.levelReason;
   j["source"] = inspection.request.source == FrameSource::Image ? "image" : "radiance";
-  j["settings"] = settingsJson(inspection.request.settings);
+  j["settings"] = toJson(inspection.request.settings);
   if (!inspection.request.whatIf.none()) j["what_if"] = toJson(inspection.request.whatIf);
   j["scored_against"] = scoredAgainst(inspection);
   std::vector<std::string> warnings = warningsOf(inspection);

@@ -5,7 +5,6 @@
 #include "core/report/evaluation_words.h"
 #include "core/report/html_parts.h"
 #include "core/report/report.h"
-#include "core/report/setting_text.h"
 #include "core/report/warnings.h"
 #include "core/what_if/knobs.h"
 
@@ -85,8 +84,7 @@ std::string candidatesTable(const Selection& selection) {
 std::string settingsList(const Settings& settings) {
   std::string own, rest;
   for (const ParamSpec& p : allParams()) {
-    const auto found = settings.values().find(p.key);
-    const SettingValue& value = found == settings.values().end() ? p.defaultValue : found->second;
+    const SettingValue& value = settings.value(p.key);
     const std::string key = "<code>" + escaped(p.key) + "</code>", unit = p.unit.empty() ? "" : " " + escaped(p.unit);
     if (value != p.defaultValue)
       own += "<tr><td>" + key + "</td><td><b>" + escaped(settingText(value)) + "</b>" + unit + "</td><td>" +

@@ -12,6 +12,7 @@
 #include "core/base/json_dom.h"
 #include "core/base/json_text.h"
 #include "core/base/permitted.h"
+#include "core/base/settings_dom.h"
 #include "core/base/sha256.h"
 #include "core/scene/scene_dom.h"
 #include "core/scene/scene_files.h"
@@ -65,46 +66,6 @@ bool isBeforeWalksOfTheFit(const JsonNode& request) {
 fs::path folderOf(const fs::path& file) { return fs::absolute(file).lexically_normal().parent_path(); }
 
 Json toJson(const Eigen::Vector3d& v) { return Json::array({v.x(), v.y(), v.z()}); }
-
-Json toJson(const SettingValue& value) {
-  return std::visit([](const auto& v) { return Json(v); }, value);
-}
-
-/// All settings, defaults too: a later program may have other defaults.
-Json settingsJson(const Settings& settings) {
-  Json j = Json::object();
-  for (const ParamSpec& spec : allParams()) {
-    const auto it = settings.values().find(spec.key);
-    j[spec.key] = toJson(it == settings.values().end() ? spec.defaultValue : it->second);
-  }
-  return j;
-}
-
-Settings readSettings(const JsonNode& node) {
-  Settings settings;
-  for (const std::string& key : node.keys()) {
-    const JsonNode value = node.at(key);
-    const auto& all = allParams();
-    const auto spec = std::find_if(all.begin(), all.end(), [&](const ParamSpec& s) { return s.key == key; });
-    if (spec == all.end()) value.fail("unknown setting");
-    try {
-      if (std::holds_alternative<bool>(spec->defaultValue))
-        settings.set(key, value.boolean());
-      else if (std::holds_alternative<int>(spec->defaultValue))
-        settings.set(key, value.integer());
-      else if (std::holds_alternative<double>(spec->defaultValue))
-        settings.set(key, value.number());
-      else
-        settings.set(key, value.text());
-    } catch (const InputError& e) {
-      if (!e.file().empty()) throw;
-      // Settings name the flag; here the place in the file says more.
-      const std::string message = e.what();
-      value.fail(message.substr(std::min(message.size(), e.place().size() + 2)));
-    }
-  }
-  return settings;
-}
 
 std::vector<std::string> texts(const JsonNode& node) {
   std::vector<std::string> all;
@@ -288,7 +249,7 @@ std::string sessionText(const Session& session, const fs::path& file) {
                      {"train", q.train},
                      {"excluded", q.excluded},
                      {"source", q.source == FrameSource::Image ? "image" : "radiance"}};
-  root["request"]["settings"] = settingsJson(q.settings);
+  root["request"]["settings"] = toJson(q.settings);
   root["request"]["noise_px"] = q.noisePx;
   root["request"]["seed"] = q.seed;
   root["request"]["truth"] = q.truthFolder.empty() ? Json() : Json(relative(q.truthFolder));

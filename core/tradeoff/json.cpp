@@ -5,6 +5,7 @@
 #include "core/base/json_dom.h"
 #include "core/base/json_text.h"
 #include "core/base/outcome.h"
+#include "core/base/settings_dom.h"
 #include "core/tradeoff/knobs.h"
 #include "core/tradeoff/tradeoff_dom.h"
 
@@ -14,42 +15,16 @@ namespace {
 using json_dom::Json;
 using json_dom::numberOrNull;
 
-Json settingJson(const SettingValue& value) {
-  return std::visit([](const auto& v) { return Json(v); }, value);
-}
-
 /// "settings": short names of the knobs for people and scripts; "set": every setting that differs from the default, by the
 /// dotted names that `--set` takes.
 void addSettings(Json& j, const Tradeoff& t, const std::string& model, const Settings& settings) {
   j["settings"]["model"] = model;
-  for (const std::string& key : t.knobs) j["settings"][knobName(key)] = settingJson(valueOf(settings, paramSpec(key)));
+  for (const std::string& key : t.knobs) j["settings"][knobName(key)] = toJson(settings.value(key));
   j["set"] = Json::object();
-  for (const auto& [key, value] : settings.values()) j["set"][key] = settingJson(value);
+  for (const auto& [key, value] : settings.values()) j["set"][key] = toJson(value);
 }
 
 double optionalNumber(const JsonNode& node) { return node.isNull() ? std::nan("") : node.number(); }
-
-Settings readSet(const JsonNode& node) {
-  Settings settings;
-  for (const std::string& key : node.keys()) {
-    const JsonNode value = node.at(key);
-    try {
-      const ParamSpec& spec = paramSpec(key);
-      if (std::holds_alternative<bool>(spec.defaultValue))
-        settings.set(key, value.boolean());
-      else if (std::holds_alternative<int>(spec.defaultValue))
-        settings.set(key, value.integer());
-      else if (std::holds_alternative<double>(spec.defaultValue))
-        settings.set(key, value.number());
-      else
-        settings.set(key, value.text());
-    } catch (const InputError& e) {
-      if (!e.file().empty()) throw;
-      value.fail(e.what());
-    }
-  }
-  return settings;
-}
 
 }  // namespace
 
@@ -120,7 +95,7 @@ Tradeoff readTradeoff(const JsonNode& node) {
     const JsonNode n = points.at(i);
     TradeoffPoint p;
     p.model = n.at("settings").at("model").text();
-    p.settings = readSet(n.at("set"));
+    p.settings = readSettings(n.at("set"));
     if (const auto reason = n.find("reason")) p.poor = reason->text();
     p.contourErrorPct = optionalNumber(n.at("contour_error_pct"));
     p.iou = optionalNumber(n.at("iou"));
@@ -151,8 +126,8 @@ Tradeoff readTradeoff(const JsonNode& node) {
   const JsonNode pruned = node.at("pruned");
   for (std::size_t i = 0; i < pruned.size(); ++i) {
     const JsonNode n = pruned.at(i);
-    t.pruned.push_back({n.at("settings").at("model").text(), readSet(n.at("set")), n.at("kind").text(), n.at("reason").text(),
-                        optionalNumber(n.at("ranked_error_pct")), optionalNumber(n.at("predict_us"))});
+    t.pruned.push_back({n.at("settings").at("model").text(), readSettings(n.at("set")), n.at("kind").text(),
+                        n.at("reason").text(), optionalNumber(n.at("ranked_error_pct")), optionalNumber(n.at("predict_us"))});
   }
   return t;
 }

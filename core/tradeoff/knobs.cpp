@@ -32,11 +32,6 @@ const std::set<std::string> kOfReflectance{"fit.evidence", "fit.levels", "fit.lo
 
 }  // namespace
 
-SettingValue valueOf(const Settings& settings, const ParamSpec& spec) {
-  const auto it = settings.values().find(spec.key);
-  return it == settings.values().end() ? spec.defaultValue : it->second;
-}
-
 std::string textOf(const SettingValue& value) {
   if (const bool* b = std::get_if<bool>(&value)) return *b ? "true" : "false";
   if (const int* i = std::get_if<int>(&value)) return std::to_string(*i);
@@ -58,7 +53,7 @@ std::vector<Knob> knobsOf(const Settings& base, const std::vector<ParamSpec>& pa
     if (!stages.count(spec.stage) || kNoKnobs.count(spec.key)) continue;
     Knob knob{spec.key, {}};
     if (kOfReflectance.count(spec.key)) knob.onlyModel = radianceModel().id();
-    const SettingValue now = valueOf(base, spec);
+    const SettingValue now = base.value(spec.key);
     if (std::holds_alternative<bool>(spec.defaultValue)) {
       knob.values = {false, true};
     } else if (std::holds_alternative<std::string>(spec.defaultValue)) {

@@ -21,8 +21,6 @@ struct Knob {
 /// only the description of a contour (the uncertainty band) is no knob.
 std::vector<Knob> knobsOf(const Settings& base, const std::vector<ParamSpec>& params = allParams());
 
-/// The value of a key in `settings`, whatever its type.
-SettingValue valueOf(const Settings& settings, const ParamSpec& spec);
 /// "24", "1e-06", "refined", "true".
 std::string textOf(const SettingValue& value);
 

@@ -31,7 +31,7 @@ std::string workKey(const Scene& scene, const InspectionRequest& request, const 
            std::to_string(request.seed) + "|" + request.truthFolder + "|" + std::to_string(options.repeats) + "|" +
            options.program);
   for (const int f : request.excluded) hash.add("x" + std::to_string(f));
-  for (const ParamSpec& p : allParams()) hash.add(p.key + "=" + textOf(valueOf(request.settings, p)) + "\n");
+  for (const ParamSpec& p : allParams()) hash.add(p.key + "=" + textOf(request.settings.value(p.key)) + "\n");
   return hash.hex();
 }
 

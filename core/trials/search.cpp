@@ -36,7 +36,7 @@ struct Promising {
 
 std::string idOf(const Trial& t, const std::vector<Knob>& knobs) {
   std::string id = t.model;
-  for (const Knob& k : knobs) id += "|" + textOf(valueOf(t.settings, paramSpec(k.key)));
+  for (const Knob& k : knobs) id += "|" + textOf(t.settings.value(k.key));
   return id;
 }
 
@@ -134,7 +134,7 @@ class Search {
       if (!lookedAtBy(k, model)) continue;
       for (const SettingValue& v : k.values) {
         Trial t = tried_[baseIndex].trial;
-        if (valueOf(t.settings, paramSpec(k.key)) == v) continue;
+        if (t.settings.value(k.key) == v) continue;
         t.settings.set(k.key, v);
         const std::optional<int> index = attempt(t);
         if (!index) continue;
@@ -187,8 +187,8 @@ class Search {
         if (!promising_.count(tried_[i].trial.model)) continue;
         for (const Promising& p : promising_.at(tried_[i].trial.model)) {
           const Tried from = tried_[i];
-          const SettingValue baseValue = valueOf(tried_[bases_.at(from.trial.model)].trial.settings, paramSpec(p.key));
-          if (valueOf(from.trial.settings, paramSpec(p.key)) != baseValue) continue;  // this knob was already turned
+          const SettingValue baseValue = tried_[bases_.at(from.trial.model)].trial.settings.value(p.key);
+          if (from.trial.settings.value(p.key) != baseValue) continue;  // this knob was already turned
           Trial t = from.trial;
           t.settings.set(p.key, p.value);
           if (seen_.count(idOf(t, knobs_))) continue;

@@ -15,11 +15,6 @@
 namespace glint::gui {
 
 namespace {
-SettingValue valueOf(const Settings& settings, const ParamSpec& spec) {
-  const auto it = settings.values().find(spec.key);
-  return it == settings.values().end() ? spec.defaultValue : it->second;
-}
-
 /// What an action is called elsewhere, where neither its title nor its tool tip says it.
 QString synonymsOf(const QString& id) {
   static const QMap<QString, QString> all{
@@ -74,7 +69,7 @@ void addActions(QList<PaletteItem>& items, const Actions& actions) {
 void addParameters(QList<PaletteItem>& items, Document& document, const std::function<void(const std::string&)>& show) {
   for (const ParamSpec& spec : allParams())
     items.append({toQString(spec.title), QObject::tr("Settings › %1").arg(toQString(spec.key)),
-                  valueText(valueOf(document.request().settings, spec), spec), true, [show, key = spec.key] { show(key); },
+                  valueText(document.request().settings.value(spec.key), spec), true, [show, key = spec.key] { show(key); },
                   wordsOf(spec)});
 }
 
@@ -100,7 +95,7 @@ void addAssignments(QList<PaletteItem>& items, const QString& value, Document& d
       items.append({toQString(spec.title), place, problem, false, {}});
       continue;
     }
-    const SettingValue wanted = valueOf(tried, spec);
+    const SettingValue wanted = tried.value(spec.key);
     items.append({toQString(spec.title), place, QObject::tr("set to %1").arg(valueText(wanted, spec)), true,
                   [&document, key = spec.key, wanted] { document.setSetting(key, wanted); }});
   }

@@ -29,11 +29,6 @@ py::object objectOf(const SettingValue& value) {
   return std::visit([](const auto& v) -> py::object { return py::cast(v); }, value);
 }
 
-SettingValue valueIn(const Settings& settings, const ParamSpec& spec) {
-  const auto set = settings.values().find(spec.key);
-  return set != settings.values().end() ? set->second : spec.defaultValue;
-}
-
 }  // namespace
 
 void applySettings(py::handle dictionary, Settings& settings) {
@@ -53,7 +48,7 @@ Settings settingsFrom(py::handle dictionary) {
 
 py::dict dictOf(const Settings& settings) {
   py::dict out;
-  for (const ParamSpec& spec : allParams()) out[py::str(spec.key)] = objectOf(valueIn(settings, spec));
+  for (const ParamSpec& spec : allParams()) out[py::str(spec.key)] = objectOf(settings.value(spec.key));
   return out;
 }
 
