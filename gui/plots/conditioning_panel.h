@@ -60,7 +60,10 @@ class ConditioningPanel : public QWidget {
 
  private:
   void refresh();
+  /// Of the selected frame, where each surface has its own fits; else "".
+  std::string surfaceKey(const Inspection* inspection) const;
   void build();
+  Chip* newChip(int conditioning, int finding);
   /// A row across all columns: how good the selected model predicts.
   void addPrediction(QGridLayout& grid, int row, int columns);
   void showPrediction();
