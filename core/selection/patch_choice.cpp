@@ -124,7 +124,7 @@ class PatchTrial {
     return std::nullopt;
   }
 
-  /// Of one prediction, us. Folds run side by side; these times are of one thread.
+  /// The time of one prediction, us. Folds run side by side; these times are of one thread.
   double medianTime(const Settings& how) const {
     std::vector<double> times;
     for (const std::size_t i : timed_) {

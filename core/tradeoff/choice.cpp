@@ -15,7 +15,7 @@ std::string costText(const TradeoffPoint& p) {
   return formatted("%.3g %%", p.rankedErrorPct) + " at " + formatted("%.3g us", p.predictUs);
 }
 
-/// The last point of the front within a bound, in the order in which the other cost falls, and the first one beyond it; -1 for none.
+/// The last point of the front within a bound, and the first one beyond it; -1 without one.
 struct Bounded {
   int best = -1, next = -1;
 };
@@ -41,7 +41,7 @@ void chooseWithinBudget(Tradeoff& t, const std::vector<Cost>& costs, const std::
     t.reason = "No measured setting predicts a frame within " + budget + "; the fastest is " + said(t, 0) + ".";
     return;
   }
-  // Of the same error the fastest, as the preset.
+  // The fastest with the same error, as the preset.
   const double same = costs[b.best].errorPct + kSameErrorPct;
   b.best = *std::find_if(front.begin(), front.end(), [&](int i) { return costs[i].errorPct <= same; });
   t.chosen = b.best;

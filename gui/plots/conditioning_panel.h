@@ -60,7 +60,7 @@ class ConditioningPanel : public QWidget {
 
  private:
   void refresh();
-  /// Of the selected frame, where each surface has its own fits; else "".
+  /// The selected frame's surface where each has its own fits; else "".
   std::string surfaceKey(const Inspection* inspection) const;
   void build();
   Chip* newChip(int conditioning, int finding);
