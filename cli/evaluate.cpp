@@ -9,19 +9,51 @@
 #include "core/scene/outputs.h"
 
 namespace glint::cli {
+namespace {
+
+struct EvaluateArguments : InspectionArguments {
+  std::string json, csv, html, goodEnough;
+  std::optional<double> goodEnoughFrom() const {
+    if (models != "auto" || goodEnough.empty()) return std::nullopt;
+    const std::optional<double> percent = numberFrom(goodEnough);
+    if (!percent || !(*percent > 0))
+      throw InputError("", "--good-enough-pct " + goodEnough, "expected a positive number, in percent");
+    return percent;
+  }
+};
+
+int run(const EvaluateArguments& a, const Context& context) {
+  InspectionRequest request = a.request();
+  ReportContext report;
+  const std::shared_ptr<const Scene> scene = a.scene(request, &report.levelReason);
+  for (const std::string& w : scene->warnings) context.warn(w);
+  Outputs outputs(a.input, *scene);
+  outputs.file(a.json, "--json", OutputKind::document("glint_evaluation"));
+  outputs.file(a.csv, "--csv", OutputKind::table(kEvaluationCsvHeader));
+  outputs.file(a.html, "--html", OutputKind::page());
+  report.input = a.input;
+  report.program = "glint " GLINT_VERSION;
+  const std::string levelText = report.levelReason.empty() ? "" : report.levelReason + "\n\n";
+  const EvaluationQuestion question{a.models == "auto", a.goodEnoughFrom(), a.sets("predict.query")};
+  const Evaluation e = evaluate(scene, request, report, question, context.progress());
+  if (!a.json.empty()) context.write(a.json, evaluationJson(e.inspection, e.report));
+  if (!a.csv.empty()) context.write(a.csv, evaluationCsv(e.inspection));
+  if (!a.html.empty()) context.write(a.html, evaluationHtml(e.inspection, e.report));
+  for (const std::string& w : warningsOf(e.inspection)) context.warn(w);
+  if (e.report.selection && e.report.selection->poor) context.warn("auto: " + e.report.selection->why);
+  // What was asked for on standard output must stay parseable there: the table then stays away.
+  const bool tableToo = a.json != "-" && a.csv != "-" && a.html != "-";
+  const std::string table = e.inspection.models.empty() ? "" : evaluationTable(e.inspection);
+  if (tableToo && !(e.choice + table).empty()) context.print(levelText + e.choice + table);
+  if (e.failure) throw CannotAnswer{*e.failure};
+  warnOfUnusedTrainingFrames(e.inspection, context);
+  return kDone;
+}
+
+}  // namespace
 
 Command evaluateCommand() {
-  struct Arguments : InspectionArguments {
-    std::string json, csv, html, goodEnough;
-    std::optional<double> goodEnoughFrom() const {
-      if (models != "auto" || goodEnough.empty()) return std::nullopt;
-      const std::optional<double> percent = numberFrom(goodEnough);
-      if (!percent || !(*percent > 0))
-        throw InputError("", "--good-enough-pct " + goodEnough, "expected a positive number, in percent");
-      return percent;
-    }
-  };
-  const auto a = std::make_shared<Arguments>();
+  const auto a = std::make_shared<EvaluateArguments>();
   Command c;
   c.name = "evaluate";
   c.summary = "Fit models to training frames, predict held-out frames and compare";
@@ -45,33 +77,7 @@ Command evaluateCommand() {
     o.option(a->csv, "--csv", "FILE", "Write CSV, one row per model, frame and highlight (- = standard output)");
     o.option(a->html, "--html", "FILE", "Write a self-contained HTML page");
   };
-  c.run = [a](const Context& context) -> int {
-    InspectionRequest request = a->request();
-    ReportContext report;
-    const std::shared_ptr<const Scene> scene = a->scene(request, &report.levelReason);
-    for (const std::string& w : scene->warnings) context.warn(w);
-    Outputs outputs(a->input, *scene);
-    outputs.file(a->json, "--json", OutputKind::document("glint_evaluation"));
-    outputs.file(a->csv, "--csv", OutputKind::table(kEvaluationCsvHeader));
-    outputs.file(a->html, "--html", OutputKind::page());
-    report.input = a->input;
-    report.program = "glint " GLINT_VERSION;
-    const std::string levelText = report.levelReason.empty() ? "" : report.levelReason + "\n\n";
-    const EvaluationQuestion question{a->models == "auto", a->goodEnoughFrom(), a->sets("predict.query")};
-    const Evaluation e = evaluate(scene, request, report, question, context.progress());
-    if (!a->json.empty()) context.write(a->json, evaluationJson(e.inspection, e.report));
-    if (!a->csv.empty()) context.write(a->csv, evaluationCsv(e.inspection));
-    if (!a->html.empty()) context.write(a->html, evaluationHtml(e.inspection, e.report));
-    for (const std::string& w : warningsOf(e.inspection)) context.warn(w);
-    if (e.report.selection && e.report.selection->poor) context.warn("auto: " + e.report.selection->why);
-    // What was asked for on standard output must stay parseable there: the table then stays away.
-    const bool tableToo = a->json != "-" && a->csv != "-" && a->html != "-";
-    const std::string table = e.inspection.models.empty() ? "" : evaluationTable(e.inspection);
-    if (tableToo && !(e.choice + table).empty()) context.print(levelText + e.choice + table);
-    if (e.failure) throw CannotAnswer{*e.failure};
-    warnOfUnusedTrainingFrames(e.inspection, context);
-    return kDone;
-  };
+  c.run = [a](const Context& context) { return run(*a, context); };
   return c;
 }
 

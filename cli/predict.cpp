@@ -45,30 +45,97 @@ std::string predictionTable(const Inspection& inspection, const std::vector<int>
   return out;
 }
 
+struct PredictArguments {
+  std::string session, frames, exclude, out, json, preset, masks, labels, poses;
+  std::vector<std::string> set;
+  bool stream = false;
+  SceneArguments places;
+  /// Bands take several fits: a user who wants none gets none.
+  bool saysBand() const {
+    return std::any_of(set.begin(), set.end(), [](const std::string& entry) { return entry.rfind("predict.band=", 0) == 0; });
+  }
+  /// One answer a line leaves no room for others; poses come live or not at all.
+  void requireOneKindOfAnswer() const {
+    if (!labels.empty() && out.empty()) throw InputError("", "--labels", "needs --out DIR, the new folder for the labels");
+    if (!stream && !poses.empty())
+      throw InputError("", "--poses", "needs --stream: without it the scene's own frames are predicted");
+    for (const auto& [given, flag] : {std::pair(&frames, "--frames"), std::pair(&out, "--out"), std::pair(&masks, "--masks"),
+                                      std::pair(&labels, "--labels"), std::pair(&json, "--json")})
+      if (stream && !given->empty())
+        throw InputError("", flag, "cannot be combined with --stream, which answers on standard output");
+  }
+};
+
+/// Contours, overlays and labels, whole or not at all.
+void writeFolder(const std::string& out, const Inspection& result, const std::vector<int>& frames, const Context& context) {
+  atomicFiles(out, "predictions.json", [&](const std::filesystem::path& folder) {
+    parallelFor(
+        static_cast<int>(frames.size()),
+        [&](int i) {
+          writePng(folder / pictureName(result.scene->frames[static_cast<std::size_t>(frames[i])]),
+                   viz::framePicture(result, frames[i], photographOf(result, frames[i]), kPictureWidth, kPictureHeight));
+        },
+        context.progress(), "overlays");
+    context.write((folder / "predictions.json").string(), predictionsJson(result, frames));
+    for (const std::string& model : result.request.models)
+      context.write((folder / ("labels_" + model + ".json")).string(), cocoJson(result, model, frames));
+  });
+}
+
+/// CannotAnswer with the first reason where no model predicts a highlight in these frames.
+void requireAnyHighlight(const Inspection& result, const std::vector<int>& frames) {
+  std::string reason;
+  for (const auto& [name, model] : result.models)
+    for (const FrameComparison& f : model.frames) {
+      if (std::find(frames.begin(), frames.end(), f.frame) == frames.end()) continue;
+      if (!f.prediction.highlights().empty()) return;
+      if (reason.empty() && f.prediction.failure()) reason = name + ": " + f.prediction.failure()->message();
+    }
+  requireUsableViews(result);
+  throw CannotAnswer{{Reason::NotReached, "no highlight was predicted; " + reason}};
+}
+
+int run(const PredictArguments& a, const Context& context) {
+  a.requireOneKindOfAnswer();
+  const std::optional<LabelFormats> formats = a.labels.empty() ? std::nullopt : std::optional(labelFormatsFrom(a.labels));
+  const OpenedSession opened = a.places.openSession(a.session);
+  for (const std::string& w : opened.session.warnings) context.warn(w);
+  if (!opened.warning.empty()) context.warn(opened.warning);
+  InspectionRequest request = opened.session.request;
+  if (!a.preset.empty()) applyPreset(opened.session, a.preset, request);
+  applyEach(request.settings, a.set);
+  exclude(a.exclude, *opened.scene, request);
+  if (a.stream) return answerPoses(opened, request, a.poses, context);
+  const Scene& scene = *opened.scene;
+  std::vector<int> frames;
+  if (!a.frames.empty())
+    frames = parseFrames(a.frames, scene, "--frames");
+  else
+    for (int i = 0; i < static_cast<int>(scene.frames.size()); ++i) frames.push_back(i);
+  Outputs outputs(a.session, scene);
+  outputs.file(a.json, "--json", OutputKind::document("glint_predictions"));
+  std::vector<std::string> names = picturesOf(scene, frames);
+  for (const std::string& model : opened.session.request.models) names.push_back("labels_" + model + ".json");
+  names.emplace_back("predictions.json");
+  if (!formats) outputs.inFolder(a.out, "--out", names, "predictions.json", "glint_predictions");
+  const bool shows = (!a.out.empty() && !formats) || !a.json.empty();
+  if (shows && !a.saysBand()) request.settings.set("predict.band", true);
+  const Inspection result = inspect(opened.scene, request, context.progress());
+  if (formats) writeLabels(result, a.out, context.progress(), *formats, frames);
+  if (!a.out.empty() && !formats) writeFolder(a.out, result, frames, context);
+  if (!a.masks.empty()) writeLabels(result, a.masks, context.progress());
+  if (!a.json.empty()) context.write(a.json, predictionsJson(result, frames));
+  if (a.json != "-") context.print(predictionTable(result, frames));
+  for (const std::string& w : warningsOf(result)) context.warn(w);
+  requireAnyHighlight(result, frames);
+  warnOfUnusedTrainingFrames(result, context);
+  return kDone;
+}
+
 }  // namespace
 
 Command predictCommand() {
-  struct Arguments {
-    std::string session, frames, exclude, out, json, preset, masks, labels, poses;
-    std::vector<std::string> set;
-    bool stream = false;
-    SceneArguments places;
-    /// Bands take several fits: a user who wants none gets none.
-    bool saysBand() const {
-      return std::any_of(set.begin(), set.end(), [](const std::string& entry) { return entry.rfind("predict.band=", 0) == 0; });
-    }
-    /// One answer a line leaves no room for others; poses come live or not at all.
-    void requireOneKindOfAnswer() const {
-      if (!labels.empty() && out.empty()) throw InputError("", "--labels", "needs --out DIR, the new folder for the labels");
-      if (!stream && !poses.empty())
-        throw InputError("", "--poses", "needs --stream: without it the scene's own frames are predicted");
-      for (const auto& [given, flag] : {std::pair(&frames, "--frames"), std::pair(&out, "--out"), std::pair(&masks, "--masks"),
-                                        std::pair(&labels, "--labels"), std::pair(&json, "--json")})
-        if (stream && !given->empty())
-          throw InputError("", flag, "cannot be combined with --stream, which answers on standard output");
-    }
-  };
-  const auto a = std::make_shared<Arguments>();
+  const auto a = std::make_shared<PredictArguments>();
   Command c;
   c.name = "predict";
   c.summary = "Predict highlights with a saved session: contours, overlays, labels";
@@ -103,63 +170,7 @@ Command predictCommand() {
     o.option(a->poses, "--poses", "FILE", "With --stream: the poses, as JSON or TUM lines (default, and -: standard input)");
     a->places.declareForSession(o);
   };
-  c.run = [a](const Context& context) -> int {
-    a->requireOneKindOfAnswer();
-    const std::optional<LabelFormats> formats = a->labels.empty() ? std::nullopt : std::optional(labelFormatsFrom(a->labels));
-    const OpenedSession opened = a->places.openSession(a->session);
-    for (const std::string& w : opened.session.warnings) context.warn(w);
-    if (!opened.warning.empty()) context.warn(opened.warning);
-    InspectionRequest request = opened.session.request;
-    if (!a->preset.empty()) applyPreset(opened.session, a->preset, request);
-    applyEach(request.settings, a->set);
-    exclude(a->exclude, *opened.scene, request);
-    if (a->stream) return answerPoses(opened, request, a->poses, context);
-    const Scene& scene = *opened.scene;
-    std::vector<int> frames;
-    if (!a->frames.empty())
-      frames = parseFrames(a->frames, scene, "--frames");
-    else
-      for (int i = 0; i < static_cast<int>(scene.frames.size()); ++i) frames.push_back(i);
-    Outputs outputs(a->session, scene);
-    outputs.file(a->json, "--json", OutputKind::document("glint_predictions"));
-    std::vector<std::string> names = picturesOf(scene, frames);
-    for (const std::string& model : opened.session.request.models) names.push_back("labels_" + model + ".json");
-    names.emplace_back("predictions.json");
-    if (!formats) outputs.inFolder(a->out, "--out", names, "predictions.json", "glint_predictions");
-    const bool shows = (!a->out.empty() && !formats) || !a->json.empty();
-    if (shows && !a->saysBand()) request.settings.set("predict.band", true);
-    const Inspection result = inspect(opened.scene, request, context.progress());
-    if (formats) writeLabels(result, a->out, context.progress(), *formats, frames);
-    if (!a->out.empty() && !formats)
-      atomicFiles(a->out, "predictions.json", [&](const std::filesystem::path& folder) {
-        parallelFor(
-            static_cast<int>(frames.size()),
-            [&](int i) {
-              writePng(folder / pictureName(scene.frames[static_cast<std::size_t>(frames[i])]),
-                       viz::framePicture(result, frames[i], photographOf(result, frames[i]), kPictureWidth, kPictureHeight));
-            },
-            context.progress(), "overlays");
-        context.write((folder / "predictions.json").string(), predictionsJson(result, frames));
-        for (const std::string& model : result.request.models)
-          context.write((folder / ("labels_" + model + ".json")).string(), cocoJson(result, model, frames));
-      });
-    if (!a->masks.empty()) writeLabels(result, a->masks, context.progress());
-    if (!a->json.empty()) context.write(a->json, predictionsJson(result, frames));
-    if (a->json != "-") context.print(predictionTable(result, frames));
-    for (const std::string& w : warningsOf(result)) context.warn(w);
-    std::string reason;
-    for (const auto& [name, model] : result.models)
-      for (const FrameComparison& f : model.frames) {
-        if (std::find(frames.begin(), frames.end(), f.frame) == frames.end()) continue;
-        if (!f.prediction.highlights().empty()) {
-          warnOfUnusedTrainingFrames(result, context);
-          return kDone;
-        }
-        if (reason.empty() && f.prediction.failure()) reason = name + ": " + f.prediction.failure()->message();
-      }
-    requireUsableViews(result);
-    throw CannotAnswer{{Reason::NotReached, "no highlight was predicted; " + reason}};
-  };
+  c.run = [a](const Context& context) { return run(*a, context); };
   return c;
 }
 

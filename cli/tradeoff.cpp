@@ -27,14 +27,82 @@ std::string workFileFor(const std::vector<std::string>& outputs) {
   return "";
 }
 
+struct TradeoffArguments : InspectionArguments {
+  std::string budget, maxError, json, html, out, work;
+  int repeats = 5, maxTrials = SearchOptions{}.maxTrials;
+};
+
+TradeoffOptions optionsFrom(const TradeoffArguments& a) {
+  if (a.models == "auto")
+    throw InputError("", "--models auto", "not available here; name the models to compare or omit the flag");
+  if (!a.preset.empty()) throw InputError("", "--preset " + a.preset, "not available here; this command finds the presets");
+  TradeoffOptions options;
+  options.bound.budgetUs = positive(a.budget, "--budget-us", "microseconds");
+  options.bound.maxErrorPct = positive(a.maxError, "--max-error-pct", "percent");
+  if (options.bound.budgetUs && options.bound.maxErrorPct)
+    throw InputError("", "--budget-us, --max-error-pct", "give only one of the two");
+  if (a.repeats < 1 || a.repeats > 1000) throw InputError("", "--repeats", "must be between 1 and 1000");
+  if (a.maxTrials < 1) throw InputError("", "--max-trials", "must be at least 1");
+  options.repeats = a.repeats;
+  options.search.maxTrials = a.maxTrials;
+  options.input = a.input;
+  options.program = GLINT_VERSION;
+  options.workFile = a.work.empty() ? workFileFor({a.json, a.html, a.out}) : a.work;
+  return options;
+}
+
+/// Why no setting was measured.
+[[noreturn]] void cannotMeasure(const Tradeoff& t, const std::shared_ptr<const Scene>& scene, InspectionRequest request,
+                                const Context& context) {
+  request.models.clear();
+  requireUsableViews(inspect(scene, request, context.progress()));
+  throw CannotAnswer{{Reason::NotReached, t.pruned.empty()
+                                              ? t.reason
+                                              : t.reason + " First: " + t.pruned.front().model + ": " + t.pruned.front().reason}};
+}
+
+void writeChosen(const std::string& file, const Tradeoff& t, const std::shared_ptr<const Scene>& scene, InspectionRequest request,
+                 const Context& context) {
+  request.models = {t.points[*t.chosen].model};
+  request.settings = t.points[*t.chosen].settings;
+  Session session = sessionOf(inspect(scene, request, context.progress()), context.progress());
+  session.tradeoff = t;
+  writeSession(session, file);
+  context.wrote(file);
+}
+
+int run(const TradeoffArguments& a, const Context& context) {
+  const TradeoffOptions options = optionsFrom(a);
+  InspectionRequest request = a.request();
+  if (std::filesystem::path(a.input).extension() != ".glint" && a.models.empty()) {
+    request.models.clear();
+    for (const auto& m : allModels()) request.models.push_back(m->id());
+  }
+  std::string levelReason;
+  const std::shared_ptr<const Scene> scene = a.scene(request, &levelReason);
+  for (const std::string& w : scene->warnings) context.warn(w);
+  Outputs outputs(a.input, *scene);
+  outputs.file(a.json, "--json", OutputKind::document("glint_tradeoff"));
+  outputs.file(a.html, "--html", OutputKind::page());
+  outputs.file(a.out, "--out", OutputKind::document("glint_session"));
+  outputs.file(options.workFile, "--work", OutputKind::document("glint_tradeoff_work"));
+  const Tradeoff t = measureTradeoff(scene, request, options, context.progress());
+
+  if (!a.json.empty()) context.write(a.json, tradeoffJson(t));
+  if (!a.html.empty()) context.write(a.html, tradeoffHtml(t));
+  if (t.points.empty()) cannotMeasure(t, scene, request, context);
+  if (!a.out.empty() && t.chosen) writeChosen(a.out, t, scene, request, context);
+  std::error_code ignored;
+  if (!options.workFile.empty()) std::filesystem::remove(options.workFile, ignored);
+  if (a.json != "-" && a.html != "-") context.print((levelReason.empty() ? "" : levelReason + "\n\n") + tradeoffTable(t));
+  if (!t.chosen) throw CannotAnswer{{Reason::NotReached, t.reason}};
+  return kDone;
+}
+
 }  // namespace
 
 Command tradeoffCommand() {
-  struct Arguments : InspectionArguments {
-    std::string budget, maxError, json, html, out, work;
-    int repeats = 5, maxTrials = SearchOptions{}.maxTrials;
-  };
-  const auto a = std::make_shared<Arguments>();
+  const auto a = std::make_shared<TradeoffArguments>();
   Command c;
   c.name = "tradeoff";
   c.summary = "Measure speed against accuracy of models and settings on this input";
@@ -61,67 +129,7 @@ Command tradeoffCommand() {
     o.option(a->repeats, "--repeats", "N", "Repeats of each timed prediction");
     o.option(a->maxTrials, "--max-trials", "N", "Maximum number of settings tried on a few frames");
   };
-  c.run = [a](const Context& context) -> int {
-    if (a->models == "auto")
-      throw InputError("", "--models auto", "not available here; name the models to compare or omit the flag");
-    if (!a->preset.empty()) throw InputError("", "--preset " + a->preset, "not available here; this command finds the presets");
-    TradeoffOptions options;
-    options.bound.budgetUs = positive(a->budget, "--budget-us", "microseconds");
-    options.bound.maxErrorPct = positive(a->maxError, "--max-error-pct", "percent");
-    if (options.bound.budgetUs && options.bound.maxErrorPct)
-      throw InputError("", "--budget-us, --max-error-pct", "give only one of the two");
-    if (a->repeats < 1 || a->repeats > 1000) throw InputError("", "--repeats", "must be between 1 and 1000");
-    if (a->maxTrials < 1) throw InputError("", "--max-trials", "must be at least 1");
-    const bool isSession = std::filesystem::path(a->input).extension() == ".glint";
-    options.repeats = a->repeats;
-    options.search.maxTrials = a->maxTrials;
-    options.input = a->input;
-    options.program = GLINT_VERSION;
-    options.workFile = a->work.empty() ? workFileFor({a->json, a->html, a->out}) : a->work;
-    InspectionRequest request = a->request();
-    if (!isSession && a->models.empty()) {
-      request.models.clear();
-      for (const auto& m : allModels()) request.models.push_back(m->id());
-    }
-    std::string levelReason;
-    const std::shared_ptr<const Scene> scene = a->scene(request, &levelReason);
-    for (const std::string& w : scene->warnings) context.warn(w);
-    Outputs outputs(a->input, *scene);
-    outputs.file(a->json, "--json", OutputKind::document("glint_tradeoff"));
-    outputs.file(a->html, "--html", OutputKind::page());
-    outputs.file(a->out, "--out", OutputKind::document("glint_session"));
-    outputs.file(options.workFile, "--work", OutputKind::document("glint_tradeoff_work"));
-    const Tradeoff t = measureTradeoff(scene, request, options, context.progress());
-
-    if (!a->json.empty()) context.write(a->json, tradeoffJson(t));
-    if (!a->html.empty()) context.write(a->html, tradeoffHtml(t));
-    if (t.points.empty()) {
-      requireUsableViews(inspect(
-          scene,
-          [&] {
-            InspectionRequest q = request;
-            q.models.clear();
-            return q;
-          }(),
-          context.progress()));
-      throw CannotAnswer{
-          {Reason::NotReached,
-           t.pruned.empty() ? t.reason : t.reason + " First: " + t.pruned.front().model + ": " + t.pruned.front().reason}};
-    }
-    if (!a->out.empty() && t.chosen) {
-      request.models = {t.points[*t.chosen].model};
-      request.settings = t.points[*t.chosen].settings;
-      Session session = sessionOf(inspect(scene, request, context.progress()), context.progress());
-      session.tradeoff = t;
-      writeSession(session, a->out);
-      context.wrote(a->out);
-    }
-    std::error_code ignored;
-    if (!options.workFile.empty()) std::filesystem::remove(options.workFile, ignored);
-    if (a->json != "-" && a->html != "-") context.print((levelReason.empty() ? "" : levelReason + "\n\n") + tradeoffTable(t));
-    if (!t.chosen) throw CannotAnswer{{Reason::NotReached, t.reason}};
-    return kDone;
-  };
+  c.run = [a](const Context& context) { return run(*a, context); };
   return c;
 }
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -79,100 +80,131 @@ enum class Wanted { Mesh, Cloud };
 bool isStrips(std::string_view element) { return element == "tristrips"; }
 bool isFaces(std::string_view element) { return element == "face" || isStrips(element); }
 
-Header readHeader(std::string_view bytes, const std::string& file, Wanted wanted) {
-  Header header;
-  header.lineEnd = bytes.size() > 4 && bytes[3] == '\r' && bytes[4] != '\n' ? '\r' : '\n';
-  io::Lines lines(bytes, header.lineEnd);
-  bool formatKnown = false;
-  unsigned seen = 0;  // uses that the element at hand has, as bits
-  const Element* vertex = nullptr;
-  while (true) {
-    std::optional<std::string_view> line = lines.next();
-    const auto bad = [&](const std::string& reason) { io::fail(file, io::lineNo(lines.number()), reason); };
-    if (!line || !lines.ended()) io::fail(file, io::lineNo(lines.number() + (line ? 0 : 1)), "the PLY header is truncated");
-    const std::string_view word = io::takeWord(*line);
-    if (word == "end_header") break;
-    if (word == "format") {
-      const std::string_view name = io::takeWord(*line), version = io::takeWord(*line);
-      if (formatKnown) bad("duplicate format");
-      formatKnown = true;
-      if (name == "ascii")
-        header.format = Header::Format::Text;
-      else if (name == "binary_little_endian")
-        header.format = Header::Format::LittleEndian;
-      else if (name == "binary_big_endian")
-        header.format = Header::Format::BigEndian;
-      else
-        bad("unknown PLY format " + io::quoted(name));
-      if (version != "1.0") bad("unknown PLY version " + io::quoted(version) + "; only 1.0 is supported");
-    } else if (word == "element") {
-      const std::string_view name = io::takeWord(*line);
-      const std::string_view text = io::takeWord(*line);
-      const std::optional<std::int64_t> count = io::integerOf(text);
-      if (name.empty() || !count || *count < 0) bad("the PLY element has no count");
-      if (name == "vertex" || isFaces(name))
-        for (const Element& e : header.elements)
-          if (e.name == name) bad("duplicate element " + io::quoted(name));
-      constexpr std::size_t kMostElements = 1000;  // no program writes more: a damaged header
-      if (header.elements.size() >= kMostElements) bad("more than " + std::to_string(kMostElements) + " elements");
-      header.elements.push_back({std::string(name), static_cast<std::uint64_t>(*count), {}});
-      seen = 0;
-    } else if (word == "property") {
-      if (header.elements.empty()) bad("a PLY property before any element");
-      Element& element = header.elements.back();
-      Property p;
-      const auto scalar = [&](std::string_view name) {
-        const std::optional<Scalar> type = scalarNamed(name);
-        if (!type) bad("unknown PLY type " + io::quoted(name));
-        return *type;
-      };
-      std::string_view type = io::takeWord(*line);
-      if (type == "list") {
-        p.counter = scalar(io::takeWord(*line));
-        type = io::takeWord(*line);
-      }
-      p.type = scalar(type);
-      const std::string_view name = io::takeWord(*line);
-      if (name.empty()) bad("the PLY property has no name");
-      constexpr std::size_t kLongestName = 1000;  // no program writes longer ones: a damaged header
-      if (name.size() > kLongestName) bad("a PLY property name of " + std::to_string(name.size()) + " characters is too long");
-      if (element.name == "vertex") {
-        constexpr std::string_view kNames[] = {"x", "y", "z", "nx", "ny", "nz"};
-        for (int k = 0; k < kNumbers; ++k)
-          if (name == kNames[k]) p.use = k;
-      } else if (isFaces(element.name) && (name == "vertex_indices" || name == "vertex_index")) {
-        p.use = kCorners;
-      }
-      if (p.use != kSkipped) {
-        if (p.use == kCorners && !p.counter) bad(io::quoted(name) + " of a face must be a list");
-        if (p.use != kCorners && p.counter) bad(io::quoted(name) + " of a vertex must be a number, not a list");
-        if (seen & (1u << p.use)) bad("duplicate property " + io::quoted(name));
-        seen |= 1u << p.use;
-      }
-      element.properties.push_back(p);
-    } else if (!word.empty() && word != "comment" && word != "obj_info" && lines.number() > 1) {
-      bad(io::quoted(word) + " is not a PLY header statement");
+/// Reads the statements of a header, line by line.
+class HeaderReader {
+ public:
+  HeaderReader(std::string_view bytes, const std::string& file)
+      : file_(file), lineEnd_(bytes.size() > 4 && bytes[3] == '\r' && bytes[4] != '\n' ? '\r' : '\n'), lines_(bytes, lineEnd_) {}
+
+  Header read() {
+    header_.lineEnd = lineEnd_;
+    while (true) {
+      std::optional<std::string_view> line = lines_.next();
+      if (!line || !lines_.ended()) io::fail(file_, io::lineNo(lines_.number() + (line ? 0 : 1)), "the PLY header is truncated");
+      const std::string_view word = io::takeWord(*line);
+      if (word == "end_header") break;
+      if (word == "format")
+        readFormat(*line);
+      else if (word == "element")
+        readElement(*line);
+      else if (word == "property")
+        readProperty(*line);
+      else if (!word.empty() && word != "comment" && word != "obj_info" && lines_.number() > 1)
+        bad(io::quoted(word) + " is not a PLY header statement");
     }
+    if (!formatKnown_) io::fail(file_, "header", "the PLY has no format");
+    header_.size = lines_.at();
+    header_.lines = lines_.number();
+    return std::move(header_);
   }
-  if (!formatKnown) io::fail(file, "header", "the PLY has no format");
-  const Element* face = nullptr;
+
+ private:
+  [[noreturn]] void bad(const std::string& reason) const { io::fail(file_, io::lineNo(lines_.number()), reason); }
+
+  void readFormat(std::string_view line) {
+    const std::string_view name = io::takeWord(line), version = io::takeWord(line);
+    if (formatKnown_) bad("duplicate format");
+    formatKnown_ = true;
+    if (name == "ascii")
+      header_.format = Header::Format::Text;
+    else if (name == "binary_little_endian")
+      header_.format = Header::Format::LittleEndian;
+    else if (name == "binary_big_endian")
+      header_.format = Header::Format::BigEndian;
+    else
+      bad("unknown PLY format " + io::quoted(name));
+    if (version != "1.0") bad("unknown PLY version " + io::quoted(version) + "; only 1.0 is supported");
+  }
+
+  void readElement(std::string_view line) {
+    const std::string_view name = io::takeWord(line);
+    const std::optional<std::int64_t> count = io::integerOf(io::takeWord(line));
+    if (name.empty() || !count || *count < 0) bad("the PLY element has no count");
+    if (name == "vertex" || isFaces(name))
+      for (const Element& e : header_.elements)
+        if (e.name == name) bad("duplicate element " + io::quoted(name));
+    constexpr std::size_t kMostElements = 1000;  // no program writes more: a damaged header
+    if (header_.elements.size() >= kMostElements) bad("more than " + std::to_string(kMostElements) + " elements");
+    header_.elements.push_back({std::string(name), static_cast<std::uint64_t>(*count), {}});
+    seen_ = 0;
+  }
+
+  void readProperty(std::string_view line) {
+    if (header_.elements.empty()) bad("a PLY property before any element");
+    Element& element = header_.elements.back();
+    Property p;
+    std::string_view type = io::takeWord(line);
+    if (type == "list") {
+      p.counter = typeNamed(io::takeWord(line));
+      type = io::takeWord(line);
+    }
+    p.type = typeNamed(type);
+    const std::string_view name = io::takeWord(line);
+    if (name.empty()) bad("the PLY property has no name");
+    constexpr std::size_t kLongestName = 1000;  // no program writes longer ones: a damaged header
+    if (name.size() > kLongestName) bad("a PLY property name of " + std::to_string(name.size()) + " characters is too long");
+    if (element.name == "vertex") {
+      constexpr std::string_view kNames[] = {"x", "y", "z", "nx", "ny", "nz"};
+      for (int k = 0; k < kNumbers; ++k)
+        if (name == kNames[k]) p.use = k;
+    } else if (isFaces(element.name) && (name == "vertex_indices" || name == "vertex_index")) {
+      p.use = kCorners;
+    }
+    if (p.use != kSkipped) {
+      if (p.use == kCorners && !p.counter) bad(io::quoted(name) + " of a face must be a list");
+      if (p.use != kCorners && p.counter) bad(io::quoted(name) + " of a vertex must be a number, not a list");
+      if (seen_ & (1u << p.use)) bad("duplicate property " + io::quoted(name));
+      seen_ |= 1u << p.use;
+    }
+    element.properties.push_back(p);
+  }
+
+  Scalar typeNamed(std::string_view name) const {
+    const std::optional<Scalar> type = scalarNamed(name);
+    if (!type) bad("unknown PLY type " + io::quoted(name));
+    return *type;
+  }
+
+  const std::string& file_;
+  char lineEnd_;
+  io::Lines lines_;
+  Header header_;
+  bool formatKnown_ = false;
+  unsigned seen_ = 0;  ///< uses that the element at hand has, as bits
+};
+
+/// Whether the elements are what is wanted; InputError where they are not.
+void checkElements(const Header& header, const std::string& file, Wanted wanted) {
+  const Element *vertex = nullptr, *face = nullptr;
   for (const Element& e : header.elements) {
     if (e.name == "vertex") vertex = &e;
     if (isFaces(e.name) && (!face || face->count == 0)) face = &e;
     if (e.properties.empty() && e.count > 0) io::fail(file, "header", "element " + io::quoted(e.name) + " has no properties");
   }
   const auto has = [](const Element& e, int use) {
-    for (const Property& p : e.properties)
-      if (p.use == use) return true;
-    return false;
+    return std::any_of(e.properties.begin(), e.properties.end(), [&](const Property& p) { return p.use == use; });
   };
   if (!vertex) io::fail(file, "header", "the PLY has no element 'vertex'");
   if (!has(*vertex, kX) || !has(*vertex, kY) || !has(*vertex, kZ)) io::fail(file, "header", "the vertices lack x, y or z");
-  if (wanted == Wanted::Cloud && face && face->count > 0) io::fail(file, "header", "has faces: it is a mesh, not a cloud");
-  if (wanted == Wanted::Mesh && (!face || face->count == 0)) io::fail(file, "header", "the mesh has no faces");
+  const bool faces = face && face->count > 0;
+  if (wanted == Wanted::Cloud && faces) io::fail(file, "header", "has faces: it is a mesh, not a cloud");
+  if (wanted == Wanted::Mesh && !faces) io::fail(file, "header", "the mesh has no faces");
   if (wanted == Wanted::Mesh && !has(*face, kCorners)) io::fail(file, "header", "the faces have no list 'vertex_indices'");
-  header.size = lines.at();
-  header.lines = lines.number();
+}
+
+Header readHeader(std::string_view bytes, const std::string& file, Wanted wanted) {
+  Header header = HeaderReader(bytes, file).read();
+  checkElements(header, file, wanted);
   return header;
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "core/base/parallel.h"
 #include "core/diagnostics/polar_residual.h"
@@ -72,16 +73,94 @@ void compareFits(const ModelFit& with, const ModelFit& without, ModelInfluence& 
   influence.axesChange = change;
 }
 
-/// A mean that several folds of one frame add to: two highlights in it are two folds.
+/// A mean of what is there; several folds of one frame add to it, as two highlights in it are two folds.
 struct Mean {
   double sum = 0;
   int n = 0;
-  void add(double v) { sum += v, ++n; }
+  void add(std::optional<double> v) {
+    if (v) sum += *v, ++n;
+  }
   std::optional<double> value() const { return n ? std::optional(sum / n) : std::nullopt; }
 };
 
-}  // namespace
+/// Training frames with a highlight that is used.
+int seenFrames(const Inspection& inspection) {
+  std::set<int> frames;
+  for (const TrainingView& v : inspection.views)
+    if (v.seen) frames.insert(v.frame);
+  return int(frames.size());
+}
 
+/// One model's fit to the others of each fold, and the errors of these fits on the probes, fold by fold.
+struct Refits {
+  std::vector<Answer> answers;
+  std::vector<std::optional<double>> errors;
+};
+
+/// Error of a fold's fit on one probe. Empty without a fit, and where the light shows nothing.
+std::optional<double> errorOn(int probe, const Fold& fold, const HighlightModel& model, const Answer& answer) {
+  const Inspection& inspection = *fold.inspection;
+  const std::string& light = fold.left.highlight.light;
+  if (!answer.fit || !shows(inspection, probe, light)) return std::nullopt;
+  const Camera& camera = inspection.scene->frames[std::size_t(probe)].camera;
+  const Outcome<std::shared_ptr<const Surface>> surface = fold.surfaceOf(probe, model);
+  Prediction p = model.predict(*answer.fit, camera, surface ? surface->get() : nullptr, inspection.request.settings);
+  return countedPct(compareFrame(inspection.evidence[std::size_t(probe)], light, camera, std::move(p)));
+}
+
+/// @param progress  of folds * (1 + probes) steps
+Refits refit(const HighlightModel& model, PoorFits poor, std::vector<Fold>& folds, const std::vector<int>& probes,
+             const ProgressFn& progress, const std::string& stage) {
+  const int n = int(folds.size()), m = int(probes.size());
+  Refits result{std::vector<Answer>(folds.size()), std::vector<std::optional<double>>(folds.size() * probes.size())};
+  parallelFor(
+      n,
+      [&](int i) {
+        Fold& fold = folds[std::size_t(i)];
+        result.answers[std::size_t(i)] = leaveOut(fold, model, fold.inspection->request.settings, poor);
+      },
+      progress, stage);
+  // One piece of work for each probe with each fit, so that a stop is heeded soon.
+  const ProgressFn later = [&](const StageEvent& e) { return progress({e.stage, n + e.done, e.total}); };
+  parallelFor(
+      n * m,
+      [&](int i) {
+        const std::size_t fold = std::size_t(i / m);
+        result.errors[std::size_t(i)] = errorOn(probes[std::size_t(i % m)], folds[fold], model, result.answers[fold]);
+      },
+      later, stage);
+  return result;
+}
+
+/// What leaving out one frame does to one model: means over the folds of that frame.
+ModelInfluence influenceOfFrame(int frame, const ModelResult& result, const std::vector<Fold>& folds, const Refits& refits,
+                                const std::vector<int>& probes) {
+  ModelInfluence influence;
+  Mean left, held, before;
+  for (std::size_t f = 0; f < folds.size(); ++f) {
+    const TrainingView& view = folds[f].left;
+    if (view.frame != frame) continue;
+    const Answer& answer = refits.answers[f];
+    left.add(answer.errorPct);
+    if (!answer.fit) {
+      if (!influence.failure) influence.failure = answer.failure;
+      continue;
+    }
+    if (const ModelFit* with = fitOf(*folds[f].inspection, result, view)) compareFits(*with, *answer.fit, influence);
+    for (std::size_t p = 0; p < probes.size(); ++p) {
+      const std::optional<double>& error = refits.errors[f * probes.size() + p];
+      held.add(error);
+      for (const FrameComparison& c : result.frames)
+        if (error && c.frame == probes[p] && c.light == view.highlight.light) before.add(countedPct(c));
+    }
+  }
+  influence.leftOutPct = left.value();
+  influence.heldOutPct = held.value();
+  if (held.value() && before.value()) influence.changePct = *held.value() - *before.value();
+  return influence;
+}
+
+}  // namespace
 std::optional<double> influenceOf(const Influence& influence, int frame, const std::string& model) {
   for (const FrameInfluence& f : influence.frames) {
     if (f.frame != frame) continue;
@@ -94,85 +173,29 @@ std::optional<double> influenceOf(const Influence& influence, int frame, const s
 
 Influence measureInfluence(const Inspection& inspection, const ProgressFn& progress, int mostProbes) {
   require(inspection.scene && inspection.surfaces && mostProbes >= 0, "measureInfluence: the inspection is empty");
-  Influence influence;
   std::vector<Fold> folds = foldsOf(inspection, LeaveOut::Frame);
-  const int n = int(folds.size());
-  for (int f = 0; f < int(inspection.scene->frames.size()); ++f)
-    if (std::any_of(inspection.views.begin(), inspection.views.end(),
-                    [&](const TrainingView& v) { return v.frame == f && v.seen; }))
-      ++influence.trainingFrames;
+  Influence influence;
+  influence.trainingFrames = seenFrames(inspection);
   influence.probes = probesOf(inspection, mostProbes);
-  for (const Fold& fold : folds)
-    if (influence.frames.empty() || influence.frames.back().frame != fold.left.frame)
-      influence.frames.push_back({fold.left.frame, {}});
-  std::sort(influence.frames.begin(), influence.frames.end(), [](const auto& a, const auto& b) { return a.frame < b.frame; });
-  influence.frames.erase(std::unique(influence.frames.begin(), influence.frames.end(),
-                                     [](const auto& a, const auto& b) { return a.frame == b.frame; }),
-                         influence.frames.end());
-  const int probes = int(influence.probes.size());
-  const Settings& settings = inspection.request.settings;
-  int round = 0;
-  const int rounds = int(inspection.models.size());
+  std::set<int> leftFrames;
+  for (const Fold& fold : folds) leftFrames.insert(fold.left.frame);
+  for (const int frame : leftFrames) influence.frames.push_back({frame, {}});
+
+  const int steps = int(folds.size()) * (1 + int(influence.probes.size()));
+  int done = 0;
   for (const auto& [id, result] : inspection.models) {
-    const HighlightModel& model = modelByName(id);
     const std::string stage = "influence on " + id;
     const ProgressFn part = [&](const StageEvent& e) {
-      return report(progress, {stage, round * n * (1 + probes) + e.done, rounds * n * (1 + probes)});
+      return report(progress, {stage, done + e.done, int(inspection.models.size()) * steps});
     };
-    std::vector<Answer> answers(folds.size());
-    const PoorFits poor = poorFitsFor(result);
-    parallelFor(
-        n, [&](int i) { answers[std::size_t(i)] = leaveOut(folds[std::size_t(i)], model, settings, poor); }, part, stage);
-
-    // Every probe with every fold's fit; one piece of work each, so that a stop is heeded soon.
-    std::vector<std::optional<double>> errors(std::size_t(n) * std::size_t(probes));
-    const ProgressFn later = [&](const StageEvent& e) { return part({e.stage, n + e.done, e.total}); };
-    parallelFor(
-        n * probes,
-        [&](int i) {
-          const int fold = i / probes, frame = influence.probes[std::size_t(i % probes)];
-          const std::string& light = folds[std::size_t(fold)].left.highlight.light;
-          const Answer& answer = answers[std::size_t(fold)];
-          if (!answer.fit || !shows(inspection, frame, light)) return;
-          const Camera& camera = inspection.scene->frames[std::size_t(frame)].camera;
-          const Outcome<std::shared_ptr<const Surface>> surface = folds[std::size_t(fold)].surfaceOf(frame, model);
-          Prediction p = model.predict(*answer.fit, camera, surface ? surface->get() : nullptr, settings);
-          errors[std::size_t(i)] = countedPct(compareFrame(inspection.evidence[std::size_t(frame)], light, camera, std::move(p)));
-        },
-        later, stage);
-
+    const Refits refits = refit(modelByName(id), poorFitsFor(result), folds, influence.probes, part, stage);
     Mean baseline;
     for (const FrameComparison& c : result.frames)
-      if (std::find(influence.probes.begin(), influence.probes.end(), c.frame) != influence.probes.end())
-        if (const std::optional<double> pct = countedPct(c)) baseline.add(*pct);
+      if (std::count(influence.probes.begin(), influence.probes.end(), c.frame)) baseline.add(countedPct(c));
     if (baseline.value()) influence.baselinePct[id] = *baseline.value();
-
-    for (FrameInfluence& frame : influence.frames) {
-      ModelInfluence& m = frame.models[id];
-      Mean left, held, before;
-      for (int f = 0; f < n; ++f) {
-        if (folds[std::size_t(f)].left.frame != frame.frame) continue;
-        const Answer& answer = answers[std::size_t(f)];
-        if (answer.errorPct) left.add(*answer.errorPct);
-        if (!answer.fit) {
-          if (!m.failure) m.failure = answer.failure;
-          continue;
-        }
-        if (const ModelFit* with = fitOf(inspection, result, folds[std::size_t(f)].left)) compareFits(*with, *answer.fit, m);
-        for (int p = 0; p < probes; ++p) {
-          const std::optional<double>& error = errors[std::size_t(f) * std::size_t(probes) + std::size_t(p)];
-          if (!error) continue;
-          held.add(*error);
-          for (const FrameComparison& c : result.frames)
-            if (c.frame == influence.probes[std::size_t(p)] && c.light == folds[std::size_t(f)].left.highlight.light)
-              if (const std::optional<double> pct = countedPct(c)) before.add(*pct);
-        }
-      }
-      m.leftOutPct = left.value();
-      m.heldOutPct = held.value();
-      if (held.value() && before.value()) m.changePct = *held.value() - *before.value();
-    }
-    ++round;
+    for (FrameInfluence& frame : influence.frames)
+      frame.models[id] = influenceOfFrame(frame.frame, result, folds, refits, influence.probes);
+    done += steps;
   }
   return influence;
 }

@@ -60,8 +60,98 @@ Outcome<LobeFit> fitLobe(const std::vector<LobeSample>& samples) {
   return fit;
 }
 
-}  // namespace
+/// A highlight's surroundings, cut out of a frame that may be large, with the background that is fitted in them.
+struct Surroundings {
+  Image cut;                 ///< one channel
+  int x0 = 0, y0 = 0;        ///< of the cut's first pixel in the frame
+  std::vector<char> usable;  ///< one per pixel of the cut
+  Footprint footprint;       ///< in px of the cut
+  Background background;
+  bool isUsable(int x, int y) const { return usable[std::size_t(y) * std::size_t(cut.width) + std::size_t(x)] != 0; }
+};
 
+Outcome<Surroundings> surroundingsOf(const Image& linear, const Image* mask, const Highlight& highlight, const Camera& camera) {
+  if (!highlight.ellipse) return Failure{Reason::NotAnEllipse, "the observed contour has no ellipse"};
+  const Ellipse& e = *highlight.ellipse;
+  const Eigen::Matrix2d turn = Eigen::Rotation2Dd(e.angle).toRotationMatrix();
+  Surroundings s;
+  Footprint& footprint = s.footprint;
+  footprint.centre = camera.hasDistortion() ? camera.distorted(e.centre) : e.centre;
+  footprint.shape = turn * e.semiAxes.cwiseAbs2().asDiagonal() * turn.transpose();
+  footprint.level = highlight.level;
+
+  const Pixel reach = kBackgroundReach * footprint.shape.diagonal().cwiseSqrt();
+  s.x0 = std::max(0, int(std::floor(footprint.centre.x() - reach.x())));
+  s.y0 = std::max(0, int(std::floor(footprint.centre.y() - reach.y())));
+  const int x1 = std::min(linear.width - 1, int(std::ceil(footprint.centre.x() + reach.x())));
+  const int y1 = std::min(linear.height - 1, int(std::ceil(footprint.centre.y() + reach.y())));
+  if (x1 < s.x0 || y1 < s.y0) return Failure{Reason::OutsideImage, "the highlight"};
+  footprint.centre -= Pixel(s.x0, s.y0);
+  s.cut = Image(x1 - s.x0 + 1, y1 - s.y0 + 1, 1);
+  std::vector<float> darkest;
+  for (int y = 0; y < s.cut.height; ++y)
+    for (int x = 0; x < s.cut.width; ++x) {
+      const float v = meanOf(linear, s.x0 + x, s.y0 + y);
+      s.cut.at(x, y) = v;
+      const bool good = (!mask || mask->at(s.x0 + x, s.y0 + y) != 0) && std::isfinite(v);
+      s.usable.push_back(good && v >= 0);
+      if (good) darkest.push_back(v);
+    }
+  if (darkest.empty()) return Failure{Reason::TooFewPoints, "no glossy pixel around the highlight"};
+  s.background = fitBackground(s.cut, s.usable, footprint, ranked(darkest, darkest.size() / 10));
+  return s;
+}
+
+/// The lit surface at a pixel. Empty beside the surface and on its unlit side.
+std::optional<LobePixel> litPixel(const Pixel& ideal, double radiance, const Camera& camera, const Surface& surface,
+                                  const Light& light) {
+  const Outcome<SurfacePoint> hit = surface.firstHit(camera.ray(ideal));
+  if (!hit) return std::nullopt;
+  const Eigen::Vector3d eye = camera.centreInWorld();
+  const SurfacePoint p = facing(*hit, eye);
+  const Eigen::Vector3d toLight = light.directionFrom(p.position);
+  if (!(p.normal.dot(toLight) > 0)) return std::nullopt;
+  const Eigen::Vector3d toCamera = (eye - p.position).normalized();
+  const double alpha = incidentAngle(p.normal, toLight, toCamera);
+  if (!std::isfinite(alpha) || !std::isfinite(radiance)) return std::nullopt;
+  const double distance = light.atInfinity() ? 1 : (light.position() - p.position).norm();
+  return LobePixel{alpha, radiance, p.normal, toLight, toCamera, distance};
+}
+
+/// Pixels and samples on an even grid in the highlight's reach.
+LobeSamples samplesOf(const Surroundings& s, const Highlight& highlight, const Camera& camera, const Surface& surface,
+                      const Light& light, const LobeOptions& options) {
+  LobeSamples result;
+  const double area = std::numbers::pi * options.reach * options.reach * std::sqrt(s.footprint.shape.determinant());
+  const int step = std::max(1, int(std::lround(std::sqrt(area / options.mostSamples))));
+  const Eigen::Matrix2d inverse = s.footprint.shape.inverse();
+  const Pixel middle = centroid(highlight.contour);
+  result.grid = {Pixel(s.x0, s.y0), step, (s.cut.width + step - 1) / step, (s.cut.height + step - 1) / step, {}};
+  result.grid.places.resize(std::size_t(result.grid.width) * std::size_t(result.grid.height));
+  for (int y = 0; y < s.cut.height; y += step)
+    for (int x = 0; x < s.cut.width; x += step) {
+      if (!s.isUsable(x, y)) continue;
+      const Pixel d = Pixel(x, y) - s.footprint.centre;
+      if (d.dot(inverse * d) > options.reach * options.reach) continue;
+      const bool clipped = options.clipValue > 0 && s.cut.at(x, y) >= options.clipValue;
+      if (clipped) ++result.clipped;
+      const double above = s.cut.at(x, y) - s.background.at(x, y);
+      const Pixel stored(s.x0 + x, s.y0 + y);
+      const Pixel ideal = camera.hasDistortion() ? camera.undistorted(stored) : stored;
+      if (!ideal.allFinite()) continue;
+      const std::optional<LobePixel> place = litPixel(ideal, above, camera, surface, light);
+      if (!place) continue;
+      result.grid.places[std::size_t(y / step) * std::size_t(result.grid.width) + std::size_t(x / step)] = place;
+      if (clipped) continue;
+      result.pixels.push_back(*place);
+      if (!(above > 0)) continue;
+      const double direction = std::atan2(ideal.y() - middle.y(), ideal.x() - middle.x());
+      result.samples.push_back({ideal, place->alpha, std::log(above), direction});
+    }
+  return result;
+}
+
+}  // namespace
 double LobeFit::alphaAt(double fraction) const {
   require(fraction > 0 && fraction <= 1, "LobeFit::alphaAt: the fraction must be in (0, 1]");
   return m * std::sqrt(-std::log(fraction));
@@ -72,84 +162,16 @@ Outcome<LobeSamples> lobeSamples(const Image& linear, const Image* mask, const H
   require(!linear.empty() && options.reach > 0 && options.fitLevel > 0 && options.mostSamples > 0,
           "lobeSamples: empty image or options out of range");
   require(!mask || (mask->width == linear.width && mask->height == linear.height), "lobeSamples: the mask has another size");
-  if (!highlight.ellipse) return Failure{Reason::NotAnEllipse, "the observed contour has no ellipse"};
-  const Ellipse& e = *highlight.ellipse;
-  const Eigen::Matrix2d turn = Eigen::Rotation2Dd(e.angle).toRotationMatrix();
-  Footprint footprint;  // in the stored image's pixels, where the background is fitted
-  footprint.centre = camera.hasDistortion() ? camera.distorted(e.centre) : e.centre;
-  footprint.shape = turn * e.semiAxes.cwiseAbs2().asDiagonal() * turn.transpose();
-  footprint.level = highlight.level;
-
-  // Only the highlight's surroundings are looked at: frames may be large.
-  const Pixel reach = kBackgroundReach * footprint.shape.diagonal().cwiseSqrt();
-  const int x0 = std::max(0, int(std::floor(footprint.centre.x() - reach.x()))),
-            y0 = std::max(0, int(std::floor(footprint.centre.y() - reach.y())));
-  const int x1 = std::min(linear.width - 1, int(std::ceil(footprint.centre.x() + reach.x())));
-  const int y1 = std::min(linear.height - 1, int(std::ceil(footprint.centre.y() + reach.y())));
-  if (x1 < x0 || y1 < y0) return Failure{Reason::OutsideImage, "the highlight"};
-  Image cut(x1 - x0 + 1, y1 - y0 + 1, 1);
-  std::vector<char> usable(std::size_t(cut.width) * std::size_t(cut.height), 0);
-  std::vector<float> darkest;
-  LobeSamples result;
-  for (int y = 0; y < cut.height; ++y)
-    for (int x = 0; x < cut.width; ++x) {
-      const float v = meanOf(linear, x0 + x, y0 + y);
-      cut.at(x, y) = v;
-      const bool glossy = !mask || mask->at(x0 + x, y0 + y) != 0;
-      usable[std::size_t(y) * std::size_t(cut.width) + std::size_t(x)] = glossy && std::isfinite(v) && v >= 0;
-      if (glossy && std::isfinite(v)) darkest.push_back(v);
-    }
-  if (darkest.empty()) return Failure{Reason::TooFewPoints, "no glossy pixel around the highlight"};
-  Footprint local = footprint;
-  local.centre -= Pixel(x0, y0);
-  const Background background = fitBackground(cut, usable, local, ranked(darkest, darkest.size() / 10));
-  result.background = background.at(local.centre.x(), local.centre.y());
-
-  const double area = std::numbers::pi * options.reach * options.reach * std::sqrt(footprint.shape.determinant());
-  const int step = std::max(1, int(std::lround(std::sqrt(area / options.mostSamples))));
-  const Eigen::Matrix2d inverse = footprint.shape.inverse();
-  const Pixel middle = centroid(highlight.contour);
-  const Eigen::Vector3d eye = camera.centreInWorld();
-  double brightest = 0;
-  result.grid = {Pixel(x0, y0), step, (cut.width + step - 1) / step, (cut.height + step - 1) / step, {}};
-  result.grid.places.resize(std::size_t(result.grid.width) * std::size_t(result.grid.height));
-  for (int y = 0; y < cut.height; y += step)
-    for (int x = 0; x < cut.width; x += step) {
-      if (!usable[std::size_t(y) * std::size_t(cut.width) + std::size_t(x)]) continue;
-      const Pixel d = Pixel(x, y) - local.centre;
-      if (d.dot(inverse * d) > options.reach * options.reach) continue;
-      const bool clipped = options.clipValue > 0 && cut.at(x, y) >= options.clipValue;
-      if (clipped) ++result.clipped;
-      const double above = cut.at(x, y) - background.at(x, y);
-      const Pixel stored(x0 + x, y0 + y);
-      const Pixel ideal = camera.hasDistortion() ? camera.undistorted(stored) : stored;
-      if (!ideal.allFinite()) continue;
-      const Outcome<SurfacePoint> hit = surface.firstHit(camera.ray(ideal));
-      if (!hit) continue;
-      const SurfacePoint p = facing(*hit, eye);
-      const Eigen::Vector3d toLight = light.directionFrom(p.position);
-      if (!(p.normal.dot(toLight) > 0)) continue;
-      LobeSample s;
-      s.at = ideal;
-      const Eigen::Vector3d toCamera = (eye - p.position).normalized();
-      s.alpha = incidentAngle(p.normal, toLight, toCamera);
-      if (!std::isfinite(s.alpha) || !std::isfinite(above)) continue;
-      const double distance = light.atInfinity() ? 1 : (light.position() - p.position).norm();
-      const LobePixel place{s.alpha, above, p.normal, toLight, toCamera, distance};
-      result.grid.places[std::size_t(y / step) * std::size_t(result.grid.width) + std::size_t(x / step)] = place;
-      if (clipped) continue;
-      result.pixels.push_back(place);
-      if (!(above > 0)) continue;
-      s.logI = std::log(above);
-      s.direction = std::atan2(ideal.y() - middle.y(), ideal.x() - middle.x());
-      if (!std::isfinite(s.logI)) continue;
-      brightest = std::max(brightest, above);
-      result.samples.push_back(s);
-    }
+  const Outcome<Surroundings> around = surroundingsOf(linear, mask, highlight, camera);
+  if (!around) return around.failure();
+  LobeSamples result = samplesOf(*around, highlight, camera, surface, light, options);
   if (result.samples.empty()) return Failure{Reason::TooFewPoints, "no pixel of the lit surface is above the background"};
+  result.background = around->background.at(around->footprint.centre.x(), around->footprint.centre.y());
+  double brightest = 0;
+  for (const LobePixel& p : result.pixels) brightest = std::max(brightest, p.radiance);
   constexpr double kContrast = 3;          // as DetectOptions::minContrast
   constexpr double kFloatRoundOff = 1e-5;  // of the value: some steps of single precision, in which images are stored
-  if (!(brightest > std::max(kContrast * background.spread, kFloatRoundOff * std::abs(result.background))))
+  if (!(brightest > std::max(kContrast * around->background.spread, kFloatRoundOff * std::abs(result.background))))
     return Failure{Reason::NoHighlight, "nothing stands out from the background"};
   const double least = std::log(options.fitLevel * brightest);
   for (LobeSample& s : result.samples) s.fitted = s.logI >= least;

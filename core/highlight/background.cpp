@@ -23,6 +23,33 @@ struct BackgroundSample {
   double value;
 };
 
+/// Usable pixels in the ring around a footprint, thinned evenly. @param scale  px, of u and v
+std::vector<BackgroundSample> backgroundSamples(const Image& image, const std::vector<char>& usable, const Footprint& footprint,
+                                                const Pixel& reach, double scale, const std::function<double(double)>& fall) {
+  const Eigen::LLT<Eigen::Matrix2d> shape(footprint.shape);
+  const int x0 = std::max(0, static_cast<int>(footprint.centre.x() - reach.x())),
+            y0 = std::max(0, static_cast<int>(footprint.centre.y() - reach.y()));
+  const int x1 = std::min(image.width - 1, static_cast<int>(footprint.centre.x() + reach.x()) + 1);
+  const int y1 = std::min(image.height - 1, static_cast<int>(footprint.centre.y() + reach.y()) + 1);
+  const double cells = std::max(0, x1 - x0 + 1) * static_cast<double>(std::max(0, y1 - y0 + 1));
+  const int stride = std::max(1, static_cast<int>(std::sqrt(cells / static_cast<double>(kMostPixels))));
+  std::vector<BackgroundSample> samples;
+  for (int y = y0; y <= y1; y += stride)
+    for (int x = x0; x <= x1; x += stride) {
+      if (!usable[static_cast<std::size_t>(y) * image.width + x]) continue;
+      const Pixel d = Pixel(x, y) - footprint.centre;
+      const double rho2 = shape.matrixL().solve(d).squaredNorm();
+      if (rho2 < kInner * kInner || rho2 > kOuter * kOuter) continue;
+      const double u = d.x() / scale, v = d.y() / scale;
+      const double tail = fall(rho2);
+      BackgroundSample s;
+      s.row << 1, u, v, u * u, u * v, v * v, tail, u * tail, v * tail;
+      s.value = image.at(x, y);
+      samples.push_back(s);
+    }
+  return samples;
+}
+
 }  // namespace
 
 double Background::at(double x, double y) const {
@@ -44,30 +71,9 @@ Background fitBackground(const Image& image, const std::vector<char>& usable, co
   Background result;
   result.coefficients[0] = fallback;
   result.centre = footprint.centre;
-  const Eigen::LLT<Eigen::Matrix2d> shape(footprint.shape);
   const Pixel reach = kOuter * footprint.shape.diagonal().cwiseSqrt();
   result.scale = std::max(1.0, reach.maxCoeff());
-  const int x0 = std::max(0, static_cast<int>(footprint.centre.x() - reach.x())),
-            y0 = std::max(0, static_cast<int>(footprint.centre.y() - reach.y()));
-  const int x1 = std::min(image.width - 1, static_cast<int>(footprint.centre.x() + reach.x()) + 1);
-  const int y1 = std::min(image.height - 1, static_cast<int>(footprint.centre.y() + reach.y()) + 1);
-  const double cells = std::max(0, x1 - x0 + 1) * static_cast<double>(std::max(0, y1 - y0 + 1));
-  const int stride = std::max(1, static_cast<int>(std::sqrt(cells / static_cast<double>(kMostPixels))));
-
-  std::vector<BackgroundSample> samples;
-  for (int y = y0; y <= y1; y += stride)
-    for (int x = x0; x <= x1; x += stride) {
-      if (!usable[static_cast<std::size_t>(y) * image.width + x]) continue;
-      const Pixel d = Pixel(x, y) - footprint.centre;
-      const double rho2 = shape.matrixL().solve(d).squaredNorm();
-      if (rho2 < kInner * kInner || rho2 > kOuter * kOuter) continue;
-      const double u = d.x() / result.scale, v = d.y() / result.scale;
-      const double tail = fall(rho2);
-      BackgroundSample s;
-      s.row << 1, u, v, u * u, u * v, v * v, tail, u * tail, v * tail;
-      s.value = image.at(x, y);
-      samples.push_back(s);
-    }
+  const std::vector<BackgroundSample> samples = backgroundSamples(image, usable, footprint, reach, result.scale, fall);
   if (samples.size() < static_cast<std::size_t>(kLeastPixels)) return result;
 
   // Iteratively reweighted least squares, Tukey's biweight; the first round is unweighted about the median.

@@ -112,9 +112,11 @@ struct Candidate {
   int clippedPixels = 0;
 };
 
+/// A view of an image of one channel.
+cv::Mat valuesOf(const Image& image) { return {image.height, image.width, CV_32F, const_cast<float*>(image.data.data())}; }
+
 /// Position of the largest 3x3 mean inside the box-local region; hot pixels do not win.
-cv::Point strongestPixel(const Image& roi, const cv::Mat& region) {
-  const cv::Mat values(roi.height, roi.width, CV_32F, const_cast<float*>(roi.data.data()));
+cv::Point strongestPixel(const cv::Mat& values, const cv::Mat& region) {
   cv::Mat smooth;
   cv::GaussianBlur(values, smooth, cv::Size(3, 3), 0, 0, cv::BORDER_REPLICATE);
   cv::Point at(0, 0);
@@ -227,11 +229,9 @@ class Detector {
  private:
   /// Values of the brightest 3x3 median (single hot pixels do not set the level); nothing if none is above the base.
   std::optional<double> brightestMedian() const {
-    const int w = p_.value.width, h = p_.value.height;
-    const cv::Mat values(h, w, CV_32F, const_cast<float*>(p_.value.data.data()));
     cv::Mat median;
-    cv::medianBlur(values, median, 3);
-    const cv::Mat usable(h, w, CV_8U, const_cast<char*>(p_.usable.data()));
+    cv::medianBlur(valuesOf(p_.value), median, 3);
+    const cv::Mat usable(median.size(), CV_8U, const_cast<char*>(p_.usable.data()));
     double top = 0;
     cv::minMaxLoc(median, nullptr, &top, nullptr, nullptr, usable);
     return top - base_ > 0 ? std::optional<double>(top) : std::nullopt;
@@ -239,9 +239,7 @@ class Detector {
 
   /// Connected regions at or above a value, as boxes by label; those too small to hold a highlight are empty.
   std::vector<cv::Rect> regionsAbove(double threshold) {
-    const int w = p_.value.width, h = p_.value.height;
-    const cv::Mat values(h, w, CV_32F, const_cast<float*>(p_.value.data.data()));
-    cv::Mat above = values >= threshold, stats, centroids;
+    cv::Mat above = valuesOf(p_.value) >= threshold, stats, centroids;
     const int count = cv::connectedComponentsWithStats(above, labels_, stats, centroids, 4, CV_32S);
     std::vector<cv::Rect> boxes(static_cast<std::size_t>(count));
     for (int label = 1; label < count; ++label) {
@@ -268,7 +266,7 @@ class Detector {
           fitBackground(p_.value, p_.usable, footprintOf(labels_, label, tight, kCandidateShare * options_.level), base_);
     c.corrected = correctedRoi(p_, c.background, c.box);
     cv::Mat region = labels_(c.box) == label;
-    const cv::Point at = strongestPixel(c.corrected, region);
+    const cv::Point at = strongestPixel(valuesOf(c.corrected), region);
     const Outcome<PeakFit> peak = fitPeak(c.corrected, at.x, at.y, options_.peakWindowLevel);
     const bool clipped = saturatedNear(c.box, region);
     c.top = peak && !clipped ? peak->value : c.corrected.at(at.x, at.y);
@@ -349,18 +347,28 @@ class Detector {
       if (!boxes[label].empty()) candidates_.push_back(candidateOf(static_cast<int>(label), boxes[label]).first);
   }
 
+  struct Seed {
+    cv::Point at;
+    double value;
+  };
+
   /// Every peak with a contour of its own, strongest first: one that is separate at some value has its own region at its level.
   std::optional<Failure> findSeparately() {
     const std::optional<double> top = brightestMedian();
     if (!top) return Failure{Reason::NoHighlight, "nothing rises above the background"};
-    struct Seed {
-      cv::Point at;
-      double value;
-    };
+    const std::vector<Seed> seeds = findSeeds(*top);
+    for (const Seed& s : seeds) traceAround(s, seeds);
+    reference_ = 0;
+    for (const Highlight& h : found_) reference_ = std::max(reference_, h.peakValue);
+    return std::nullopt;
+  }
+
+  /// The peak of every region that appears while the threshold falls, strongest first.
+  std::vector<Seed> findSeeds(double top) {
     std::vector<Seed> seeds;
-    const cv::Mat values(p_.value.height, p_.value.width, CV_32F, const_cast<float*>(p_.value.data.data()));
+    const cv::Mat values = valuesOf(p_.value);
     for (double share = kFirstRung; share >= kLastRung; share *= kNextRung) {
-      const double threshold = base_ + share * (*top - base_);
+      const double threshold = base_ + share * (top - base_);
       if (threshold - base_ < options_.minContrast * noise_) break;
       const std::vector<cv::Rect> boxes = regionsAbove(threshold);
       std::vector<char> known(boxes.size(), 0);
@@ -368,53 +376,48 @@ class Detector {
       for (std::size_t label = 1; label < boxes.size(); ++label) {
         if (known[label] || boxes[label].empty()) continue;
         const cv::Rect& box = boxes[label];
-        Image roi(box.width, box.height, 1);
-        for (int y = 0; y < box.height; ++y)
-          for (int x = 0; x < box.width; ++x) roi.at(x, y) = values.at<float>(y + box.y, x + box.x);
-        const cv::Mat region = labels_(box) == static_cast<int>(label);
-        const cv::Point at = strongestPixel(roi, region) + box.tl();
+        const cv::Point at = strongestPixel(values(box).clone(), labels_(box) == static_cast<int>(label)) + box.tl();
         seeds.push_back({at, values.at<float>(at)});
       }
     }
     std::stable_sort(seeds.begin(), seeds.end(), [](const Seed& a, const Seed& b) { return a.value > b.value; });
     if (seeds.size() > kMostPeaks) seeds.resize(kMostPeaks);
-    for (const Seed& s : seeds) {
-      const std::vector<cv::Rect> boxes = regionsAbove(base_ + kCandidateShare * options_.level * (s.value - base_));
-      const int label = labels_.at<int>(s.at);
-      if (label == 0 || boxes[static_cast<std::size_t>(label)].empty()) continue;
-      Pixel peak(s.at.x, s.at.y);
-      // A region that reaches a stronger peak has that one's background and top, not its own.
-      const bool alone = std::none_of(seeds.begin(), seeds.end(),
-                                      [&](const Seed& o) { return o.value > s.value && labels_.at<int>(o.at) == label; });
-      auto [candidate, found] = candidateOf(label, boxes[static_cast<std::size_t>(label)]);
-      if (!alone)
-        found.value = s.value - candidate.background.at(s.at.x, s.at.y);
-      else
-        peak = found.at;
-      if (!(found.value > 0)) continue;
-      reference_ = found.value;
-      if (alone && candidate.flank && reachesLevel(*candidate.flank, options_.level))
-        reference_ = std::max(reference_, candidate.flank->peak->value);
-      for (const PeakReference& r : options_.references)
-        if ((r.peak - peak).norm() <= kSamePeakPx) reference_ = r.value;
-      const std::size_t before = found_.size();
-      trace(candidate);
-      // At this level only the contour around the peak is its own, and only if no stronger peak owns it.
-      for (std::size_t i = found_.size(); i-- > before;) {
-        const bool own = contains(found_[i].contour, peak);
-        const bool taken = own && std::any_of(seeds.begin(), seeds.end(), [&](const Seed& o) {
-                             return o.value > s.value && contains(found_[i].contour, Pixel(o.at.x, o.at.y));
-                           });
-        if (own && !taken) continue;
-        found_.erase(found_.begin() + static_cast<std::ptrdiff_t>(i));
-        strength_.erase(strength_.begin() + static_cast<std::ptrdiff_t>(i));
-      }
-    }
-    reference_ = 0;
-    for (const Highlight& h : found_) reference_ = std::max(reference_, h.peakValue);
-    return std::nullopt;
+    return seeds;
   }
 
+  /// The contour around one peak, at the level of its own value.
+  void traceAround(const Seed& s, const std::vector<Seed>& seeds) {
+    const std::vector<cv::Rect> boxes = regionsAbove(base_ + kCandidateShare * options_.level * (s.value - base_));
+    const int label = labels_.at<int>(s.at);
+    if (label == 0 || boxes[static_cast<std::size_t>(label)].empty()) return;
+    Pixel peak(s.at.x, s.at.y);
+    // A region that reaches a stronger peak has that one's background and top, not its own.
+    const bool alone = std::none_of(seeds.begin(), seeds.end(),
+                                    [&](const Seed& o) { return o.value > s.value && labels_.at<int>(o.at) == label; });
+    auto [candidate, found] = candidateOf(label, boxes[static_cast<std::size_t>(label)]);
+    if (!alone)
+      found.value = s.value - candidate.background.at(s.at.x, s.at.y);
+    else
+      peak = found.at;
+    if (!(found.value > 0)) return;
+    reference_ = found.value;
+    if (alone && candidate.flank && reachesLevel(*candidate.flank, options_.level))
+      reference_ = std::max(reference_, candidate.flank->peak->value);
+    for (const PeakReference& r : options_.references)
+      if ((r.peak - peak).norm() <= kSamePeakPx) reference_ = r.value;
+    const std::size_t before = found_.size();
+    trace(candidate);
+    // At this level only the contour around the peak is its own, and only if no stronger peak owns it.
+    for (std::size_t i = found_.size(); i-- > before;) {
+      const bool own = contains(found_[i].contour, peak);
+      const bool taken = own && std::any_of(seeds.begin(), seeds.end(), [&](const Seed& o) {
+                           return o.value > s.value && contains(found_[i].contour, Pixel(o.at.x, o.at.y));
+                         });
+      if (own && !taken) continue;
+      found_.erase(found_.begin() + static_cast<std::ptrdiff_t>(i));
+      strength_.erase(strength_.begin() + static_cast<std::ptrdiff_t>(i));
+    }
+  }
   bool saturatedNear(const cv::Rect& box, const cv::Mat& region) const {
     int count = 0;
     for (int y = 0; y < box.height; ++y)
@@ -462,7 +465,7 @@ class Detector {
 
   void keep(const Candidate& candidate, const cv::Rect& box, const Image& roi, const IsoContour& contour) {
     const cv::Mat region = filled(contour.line, box.width, box.height);
-    const cv::Point at = strongestPixel(roi, region);
+    const cv::Point at = strongestPixel(valuesOf(roi), region);
     if (!p_.usable[static_cast<std::size_t>(at.y + box.y) * p_.value.width + at.x + box.x] &&
         !p_.bad[static_cast<std::size_t>(at.y + box.y) * p_.value.width + at.x + box.x])
       return reject(moved(contour.line, box), "outside of the mask");

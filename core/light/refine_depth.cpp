@@ -263,8 +263,76 @@ std::vector<double> leftOutErrors(const Problem& problem, const State& start, co
   return errors;
 }
 
-}  // namespace
+std::optional<Point> pointAt(const BundleView& view, const Pixel& p) {
+  constexpr double kStep = ContourEvidence::kStepPx;
+  const auto at = [&](double x, double y) { return sampleAt(view, p + Pixel(x, y)); };
+  const std::optional<Sample> here = at(0, 0), left = at(-kStep, 0), right = at(kStep, 0), up = at(0, -kStep),
+                              down = at(0, kStep);
+  if (!here || !left || !right || !up || !down) return std::nullopt;
+  return Point{*here, *left, *right, *up, *down};
+}
 
+/// The views' contours, measured from the mean of their points in units of their mean distance.
+Problem problemOf(const std::vector<BundleView>& given, int pointsPerView) {
+  Problem problem;
+  problem.places = placesOf(given);
+  double distance = 0;
+  for (std::size_t v = 0; v < given.size(); ++v) {
+    const BundleView& g = given[v];
+    problem.views.push_back({g.camera.camFromWorld.inverse(), g.camera.centreInWorld()});
+    const std::vector<Pixel> pixels =
+        g.contour.size() > std::size_t(pointsPerView) ? resample(Polyline{g.contour, true}, pointsPerView) : g.contour;
+    for (const Pixel& p : pixels) {
+      std::optional<Point> point = pointAt(g, p);
+      if (!point) continue;
+      point->view = int(v);
+      problem.points.push_back(*point);
+      const Sample& here = point->at;
+      problem.origin += problem.views[v].worldFromCamera * Eigen::Vector3d(here.depth * here.ray);
+      distance += here.depth * here.ray.norm();
+    }
+  }
+  problem.origin /= double(problem.points.size());
+  problem.scale = distance / double(problem.points.size());
+  return problem;
+}
+
+/// As many terms as predict views that were left out better: free terms that nothing asks for would trade noise between depth and light.
+int usefulTerms(const Problem& problem, const State& start, const Terms& prior, double robustPx) {
+  int terms = 0;
+  std::vector<double> best = leftOutErrors(problem, start, prior, 0, robustPx);
+  for (const int more : {6, DepthCorrection::kTerms}) {  // up to second, up to fourth degree
+    std::vector<double> errors = leftOutErrors(problem, start, prior, more, robustPx);
+    if (!predictsLeftOutBetter(errors, best)) continue;
+    terms = more;
+    best = std::move(errors);
+  }
+  return terms;
+}
+
+/// Covariance of everything together, the prior as further rows in units of the noise.
+/// @param toWorld  of homogeneous points. @param r, slopes  residuals and slopes at the state
+void addUncertainty(const Problem& problem, const State& state, const Terms& prior, int terms, double robustPx,
+                    const Eigen::Matrix4d& toWorld, const std::vector<double>& r, const std::vector<double>& slopes,
+                    DepthRefinement& result) {
+  const Eigen::Index columns = 4 + terms;
+  std::vector<int> views;
+  for (const Point& p : problem.points) views.push_back(p.view);
+  const ResidualSpread spread = residualSpread(r, views, int(columns), robustPx);
+  const Eigen::MatrixXd j = jacobian(problem, state, slopes, prior, terms);
+  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(j.rows() + terms, columns);
+  rows.topRows(j.rows()) = j / std::sqrt(spread.factor);
+  rows.bottomRightCorner(terms, terms).setIdentity();
+  const Eigen::MatrixXd upper = triangularFactor(rows);
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(upper, Eigen::ComputeFullV);
+  if (!(svd.singularValues()(columns - 1) > 1e-14 * svd.singularValues()(0))) return;  // a free direction, to round-off
+  const Eigen::MatrixXd root = svd.matrixV() * svd.singularValues().cwiseInverse().asDiagonal();
+  for (int k = 0; k < terms; ++k) result.openShare(k) = root.row(4 + k).norm();
+  const Eigen::MatrixXd dy = toWorld * chartOf(state.light) * root.topRows<3>();
+  result.uncertainty = uncertaintyOfUnit(toWorld * state.light, dy, root.row(3), spread.noisePx, spread.degreesOfFreedom);
+}
+
+}  // namespace
 double DepthCorrection::factorAt(const Camera& camera, const Pixel& ideal) const {
   const Pixel x = normalised(camera, ideal);
   return 1 + coefficients.dot(monomials(x.x(), x.y()).value);
@@ -280,32 +348,11 @@ Outcome<DepthRefinement> refineDepth(const std::vector<BundleView>& given, const
   result.limitAngle = bundle->limitAngle;
   result.rmsPx = bundle->rmsPx;
 
-  Problem problem;
-  problem.places = placesOf(given);
-  double distance = 0;
-  for (std::size_t v = 0; v < given.size(); ++v) {
-    const BundleView& g = given[v];
-    problem.views.push_back({g.camera.camFromWorld.inverse(), g.camera.centreInWorld()});
-    const std::vector<Pixel> pixels = g.contour.size() > std::size_t(options.pointsPerView)
-                                          ? resample(Polyline{g.contour, true}, options.pointsPerView)
-                                          : g.contour;
-    for (const Pixel& p : pixels) {
-      const auto at = [&](double x, double y) { return sampleAt(g, p + Pixel(x, y)); };
-      const std::optional<Sample> here = at(0, 0), left = at(-ContourEvidence::kStepPx, 0),
-                                  right = at(ContourEvidence::kStepPx, 0), up = at(0, -ContourEvidence::kStepPx),
-                                  down = at(0, ContourEvidence::kStepPx);
-      if (!here || !left || !right || !up || !down) continue;
-      problem.points.push_back({*here, *left, *right, *up, *down, int(v)});
-      problem.origin += problem.views[v].worldFromCamera * Eigen::Vector3d(here->depth * here->ray);
-      distance += here->depth * here->ray.norm();
-    }
-  }
+  const Problem problem = problemOf(given, options.pointsPerView);
   // A depth that is off leaves residuals that keep their sign along contours.
   const bool systematic = bundle->rmsPx > refining::kLeastNoisePx && bundle->uncertainty &&
                           bundle->uncertainty->degreesOfFreedom < refining::kSystematic * double(problem.points.size());
   if (!systematic || problem.points.size() < 4 + DepthCorrection::kTerms) return result;
-  problem.origin /= double(problem.points.size());
-  problem.scale = distance / double(problem.points.size());
 
   State state;
   const Eigen::Vector4d& lw = bundle->light.homogeneous();
@@ -313,18 +360,9 @@ Outcome<DepthRefinement> refineDepth(const std::vector<BundleView>& given, const
   state.light.normalize();
   state.limit = bundle->limitAngle;
   const Terms prior = priors(sigma);
-  // As many terms as predict views that were left out better: free terms that nothing asks for would trade noise between depth and light.
-  int terms = 0;
-  std::vector<double> best = leftOutErrors(problem, state, prior, 0, options.robustPx);
-  for (const int more : {6, DepthCorrection::kTerms}) {  // up to second, up to fourth degree
-    std::vector<double> errors = leftOutErrors(problem, state, prior, more, options.robustPx);
-    if (!predictsLeftOutBetter(errors, best)) continue;
-    terms = more;
-    best = std::move(errors);
-  }
+  const int terms = usefulTerms(problem, state, prior, options.robustPx);
   if (terms == 0) return result;
   state = fitted(problem, state, prior, terms, options.robustPx);
-  const Eigen::Index columns = 4 + terms;
   std::vector<double> slopes;
   const std::vector<double> r = residuals(problem, state, &slopes);
 
@@ -338,22 +376,7 @@ Outcome<DepthRefinement> refineDepth(const std::vector<BundleView>& given, const
   result.limitAngle = state.limit;
   result.rmsPx = rms(r);
   result.correction.coefficients = state.c;
-
-  // Covariance of everything together, the prior as further rows in units of the noise.
-  std::vector<int> views;
-  for (const Point& p : problem.points) views.push_back(p.view);
-  const ResidualSpread spread = residualSpread(r, views, int(columns), options.robustPx);
-  const Eigen::MatrixXd j = jacobian(problem, state, slopes, prior, terms);
-  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(j.rows() + terms, columns);
-  rows.topRows(j.rows()) = j / std::sqrt(spread.factor);
-  rows.bottomRightCorner(terms, terms).setIdentity();
-  const Eigen::MatrixXd upper = triangularFactor(rows);
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(upper, Eigen::ComputeFullV);
-  if (!(svd.singularValues()(columns - 1) > 1e-14 * svd.singularValues()(0))) return result;  // a free direction, to round-off
-  const Eigen::MatrixXd root = svd.matrixV() * svd.singularValues().cwiseInverse().asDiagonal();
-  for (int k = 0; k < terms; ++k) result.openShare(k) = root.row(4 + k).norm();
-  const Eigen::MatrixXd dy = toWorld * chartOf(state.light) * root.topRows<3>();
-  result.uncertainty = uncertaintyOfUnit(world, dy, root.row(3), spread.noisePx, spread.degreesOfFreedom);
+  addUncertainty(problem, state, prior, terms, options.robustPx, toWorld, r, slopes, result);
   return result;
 }
 

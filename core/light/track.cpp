@@ -300,6 +300,10 @@ std::vector<Group> findGroups(const std::vector<Item>& items, const std::vector<
   return groups;
 }
 
+bool isStatedOn(const TrackedFrame& frame, const std::string& name) {
+  return std::find(frame.lightsOn.begin(), frame.lightsOn.end(), name) != frame.lightsOn.end();
+}
+
 /// How well a name goes with a group: frames where it is on and seen, against frames where it is seen but off.
 double agreement(const std::vector<TrackedFrame>& frames, const std::vector<Item>& items, const Group& group,
                  const std::string& name) {
@@ -313,7 +317,7 @@ double agreement(const std::vector<TrackedFrame>& frames, const std::vector<Item
   for (std::size_t f = 0; f < frames.size(); ++f) {
     const std::vector<std::string>& on = frames[f].lightsOn;
     if (on.empty()) continue;
-    const bool stated = std::find(on.begin(), on.end(), name) != on.end();
+    const bool stated = isStatedOn(frames[f], name);
     if (seen.count(f))
       sum += stated ? 1 : -1;
     else if (stated)
@@ -357,36 +361,65 @@ std::vector<std::string> namesFor(const std::vector<TrackedFrame>& frames, const
   return result;
 }
 
-}  // namespace
+/// Whether a frame may show more than one light: as the frames state, or where they state nothing, as the highlights look.
+bool mayBeSeveral(const std::vector<TrackedFrame>& frames, const std::set<std::string>& stated) {
+  if (stated.empty())
+    return std::count_if(frames.begin(), frames.end(), [](const TrackedFrame& f) { return f.highlights.size() > 1; }) >=
+           static_cast<std::ptrdiff_t>(kLeastFrames);
+  return std::any_of(frames.begin(), frames.end(),
+                     [&](const TrackedFrame& f) { return f.lightsOn.size() > 1 || (f.lightsOn.empty() && stated.size() > 1); });
+}
 
+void nameAllOf(TrackedFrame& frame, const std::string& name) {
+  for (Highlight& h : frame.highlights)
+    if (h.light.empty()) h.light = name;
+}
+
+/// Names of lights that nobody stated.
+std::vector<std::string> numberedNames(std::size_t count) {
+  std::vector<std::string> names;
+  for (std::size_t g = 0; g < count; ++g) names.push_back(g == 0 ? "light" : "light-" + std::to_string(g + 1));
+  return names;
+}
+
+/// Gives every highlight the name of its group, unless it also contains the mirror point of another light that has no highlight of
+/// its own in that frame: it then shows both.
+void nameMembers(std::vector<TrackedFrame>& frames, const std::vector<Item>& items, const std::vector<Group>& groups,
+                 const std::vector<std::string>& names) {
+  std::map<std::size_t, std::set<std::size_t>> shown;  // groups that have a highlight of their own in a frame
+  for (std::size_t g = 0; g < groups.size(); ++g)
+    for (const std::size_t k : groups[g].members) shown[items[k].frame].insert(g);
+  const auto mayBeOn = [&](const TrackedFrame& frame, const std::string& name) {
+    return frame.lightsOn.empty() || isStatedOn(frame, name);
+  };
+  for (std::size_t g = 0; g < groups.size(); ++g)
+    for (const std::size_t k : groups[g].members) {
+      TrackedFrame& frame = frames[items[k].frame];
+      Highlight& h = frame.highlights[items[k].highlight];
+      if (frame.lightsOn.size() == 1 || !h.light.empty() || !mayBeOn(frame, names[g])) continue;
+      bool merged = false;
+      for (std::size_t o = 0; o < groups.size() && !merged; ++o) {
+        if (o == g || shown[items[k].frame].count(o) || !mayBeOn(frame, names[o])) continue;
+        const std::optional<Pixel> by = toMirrorPoint(items[k], groups[o].light);
+        merged = by && h.contour.points.size() >= 3 && contains(h.contour, h.peak + *by);
+      }
+      if (!merged) h.light = names[g];
+    }
+}
+
+}  // namespace
 int assignLights(std::vector<TrackedFrame>& frames, const std::function<std::shared_ptr<const Surface>(std::size_t)>& surfaceOf,
                  const TrackOptions& options) {
   require(options.inlierPx > 0 && options.maxPairs > 0, "assignLights: options");
   std::set<std::string> ids;
-  std::size_t crowded = 0;  // frames with several highlights
-  bool several = false;
-  for (const TrackedFrame& frame : frames) {
-    ids.insert(frame.lightsOn.begin(), frame.lightsOn.end());
-    several = several || frame.lightsOn.size() > 1;
-    crowded += frame.highlights.size() > 1;
-  }
+  for (const TrackedFrame& frame : frames) ids.insert(frame.lightsOn.begin(), frame.lightsOn.end());
   const bool stated = !ids.empty();
-  if (stated)
-    for (const TrackedFrame& frame : frames) several = several || (frame.lightsOn.empty() && ids.size() > 1);
-  else
-    several = crowded >= kLeastFrames;
-  const auto onlyLight = [&](const TrackedFrame& f) {
-    return !stated                  ? std::string("light")
-           : f.lightsOn.size() == 1 ? f.lightsOn.front()
-           : ids.size() == 1        ? *ids.begin()
-                                    : std::string();
-  };
-  const auto nameAllOf = [&](TrackedFrame& frame, const std::string& name) {
-    for (Highlight& h : frame.highlights)
-      if (h.light.empty()) h.light = name;
-  };
-  if (!several) {
-    for (TrackedFrame& frame : frames) nameAllOf(frame, onlyLight(frame));
+  if (!mayBeSeveral(frames, ids)) {
+    for (TrackedFrame& frame : frames)
+      nameAllOf(frame, !stated                      ? std::string("light")
+                       : frame.lightsOn.size() == 1 ? frame.lightsOn.front()
+                       : ids.size() == 1            ? *ids.begin()
+                                                    : std::string());
     return 0;
   }
 
@@ -402,31 +435,7 @@ int assignLights(std::vector<TrackedFrame>& frames, const std::function<std::sha
     for (TrackedFrame& frame : frames) nameAllOf(frame, "light");
     return 0;
   }
-  std::vector<std::string> names;
-  if (stated)
-    names = namesFor(frames, items, groups, ids);
-  else
-    for (std::size_t g = 0; g < groups.size(); ++g) names.push_back(g == 0 ? "light" : "light-" + std::to_string(g + 1));
-
-  std::map<std::size_t, std::set<std::size_t>> shown;  // groups that have a highlight of their own in a frame
-  for (std::size_t g = 0; g < groups.size(); ++g)
-    for (const std::size_t k : groups[g].members) shown[items[k].frame].insert(g);
-  const auto isOn = [&](const TrackedFrame& frame, const std::string& name) {
-    return frame.lightsOn.empty() || std::find(frame.lightsOn.begin(), frame.lightsOn.end(), name) != frame.lightsOn.end();
-  };
-  for (std::size_t g = 0; g < groups.size(); ++g)
-    for (const std::size_t k : groups[g].members) {
-      TrackedFrame& frame = frames[items[k].frame];
-      Highlight& h = frame.highlights[items[k].highlight];
-      if (frame.lightsOn.size() == 1 || !h.light.empty() || !isOn(frame, names[g])) continue;
-      bool merged = false;
-      for (std::size_t o = 0; o < groups.size() && !merged; ++o) {
-        if (o == g || shown[items[k].frame].count(o) || !isOn(frame, names[o])) continue;
-        const std::optional<Pixel> by = toMirrorPoint(items[k], groups[o].light);
-        merged = by && h.contour.points.size() >= 3 && contains(h.contour, h.peak + *by);
-      }
-      if (!merged) h.light = names[g];
-    }
+  nameMembers(frames, items, groups, stated ? namesFor(frames, items, groups, ids) : numberedNames(groups.size()));
   for (TrackedFrame& frame : frames)
     if (frame.lightsOn.size() == 1) nameAllOf(frame, frame.lightsOn.front());
   return static_cast<int>(groups.size());

@@ -213,18 +213,10 @@ std::optional<ParameterUncertainty> uncertaintyOf(const Rows& rows, const State&
   if (!u.root.allFinite()) return std::nullopt;
   return u;
 }
-}  // namespace
 
-Outcome<Reconstruction> reconstructRefined(const std::vector<ConicView>& views, const Ellipsoid& start,
-                                           const std::optional<CentrePrior>& prior, int maxIterations) {
-  require(maxIterations >= 1, "reconstructRefined: maxIterations");
-  if (const std::optional<Failure> failure = detail::check(views)) return *failure;
-  const std::size_t need = prior ? 2 : 3;
-  if (views.size() < need)
-    return Failure{Reason::TooFewViews, "need " + std::to_string(need) + ", have " + std::to_string(views.size())};
-  // The world is measured from the start's centre in units of its size, each image from its own ellipse's centre.
-  const Eigen::Vector3d origin = start.centre();
-  const double scale = start.semiAxes().norm();
+/// The contours and the prior, measured from an origin in units of a scale, each image from its own ellipse's centre.
+Outcome<Contours> contoursAbout(const Eigen::Vector3d& origin, double scale, const std::vector<ConicView>& views,
+                                const std::optional<CentrePrior>& prior) {
   Contours contours;
   for (const ConicView& v : views) {
     Outline outline{v.projection.matrix, detail::contourOf(v)};
@@ -240,89 +232,130 @@ Outcome<Reconstruction> reconstructRefined(const std::vector<ConicView>& views, 
     require(llt.info() == Eigen::Success, "reconstructRefined: the prior's covariance is not positive definite");
     contours.setPrior(llt.matrixL().solve(Eigen::Matrix3d::Identity()), (prior->mean - origin) / scale);
   }
+  return contours;
+}
 
-  State state;  // axes ascending
-  for (int i = 0; i < 3; ++i) {
-    state.vectors.col(i) = start.worldFromBody().linear().col(2 - i);
-    state.squares(i) = std::pow(start.semiAxes()(2 - i) / scale, 2);
-  }
-  Rows rows;
-  if (!contours.rows(state, rows))
-    return Failure{Reason::NotAnEllipsoid, "the start has no elliptic outline in one of the views"};
-
-  // Levenberg and Marquardt's iteration with the damping relative to the largest singular value. A flat valley (an axis that the
-  // contours hardly see) has a small but certain slope: damping falls by decades, so that the full Gauss-Newton step is taken there.
-  Linearised linear(rows, state);
-  double damping = 1e-3;  // of the largest singular value: cautious first; it adapts by decades
+/// The way down to the least cost.
+struct Descent {
+  const Contours& contours;
+  State state;
+  Linearised linear;  ///< at the state
+  std::vector<double> costs{linear.cost};
   int iterations = 0;
   bool converged = false;
-  const auto inWorld = [&](const State& s) { return (origin + scale * s.centre).homogeneous().eval(); };
-  TracedRun run(prior ? "ellipsoid, centre held near the light" : "ellipsoid", inWorld(state));
-  std::vector<double> costs{linear.cost};
-  for (; iterations < maxIterations && !converged; ++iterations) {
-    constexpr double kEnough = 1e-14;  // the cost cannot be told apart below a hundred units of its round-off
-    if (!(linear.cost > 0) || linear.gain() <= kEnough * kEnough * linear.cost) break;
-    bool moved = false;
-    for (; damping < 1e8; damping *= 10) {
-      const Step step = linear.step(damping);
-      const State next = state.after(step);
-      double cost = kInfinity;
-      if (step.allFinite() && contours.rows(next, rows)) cost = rows.col(9).squaredNorm();
-      if (!(cost < linear.cost)) continue;
-      converged = linear.cost - cost <= kEnough * linear.cost && linear.gain() <= kStationary * linear.cost;
-      state = next;
-      linear = Linearised(rows, state);
-      costs.push_back(linear.cost);
-      damping = std::max(damping * 0.03, 1e-16);  // below round-off of the singular values damping does nothing
-      moved = true;
-      break;
-    }
-    if (!moved) break;  // no step of any length gains: round-off
-  }
-  converged = converged || iterations < maxIterations;
-  // The cost tells states apart to the root of its round-off only. The step does better: full steps are taken while they shrink,
-  // which leaves the same answer in every frame of reference.
-  double last = kInfinity;
-  for (int i = 0; converged && i < 40; ++i) {
-    const Step step = linear.step(0);
-    const double length = step.norm();
-    if (!(length < 0.9 * last) || !(length > 1e-15)) break;  // unknowns are of size 1: steps are round-off from here on
-    const State next = state.after(step);
-    if (!contours.rows(next, rows) || !(rows.col(9).squaredNorm() <= linear.cost * (1 + 1e-11))) break;  // round-off of the sum
+
+  void take(const State& next, const Rows& rows) {
     state = next;
     linear = Linearised(rows, state);
     costs.push_back(linear.cost);
-    last = length;
   }
-  traceRound(costs);
-  run.end(converged, converged ? "at a minimum" : "out of iterations", inWorld(state));
-  traceAnswer(run.index());
 
-  if (!(linear.smallest() > kRankRatio * linear.largest()))
-    return Failure{Reason::RankDeficient, "several ellipsoids explain the contours equally well"};
-  // Where the iteration stops short of a minimum (at the limit, or because a longer shape would reach a camera) and the next step is
-  // longer than the ellipsoid, the state is a place on the way: round-off decides where on a long flat valley it lies.
-  const Step left = linear.step(0);
-  const double size = std::sqrt(state.squares.sum()),
-               steps = std::max(left.head<3>().norm() / size, left.tail<6>().norm() / (size * size));
-  if (linear.gain() > kStationary * linear.cost && !(steps <= 1))
-    return Failure{
-        Reason::NotConverged,
-        formatted("the next step would be %.3g times the size of the ellipsoid: the outlines do not determine it", steps)};
-  if (state.squares(1) <= 2 * kSegment * state.squares(2))
-    return Failure{Reason::NotAnEllipsoid, "the refined shape has two zero axes"};
+  /// Levenberg and Marquardt's iteration with the damping relative to the largest singular value. A flat valley (an axis that the
+  /// contours hardly see) has a small but certain slope: damping falls by decades, so that the full Gauss-Newton step is taken there.
+  void iterate(int maxIterations) {
+    Rows rows;
+    double damping = 1e-3;  // of the largest singular value: cautious first; it adapts by decades
+    for (; iterations < maxIterations && !converged; ++iterations) {
+      constexpr double kEnough = 1e-14;  // the cost cannot be told apart below a hundred units of its round-off
+      if (!(linear.cost > 0) || linear.gain() <= kEnough * kEnough * linear.cost) break;
+      bool moved = false;
+      for (; damping < 1e8; damping *= 10) {
+        const Step step = linear.step(damping);
+        const State next = state.after(step);
+        double cost = kInfinity;
+        if (step.allFinite() && contours.rows(next, rows)) cost = rows.col(9).squaredNorm();
+        if (!(cost < linear.cost)) continue;
+        converged = linear.cost - cost <= kEnough * linear.cost && linear.gain() <= kStationary * linear.cost;
+        take(next, rows);
+        damping = std::max(damping * 0.03, 1e-16);  // below round-off of the singular values damping does nothing
+        moved = true;
+        break;
+      }
+      if (!moved) break;  // no step of any length gains: round-off
+    }
+    converged = converged || iterations < maxIterations;
+  }
+
+  /// The cost tells states apart to the root of its round-off only. The step does better: full steps are taken while they shrink,
+  /// which leaves the same answer in every frame of reference.
+  void takeLastSteps() {
+    Rows rows;
+    double last = kInfinity;
+    for (int i = 0; i < 40; ++i) {
+      const Step step = linear.step(0);
+      const double length = step.norm();
+      if (!(length < 0.9 * last) || !(length > 1e-15)) break;  // unknowns are of size 1: steps are round-off from here on
+      const State next = state.after(step);
+      if (!contours.rows(next, rows) || !(rows.col(9).squaredNorm() <= linear.cost * (1 + 1e-11))) break;  // round-off of the sum
+      take(next, rows);
+      last = length;
+    }
+  }
+
+  /// Why the state is no answer.
+  std::optional<Failure> fault() const {
+    if (!(linear.smallest() > kRankRatio * linear.largest()))
+      return Failure{Reason::RankDeficient, "several ellipsoids explain the contours equally well"};
+    // Where the iteration stops short of a minimum (at the limit, or because a longer shape would reach a camera) and the next step is
+    // longer than the ellipsoid, the state is a place on the way: round-off decides where on a long flat valley it lies.
+    const Step left = linear.step(0);
+    const double size = std::sqrt(state.squares.sum()),
+                 steps = std::max(left.head<3>().norm() / size, left.tail<6>().norm() / (size * size));
+    if (linear.gain() > kStationary * linear.cost && !(steps <= 1))
+      return Failure{
+          Reason::NotConverged,
+          formatted("the next step would be %.3g times the size of the ellipsoid: the outlines do not determine it", steps)};
+    if (state.squares(1) <= 2 * kSegment * state.squares(2))
+      return Failure{Reason::NotAnEllipsoid, "the refined shape has two zero axes"};
+    return std::nullopt;
+  }
+};
+
+}  // namespace
+Outcome<Reconstruction> reconstructRefined(const std::vector<ConicView>& views, const Ellipsoid& start,
+                                           const std::optional<CentrePrior>& prior, int maxIterations) {
+  require(maxIterations >= 1, "reconstructRefined: maxIterations");
+  if (const std::optional<Failure> failure = detail::check(views)) return *failure;
+  const std::size_t need = prior ? 2 : 3;
+  if (views.size() < need)
+    return Failure{Reason::TooFewViews, "need " + std::to_string(need) + ", have " + std::to_string(views.size())};
+  const Eigen::Vector3d origin = start.centre();
+  const double scale = start.semiAxes().norm();
+  const Outcome<Contours> contours = contoursAbout(origin, scale, views, prior);
+  if (!contours) return contours.failure();
+
+  State first;  // axes ascending
+  for (int i = 0; i < 3; ++i) {
+    first.vectors.col(i) = start.worldFromBody().linear().col(2 - i);
+    first.squares(i) = std::pow(start.semiAxes()(2 - i) / scale, 2);
+  }
+  Rows rows;
+  if (!contours->rows(first, rows))
+    return Failure{Reason::NotAnEllipsoid, "the start has no elliptic outline in one of the views"};
+  const auto inWorld = [&](const State& s) { return (origin + scale * s.centre).homogeneous().eval(); };
+  TracedRun run(prior ? "ellipsoid, centre held near the light" : "ellipsoid", inWorld(first));
+  Descent descent{*contours, first, Linearised(rows, first)};
+  descent.iterate(maxIterations);
+  if (descent.converged) descent.takeLastSteps();
+  const State& state = descent.state;
+  traceRound(descent.costs);
+  run.end(descent.converged, descent.converged ? "at a minimum" : "out of iterations", inWorld(state));
+  traceAnswer(run.index());
+  if (const std::optional<Failure> fault = descent.fault()) return *fault;
+
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.linear() = state.vectors;
   if (pose.linear().determinant() < 0) pose.linear().col(0) *= -1;
   pose.translation() = origin + scale * state.centre;
   Reconstruction result;
-  result.solver = converged ? "refined" : "refined, stopped at the iteration limit";
-  result.iterations = iterations;
-  result.condition = linear.largest() / linear.smallest();
+  result.solver = descent.converged ? "refined" : "refined, stopped at the iteration limit";
+  result.iterations = descent.iterations;
+  result.condition = descent.linear.largest() / descent.linear.smallest();
   result.ellipsoid = Ellipsoid(pose, scale * state.squares.cwiseSqrt());
   result.quadric = result.ellipsoid->dual();
   result.residualPx = detail::residuals(views, result);
-  if (contours.rows(state, rows)) result.uncertainty = uncertaintyOf(rows, state, linear.unknowns, prior.has_value(), scale);
+  if (contours->rows(state, rows))
+    result.uncertainty = uncertaintyOf(rows, state, descent.linear.unknowns, prior.has_value(), scale);
   return result;
 }
 

@@ -20,6 +20,92 @@ constexpr int kColumns = 20;  // of the grid that stands for the parts
 constexpr double kCurvedShare = 0.25, kCutShare = 0.5;
 constexpr int kFine = 4;  // rays a side over a cell or part that is looked at
 
+/// What a ray of the grid found.
+struct Node {
+  bool hit = false;
+  Eigen::Vector3d apart{0, 0, 0};  ///< H - N: its length is 2 sin(theta / 2)
+  double cosView = 0, cosHalf = 0, lightDistance = 0;
+  double change = 0;  ///< largest of `apart` towards its neighbours
+};
+
+/// Bounds of cells of the grid, tested eight at once.
+struct EightCells {
+  PartBounds bounds;
+  std::array<Pixel, 8> middles;
+  int filled = 0;
+  EightCells() {
+    bounds.tanSquared.setZero();
+    bounds.cosView.setOnes();
+    bounds.cosHalf.setOnes();
+    bounds.lightSquared.setOnes();
+  }
+};
+
+/// Rays over a part of the image, which stand for the parts of the surface.
+struct RayGrid {
+  Pixel min;
+  int nx, ny;
+  Eigen::Vector2d cell;  ///< px
+  std::vector<Node> nodes;
+
+  RayGrid(const Pixel& min, const Eigen::Vector2d& size)
+      : min(min), nx(kColumns + 1), ny(1 + std::max(1, static_cast<int>(std::ceil(kColumns * size.y() / size.x())))) {
+    cell = {size.x() / (nx - 1), size.y() / (ny - 1)};
+    nodes.resize(static_cast<std::size_t>(nx) * ny);
+  }
+  Pixel pixelOf(int i, int j) const { return {min.x() + i * cell.x(), min.y() + j * cell.y()}; }
+
+  void compareNeighbours() {
+    for (int j = 0; j < ny; ++j)
+      for (int i = 0; i < nx; ++i) {
+        Node& node = nodes[j * nx + i];
+        if (!node.hit) continue;
+        for (const auto& [di, dj] : {std::pair{-1, 0}, {1, 0}, {0, -1}, {0, 1}}) {
+          const int x = i + di, y = j + dj;
+          if (x < 0 || y < 0 || x >= nx || y >= ny || !nodes[y * nx + x].hit) continue;
+          node.change = std::max(node.change, (nodes[y * nx + x].apart - node.apart).norm());
+        }
+      }
+  }
+
+  /// Adds the bounds of the cell below and right of a node, unless no ray at its corners hit the surface.
+  void addCell(int i, int j, double lightReach, EightCells& cells) const {
+    // Between the corners `apart` is nearly linear: along the direction of its mean it is at least the least corner's, less
+    // what the cell's twist and its neighbours say about second order.
+    const int corners[4] = {j * nx + i, j * nx + i + 1, (j + 1) * nx + i, (j + 1) * nx + i + 1};
+    Eigen::Vector3d mean(0, 0, 0);
+    for (const int n : corners)
+      if (nodes[n].hit) mean += nodes[n].apart;
+    mean /= std::max(mean.norm(), 1e-300);  // not 0 / 0
+    int defined = 0;
+    double apart = std::numeric_limits<double>::infinity(), change = 0, cosLow = 1, cosHigh = 0, half = 1, nearLight = apart,
+           farLight = 0;
+    for (const int n : corners) {
+      const Node& node = nodes[n];
+      if (!node.hit) continue;
+      ++defined;
+      apart = std::min(apart, mean.dot(node.apart));
+      change = std::max(change, node.change);
+      cosLow = std::min(cosLow, node.cosView), cosHigh = std::max(cosHigh, node.cosView);
+      half = std::min(half, node.cosHalf);
+      nearLight = std::min(nearLight, node.lightDistance), farLight = std::max(farLight, node.lightDistance);
+    }
+    if (defined == 0) return;
+    const bool whole = defined == 4;
+    const double turned = lightReach > 0 ? lightReach / nearLight / std::max(half, 1e-3) : 0;  // of H, by the light's extent
+    const double least = std::clamp(0.5 * (apart - (whole ? kCurvedShare : kCutShare) * change - turned), 0.0, 1.0),
+                 cosine = 1 - 2 * least * least;
+    const int k = cells.filled++;
+    cells.bounds.tanSquared[k] =
+        static_cast<float>(cosine > 1e-3 ? 1 / (cosine * cosine) - 1 : 1e6);  // 1e-3: an angle near 90 degrees
+    cells.bounds.cosView[k] = static_cast<float>(whole ? std::max(0.0, 2 * cosLow - cosHigh) : 0);
+    cells.bounds.cosHalf[k] = static_cast<float>(0.9 * half);
+    const double light = std::max({2 * nearLight - farLight, 0.7 * nearLight, 0.0}) - lightReach;
+    cells.bounds.lightSquared[k] = static_cast<float>(light > 0 ? light * light : 0);
+    cells.middles[k] = pixelOf(i, j) + 0.5 * cell;
+  }
+};
+
 /// What every way of looking shares.
 class Inspector {
  public:
@@ -65,7 +151,21 @@ class Inspector {
     return std::nullopt;
   }
 
-  std::optional<Failure> byGrid() const;
+  std::optional<Failure> byGrid() const {
+    RayGrid grid(min_, max_ - min_);
+    if (const std::optional<Failure> found = fill(grid)) return found;
+    grid.compareNeighbours();
+    EightCells cells;
+    int looks = 0;
+    for (int j = 0; j + 1 < grid.ny; ++j)
+      for (int i = 0; i + 1 < grid.nx; ++i) {
+        grid.addCell(i, j, field_.lightReach, cells);
+        if (cells.filled < 8) continue;
+        if (const std::optional<Failure> found = inCells(cells, grid.cell.maxCoeff(), looks)) return found;
+        cells = {};
+      }
+    return inCells(cells, grid.cell.maxCoeff(), looks);
+  }
 
  private:
   static Failure elsewhere() { return {Reason::NotSupported, "another region without its own maximum"}; }
@@ -108,6 +208,47 @@ class Inspector {
     return false;
   }
 
+  /// What the grid's rays find; a failure where one finds something that is inside.
+  std::optional<Failure> fill(RayGrid& grid) const {
+    std::vector<Ray> rays;
+    rays.reserve(grid.nodes.size());
+    for (int j = 0; j < grid.ny; ++j)
+      for (int i = 0; i < grid.nx; ++i) rays.push_back(sampler_.ray(grid.pixelOf(i, j)));
+    const std::vector<std::optional<SurfacePoint>> hits = surface_.approximateHits(rays);
+    const Eigen::Vector4d& lw = field_.light.homogeneous();
+    for (std::size_t n = 0; n < hits.size(); ++n) {
+      if (!hits[n]) continue;
+      const SurfacePoint p = facing(*hits[n], sampler_.eye());
+      if (insideElsewhere(grid.pixelOf(static_cast<int>(n) % grid.nx, static_cast<int>(n) / grid.nx), p)) return elsewhere();
+      Node& node = grid.nodes[n];
+      const Eigen::Vector3d v = (sampler_.eye() - p.position).normalized(), offset = lw.head<3>() - lw.w() * p.position;
+      node.lightDistance = offset.norm();
+      const Eigen::Vector3d sum = offset / node.lightDistance + v;
+      const double length = sum.norm();
+      node.hit = length > 0;
+      node.cosHalf = 0.5 * length;
+      node.apart = sum / length - p.normal;
+      node.cosView = p.normal.dot(v);
+    }
+    return std::nullopt;
+  }
+  /// Looks closer at cells whose bounds leave it open, unless an outline is near.
+  std::optional<Failure> inCells(const EightCells& cells, double sidePx, int& looks) const {
+    const Eight above = field_.above(cells.bounds, level_);
+    for (int k = 0; k < cells.filled; ++k) {
+      if (above[k] < 0) continue;
+      const Pixel& p = cells.middles[k];
+      const bool near = std::any_of(outlines_.begin(), outlines_.end(), [&](const StarOutline& o) {
+        const double r = o.relativeReach(p);
+        return r < 1 || (1 - 1 / r) * (p - o.centre).norm() < kCellsNear * sidePx;
+      });
+      if (near) continue;
+      if (insideNear(p, 0.5 * sidePx)) return elsewhere();
+      if (++looks > kMostLooks) return undecided();
+    }
+    return std::nullopt;
+  }
+
   const StarField& field_;
   const Camera& camera_;
   const Surface& surface_;
@@ -116,120 +257,6 @@ class Inspector {
   Pixel min_, max_;
   PixelSampler sampler_;
 };
-
-/// What a ray of the grid found.
-struct Node {
-  bool hit = false;
-  Eigen::Vector3d apart{0, 0, 0};  ///< H - N: its length is 2 sin(theta / 2)
-  double cosView = 0, cosHalf = 0, lightDistance = 0;
-  double change = 0;  ///< largest of `apart` towards its neighbours
-};
-
-std::optional<Failure> Inspector::byGrid() const {
-  const Eigen::Vector2d size = max_ - min_;
-  const int nx = kColumns + 1, ny = 1 + std::max(1, static_cast<int>(std::ceil(kColumns * size.y() / size.x())));
-  const Eigen::Vector2d cell(size.x() / (nx - 1), size.y() / (ny - 1));
-  const auto pixelOf = [&](int i, int j) { return Pixel(min_.x() + i * cell.x(), min_.y() + j * cell.y()); };
-  std::vector<Ray> rays;
-  rays.reserve(static_cast<std::size_t>(nx) * ny);
-  for (int j = 0; j < ny; ++j)
-    for (int i = 0; i < nx; ++i) rays.push_back(sampler_.ray(pixelOf(i, j)));
-  const std::vector<std::optional<SurfacePoint>> hits = surface_.approximateHits(rays);
-  std::vector<Node> nodes(hits.size());
-  const Eigen::Vector4d& lw = field_.light.homogeneous();
-  for (std::size_t n = 0; n < hits.size(); ++n) {
-    if (!hits[n]) continue;
-    const SurfacePoint p = facing(*hits[n], sampler_.eye());
-    if (insideElsewhere(pixelOf(static_cast<int>(n) % nx, static_cast<int>(n) / nx), p)) return elsewhere();
-    Node& node = nodes[n];
-    const Eigen::Vector3d v = (sampler_.eye() - p.position).normalized(), offset = lw.head<3>() - lw.w() * p.position;
-    node.lightDistance = offset.norm();
-    const Eigen::Vector3d sum = offset / node.lightDistance + v;
-    const double length = sum.norm();
-    node.hit = length > 0;
-    node.cosHalf = 0.5 * length;
-    node.apart = sum / length - p.normal;
-    node.cosView = p.normal.dot(v);
-  }
-  for (int j = 0; j < ny; ++j)
-    for (int i = 0; i < nx; ++i) {
-      Node& node = nodes[j * nx + i];
-      if (!node.hit) continue;
-      for (const auto& [di, dj] : {std::pair{-1, 0}, {1, 0}, {0, -1}, {0, 1}}) {
-        const int x = i + di, y = j + dj;
-        if (x < 0 || y < 0 || x >= nx || y >= ny || !nodes[y * nx + x].hit) continue;
-        node.change = std::max(node.change, (nodes[y * nx + x].apart - node.apart).norm());
-      }
-    }
-  PartBounds bounds;
-  std::array<Pixel, 8> middles;
-  int filled = 0, looks = 0;
-  const auto flush = [&]() -> std::optional<Failure> {
-    const Eight above = field_.above(bounds, level_);
-    for (int k = 0; k < filled; ++k) {
-      if (above[k] < 0) continue;
-      const Pixel& p = middles[k];
-      const bool near = std::any_of(outlines_.begin(), outlines_.end(), [&](const StarOutline& o) {
-        const double r = o.relativeReach(p);
-        return r < 1 || (1 - 1 / r) * (p - o.centre).norm() < kCellsNear * cell.maxCoeff();
-      });
-      if (near) continue;
-      if (insideNear(p, 0.5 * cell.maxCoeff())) return elsewhere();
-      if (++looks > kMostLooks) return undecided();
-    }
-    filled = 0;
-    return std::nullopt;
-  };
-  const auto clear = [&] {
-    bounds.tanSquared.setZero();
-    bounds.cosView.setOnes();
-    bounds.cosHalf.setOnes();
-    bounds.lightSquared.setOnes();
-  };
-  clear();
-  for (int j = 0; j + 1 < ny; ++j)
-    for (int i = 0; i + 1 < nx; ++i) {
-      int defined = 0;
-      // Between the corners `apart` is nearly linear: along the direction of its mean it is at least the least corner's, less
-      // what the cell's twist and its neighbours say about second order.
-      const int corners[4] = {j * nx + i, j * nx + i + 1, (j + 1) * nx + i, (j + 1) * nx + i + 1};
-      Eigen::Vector3d mean(0, 0, 0);
-      for (const int n : corners)
-        if (nodes[n].hit) mean += nodes[n].apart;
-      mean /= std::max(mean.norm(), 1e-300);  // not 0 / 0
-      double apart = std::numeric_limits<double>::infinity(), change = 0, cosLow = 1, cosHigh = 0, half = 1, nearLight = apart,
-             farLight = 0;
-      for (const int n : corners) {
-        const Node& node = nodes[n];
-        if (!node.hit) continue;
-        ++defined;
-        apart = std::min(apart, mean.dot(node.apart));
-        change = std::max(change, node.change);
-        cosLow = std::min(cosLow, node.cosView), cosHigh = std::max(cosHigh, node.cosView);
-        half = std::min(half, node.cosHalf);
-        nearLight = std::min(nearLight, node.lightDistance), farLight = std::max(farLight, node.lightDistance);
-      }
-      if (defined == 0) continue;
-      const bool whole = defined == 4;
-      const double turned =
-          field_.lightReach > 0 ? field_.lightReach / nearLight / std::max(half, 1e-3) : 0;  // of H, by the light's extent
-      const double least = std::clamp(0.5 * (apart - (whole ? kCurvedShare : kCutShare) * change - turned), 0.0, 1.0),
-                   cosine = 1 - 2 * least * least;
-      const int k = filled++;
-      bounds.tanSquared[k] =
-          static_cast<float>(cosine > 1e-3 ? 1 / (cosine * cosine) - 1 : 1e6);  // 1e-3: an angle near 90 degrees
-      bounds.cosView[k] = static_cast<float>(whole ? std::max(0.0, 2 * cosLow - cosHigh) : 0);
-      bounds.cosHalf[k] = static_cast<float>(0.9 * half);
-      const double light = std::max({2 * nearLight - farLight, 0.7 * nearLight, 0.0}) - field_.lightReach;
-      bounds.lightSquared[k] = static_cast<float>(light > 0 ? light * light : 0);
-      middles[k] = pixelOf(i, j) + 0.5 * cell;
-      if (filled == 8) {
-        if (const std::optional<Failure> found = flush()) return found;
-        clear();
-      }
-    }
-  return flush();
-}
 
 }  // namespace
 

@@ -31,7 +31,7 @@ constexpr double kMarchStart = 0.2, kMarchGrowth = 1.35, kFarthest = 30;
 // Of the diameter: how far the curve between the directions may be off where it is checked. The points of the check join the
 // outline, so that what remains is at most half of this (a kink), a thirtieth on a smooth curve.
 constexpr double kMeanOff = 1e-4, kLargestOff = 5e-4;
-constexpr int kMostDirections = 288;
+constexpr std::size_t kMostDirections = 288;
 
 /// Frame of the region { value < minimum + rise } to second order.
 std::optional<Eigen::Matrix2d> frameOf(const Eigen::Matrix2d& hessian, double rise) {
@@ -215,10 +215,87 @@ double StarOutline::relativeReach(const Pixel& p) const {
   return x.norm() / ((1 - share) * reach[i] + share * reach[(i + 1) % n]);
 }
 
+namespace {
+
+double angleOf(int direction, int of) { return 2 * std::numbers::pi * direction / of; }
+
+/// Ends in n directions, each from what those before it say. @param slopes  gets those of the value by reach^2
+std::optional<Failure> walkAround(const Walk& walk, int n, StarOutline& outline, std::vector<double>& slopes) {
+  ReachGuess guess;
+  for (int i = 0; i < n; ++i) {
+    const Eigen::Vector2d ray = walk.ray(angleOf(i, n));
+    Outcome<Walk::End> end = Failure{Reason::NotConverged, ""};
+    if (i > 0) end = walk.end(ray, guess.next(), slopes[i - 1], outline.points[i - 1]);
+    if (!end) end = walk.march(ray);
+    if (!end) return end.failure();
+    guess.add(end->reach);
+    outline.reach.push_back(end->reach);
+    slopes.push_back(end->slope);
+    outline.points.push_back(end->point);
+  }
+  return std::nullopt;
+}
+
+Failure unknownCurve() { return {Reason::NotConverged, "the curve between the directions"}; }
+
+/// Joins the directions half-way between those of an outline: where the curve through its ends lies, corrected by what the field
+/// says there.
+/// @return whether the curve was known well enough
+Outcome<bool> joinHalfway(const Walk& walk, const PixelSampler& sampler, const Surface& surface, double level,
+                          StarOutline& outline, std::vector<double>& slopes) {
+  const Failure ended{Reason::SurfaceEnded, "the surface or the lit side ends between the directions"};
+  const int n = static_cast<int>(outline.reach.size());
+  std::vector<double> reach(2 * n), slope(2 * n);
+  std::vector<SurfacePoint> points(2 * n);
+  std::vector<Ray> rays;
+  rays.reserve(n);
+  double mean = 0, largest = 0, squares = 0;
+  for (int i = 0; i < n; ++i) {
+    reach[2 * i] = outline.reach[i], slope[2 * i] = slopes[i], points[2 * i] = outline.points[i];
+    double between = 0;
+    for (int k = 0; k < 6; ++k) between += kHalfway[k] * outline.reach[(i + k - 2 + n) % n];
+    if (!(between > 0)) return unknownCurve();
+    reach[2 * i + 1] = between;
+    squares += outline.reach[i] * outline.reach[i];
+    rays.push_back(sampler.ray(outline.centre + between * walk.ray(angleOf(2 * i + 1, 2 * n))));
+  }
+  const double area = std::numbers::pi * outline.frame.determinant();
+  const double diameter = 2 * std::sqrt(area / std::numbers::pi * squares / n);
+  const std::vector<std::optional<SurfacePoint>> hits = surface.approximateHits(rays);
+  for (int i = 0; i < n; ++i) {
+    double& r = reach[2 * i + 1];
+    const Eigen::Vector2d ray = walk.ray(angleOf(2 * i + 1, 2 * n));
+    if (!hits[i]) return ended;
+    const std::optional<PixelSample> s = sampler.near(outline.centre + r * ray, *hits[i]);
+    if (!s) return ended;
+    const double g = 0.5 * (slopes[i] + slopes[(i + 1) % n]), off = (s->value - level) / (2 * g * r);  // of the reach
+    // Across the contour: in the frame the outline is nearly a circle, and its normal is the ray.
+    const Eigen::Vector2d normal = outline.inverse.transpose() * (outline.inverse * ray);
+    const double distance = std::abs(off) / normal.norm();
+    mean += distance / n;
+    largest = std::max(largest, distance);
+    r -= off;
+    slope[2 * i + 1] = g;
+    points[2 * i + 1] = s->point;
+    if (std::abs(off) > 1e-3 * r) {  // a Newton step from that far leaves an error of a part in 1e5
+      const Outcome<Walk::End> end = walk.end(ray, r, g, s->point);
+      if (!end) return end.failure();
+      r = end->reach;
+      slope[2 * i + 1] = end->slope;
+      points[2 * i + 1] = end->point;
+    }
+  }
+  outline.reach = std::move(reach);
+  slopes = std::move(slope);
+  outline.points = std::move(points);
+  return mean <= kMeanOff * diameter && largest <= kLargestOff * diameter;
+}
+
+}  // namespace
+
 Outcome<StarOutline> starAround(const StarField& field, const Camera& camera, const Surface& surface, const Summit& summit,
                                 double level, int directions) {
-  const double rise = level - summit.value;
-  const std::optional<Eigen::Matrix2d> frame = frameOf(summit.hessian, rise);
+  const std::optional<Eigen::Matrix2d> frame = frameOf(summit.hessian, level - summit.value);
   if (!frame) return Failure{Reason::NotConverged, "the maximum is too long for its width"};
   const PixelSampler sampler(field.value, camera, surface);
   const Walk walk(sampler, summit, *frame, level);
@@ -226,82 +303,21 @@ Outcome<StarOutline> starAround(const StarField& field, const Camera& camera, co
   outline.centre = summit.pixel;
   outline.frame = *frame;
   outline.inverse = frame->inverse();
-  int n = std::max(12, directions / 2);  // those half-way between join them; 12: twice the stencil between them
-  std::vector<double> slopes(n);
-  outline.reach.resize(n);
-  outline.points.resize(n);
-  ReachGuess guess;
-  const auto angle = [](int i, int of) { return 2 * std::numbers::pi * i / of; };
-  for (int i = 0; i < n; ++i) {
-    const Eigen::Vector2d ray = walk.ray(angle(i, n));
-    Outcome<Walk::End> end = Failure{Reason::NotConverged, ""};
-    if (i > 0) end = walk.end(ray, guess.next(), slopes[i - 1], outline.points[i - 1]);
-    if (!end) end = walk.march(ray);
-    if (!end) return end.failure();
-    guess.add(end->reach);
-    outline.reach[i] = end->reach;
-    slopes[i] = end->slope;
-    outline.points[i] = end->point;
-  }
-  const Failure unknown{Reason::NotConverged, "the curve between the directions"},
-      ended{Reason::SurfaceEnded, "the surface or the lit side ends between the directions"};
-  const double area = std::numbers::pi * frame->determinant();
+  std::vector<double> slopes;
+  // Half of the directions, as those half-way between join them; 12: twice the stencil between them.
+  if (const std::optional<Failure> failure = walkAround(walk, std::max(12, directions / 2), outline, slopes)) return *failure;
   while (true) {
-    // Half-way between the directions: what the curve through them says, and what the field says there.
-    std::vector<double> reach(2 * n), slope(2 * n);
-    std::vector<SurfacePoint> points(2 * n);
-    std::vector<Ray> rays;
-    rays.reserve(n);
-    double mean = 0, largest = 0, squares = 0;
-    const auto wrapped = [&](int i) { return i < 0 ? i + n : i >= n ? i - n : i; };
-    for (int i = 0; i < n; ++i) {
-      reach[2 * i] = outline.reach[i], slope[2 * i] = slopes[i], points[2 * i] = outline.points[i];
-      double between = 0;
-      for (int k = 0; k < 6; ++k) between += kHalfway[k] * outline.reach[wrapped(i + k - 2)];
-      if (!(between > 0)) return unknown;
-      reach[2 * i + 1] = between;
-      squares += outline.reach[i] * outline.reach[i];
-      rays.push_back(sampler.ray(summit.pixel + between * walk.ray(angle(2 * i + 1, 2 * n))));
-    }
-    const double diameter = 2 * std::sqrt(area / std::numbers::pi * squares / n);
-    const std::vector<std::optional<SurfacePoint>> hits = surface.approximateHits(rays);
-    for (int i = 0; i < n; ++i) {
-      double& r = reach[2 * i + 1];
-      const Eigen::Vector2d ray = walk.ray(angle(2 * i + 1, 2 * n));
-      if (!hits[i]) return ended;
-      const std::optional<PixelSample> s = sampler.near(summit.pixel + r * ray, *hits[i]);
-      if (!s) return ended;
-      const double g = 0.5 * (slopes[i] + slopes[wrapped(i + 1)]), off = (s->value - level) / (2 * g * r);  // of the reach
-      // Across the contour: in the frame the outline is nearly a circle, and its normal is the ray.
-      const Eigen::Vector2d normal = outline.inverse.transpose() * (outline.inverse * ray);
-      const double distance = std::abs(off) / normal.norm();
-      mean += distance / n;
-      largest = std::max(largest, distance);
-      r -= off;
-      slope[2 * i + 1] = g;
-      points[2 * i + 1] = s->point;
-      if (std::abs(off) > 1e-3 * r) {  // a Newton step from that far leaves an error of a part in 1e5
-        const Outcome<Walk::End> end = walk.end(ray, r, g, s->point);
-        if (!end) return end.failure();
-        r = end->reach;
-        slope[2 * i + 1] = end->slope;
-        points[2 * i + 1] = end->point;
-      }
-    }
-    n *= 2;
-    outline.reach = std::move(reach);
-    slopes = std::move(slope);
-    outline.points = std::move(points);
-    if (mean <= kMeanOff * diameter && largest <= kLargestOff * diameter) break;
-    if (2 * n > kMostDirections) return unknown;
+    const Outcome<bool> known = joinHalfway(walk, sampler, surface, level, outline, slopes);
+    if (!known) return known.failure();
+    if (*known) break;
+    if (2 * outline.reach.size() > kMostDirections) return unknownCurve();
   }
   const auto [least, most] = std::minmax_element(outline.reach.begin(), outline.reach.end());
   outline.least = *least, outline.most = *most;
-  outline.pixels.resize(n);
-  for (int i = 0; i < n; ++i) outline.pixels[i] = summit.pixel + outline.reach[i] * walk.ray(angle(i, n));
+  const int n = static_cast<int>(outline.reach.size());
+  for (int i = 0; i < n; ++i) outline.pixels.push_back(summit.pixel + outline.reach[i] * walk.ray(angleOf(i, n)));
   return outline;
 }
-
 namespace {
 
 bool hiddenOrDark(const std::vector<SurfacePoint>& points, const Eigen::Vector3d& eye, bool mayBeHidden, const Light& light,

@@ -28,11 +28,6 @@ double alongNormal(const Polyline& line, const Pixel& p, const Pixel& normal) {
   return std::isfinite(best) ? best : std::nan("");
 }
 
-std::vector<double> rowNorms(const Eigen::MatrixXd& m) {
-  const Eigen::VectorXd norms = m.rowwise().norm();
-  return {norms.begin(), norms.end()};
-}
-
 /// Nearest positive semidefinite matrix.
 Eigen::Matrix3d semidefinite(const Eigen::Matrix3d& s) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(s);
@@ -71,11 +66,6 @@ Eigen::MatrixXd levelSetShiftsPx(const std::vector<Pixel>& points, const Surface
     shifts.row(Eigen::Index(i)) = -change->transpose() / gradient;
   }
   return shifts;
-}
-
-std::vector<double> levelSetSigmaPx(const std::vector<Pixel>& points, const SurfaceField& field, const Camera& camera,
-                                    const Surface& surface, const ColumnSlopes& slopes) {
-  return rowNorms(levelSetShiftsPx(points, field, camera, surface, slopes));
 }
 
 std::vector<Pixel> outwardNormals(const Polyline& contour) {
@@ -121,11 +111,6 @@ Eigen::MatrixXd polylineShiftsPx(const Polyline& contour, const std::vector<std:
     }
   }
   return shifts;
-}
-
-std::vector<double> polylineSigmaPx(const Polyline& contour, const std::vector<std::pair<Polyline, Polyline>>& perturbed,
-                                    double step) {
-  return rowNorms(polylineShiftsPx(contour, perturbed, step));
 }
 
 Eigen::MatrixXd ellipsoidBandShiftsPx(const HighlightModel& model, const ModelFit& fit, const PredictedHighlight& highlight,

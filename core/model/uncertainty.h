@@ -20,17 +20,12 @@ using ColumnSlopes = std::function<std::optional<Eigen::VectorXd>(const SurfaceP
 /// A row of zeros at points that lie on the surface's own edge instead (more than half a pixel from the level), and where the field is undefined.
 Eigen::MatrixXd levelSetShiftsPx(const std::vector<Pixel>& points, const SurfaceField& field, const Camera& camera,
                                  const Surface& surface, const ColumnSlopes& slopes);
-/// Norms of the rows of levelSetShiftsPx: the standard deviation across the level set.
-std::vector<double> levelSetSigmaPx(const std::vector<Pixel>& points, const SurfaceField& field, const Camera& camera,
-                                    const Surface& surface, const ColumnSlopes& slopes);
 
 /// The same for a contour that is predicted point by point: one pair of polylines per column, predicted at plus and minus `step` columns.
 /// The change across the contour of vertex i is that of vertex i where the polylines have equally many vertices (a predicted direction keeps
 /// its number), else the distance along the normal to the perturbed polyline. Positive outwards.
 Eigen::MatrixXd polylineShiftsPx(const Polyline& contour, const std::vector<std::pair<Polyline, Polyline>>& perturbed,
                                  double step);
-std::vector<double> polylineSigmaPx(const Polyline& contour, const std::vector<std::pair<Polyline, Polyline>>& perturbed,
-                                    double step);
 
 /// Unit normals of a closed contour at its vertices, outwards; zero where neighbouring vertices coincide.
 std::vector<Pixel> outwardNormals(const Polyline& contour);

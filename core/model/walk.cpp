@@ -52,6 +52,41 @@ double bracketedRoot(F&& f, double a, double fa, double b, double fb, double tol
   return x;
 }
 
+/// The last three pairs of a search for f(x) = 0, the newest first.
+struct Pairs {
+  double f[3] = {0, 0, 0}, x[3] = {0, 0, 0};
+
+  /// Inverse interpolation at f = 0: the chord first, then the parabola through three pairs.
+  double next(int round) const {
+    const double chord = x[0] - f[0] * (x[0] - x[1]) / (f[0] - f[1]);
+    if (round == 0) return chord;
+    const double second = ((x[0] - x[1]) / (f[0] - f[1]) - (x[1] - x[2]) / (f[1] - f[2])) / (f[0] - f[2]);
+    return chord + f[0] * f[1] * second;
+  }
+  /// f falls: this is not its first crossing.
+  bool falls() const { return !((f[0] - f[1]) * (x[0] - x[1]) >= 0); }
+  void add(double next) {
+    f[2] = f[1], x[2] = x[1];
+    f[1] = f[0], x[1] = x[0];
+    x[0] = next;
+  }
+};
+
+/// The first edge of a closed contour that a line between two pixels crosses; edge k starts at point k.
+std::optional<std::size_t> firstEdgeCrossed(const std::vector<Pixel>& contour, const Pixel& from, const Pixel& to) {
+  double best = 2;
+  std::size_t edge = 0;
+  for (std::size_t k = 0; k < contour.size(); ++k) {
+    const Pixel &p = contour[k], &q = contour[(k + 1) % contour.size()];
+    const Pixel r = to - from, s = q - p, w = p - from;
+    const double denominator = r.x() * s.y() - r.y() * s.x();
+    if (denominator == 0) continue;
+    const double t = (w.x() * s.y() - w.y() * s.x()) / denominator, u = (w.x() * r.y() - w.y() * r.x()) / denominator;
+    if (t > 0 && t <= 1 && u >= -1e-12 && u <= 1 + 1e-12 && t < best) best = t, edge = k;  // a corner belongs to both edges
+  }
+  return best <= 1 ? std::optional(edge) : std::nullopt;
+}
+
 }  // namespace
 
 TangentWalk::TangentWalk(const Surface& surface, const Camera& camera, const BrightestPoint& brightest, const Light& light,
@@ -239,31 +274,23 @@ std::optional<TangentWalk::Reach> TangentWalk::reachOnPatch(const Eigen::Vector3
     const double across = normal.cross(h).squaredNorm(), along = normal.dot(h), alongSquared = along * along;
     return (across * cosine * cosine - alongSquared * sine * sine) / (across + alongSquared) * scale;
   };
-  // Pairs (f, s^2), the newest first; the oldest is P_B itself.
-  double f[3] = {0, above(0), 0}, u[3] = {expected * expected, 0, 0};
-  if (!(f[1] < 0)) return std::nullopt;
-  const double expectedSquared = u[0];
+  // Over s^2; the oldest pair is P_B itself.
+  const double expectedSquared = expected * expected;
+  Pairs pairs{{0, above(0), 0}, {expectedSquared, 0, 0}};
+  if (!(pairs.f[1] < 0)) return std::nullopt;
   for (int i = 0; i < kMost; ++i) {
-    f[0] = above(u[0]);
-    if (!(std::abs(f[0]) < kTrust * limit)) return std::nullopt;
-    if (std::abs(f[0]) <= options_.toleranceRad) {
-      if (i > 0 && !((f[0] - f[1]) * (u[0] - u[1]) >= 0)) return std::nullopt;  // falling: not the first crossing
+    pairs.f[0] = above(pairs.x[0]);
+    if (!(std::abs(pairs.f[0]) < kTrust * limit)) return std::nullopt;
+    if (std::abs(pairs.f[0]) <= options_.toleranceRad) {
+      if (i > 0 && pairs.falls()) return std::nullopt;
       SurfacePoint end;
       end.position = brightest_.point.position + frame * p;
       end.normal = frame * normal.normalized();
-      return Reach{std::sqrt(u[0]), end};
+      return Reach{std::sqrt(pairs.x[0]), end};
     }
-    double next = u[0] - f[0] * (u[0] - u[1]) / (f[0] - f[1]);
-    if (i > 0) {
-      const double second = ((u[0] - u[1]) / (f[0] - f[1]) - (u[1] - u[2]) / (f[1] - f[2])) / (f[0] - f[2]);
-      next += f[0] * f[1] * second;
-    }
+    const double next = pairs.next(i);
     if (!(std::abs(next - expectedSquared) < 2 * kTrust * expectedSquared)) return std::nullopt;
-    u[2] = u[1];
-    f[2] = f[1];
-    u[1] = u[0];
-    f[1] = f[0];
-    u[0] = next;
+    pairs.add(next);
   }
   return std::nullopt;
 }
@@ -276,49 +303,33 @@ Outcome<TangentWalk::Reach> TangentWalk::reachNear(const Eigen::Vector3d& d, dou
     if (std::optional<Reach> reach = reachOnPatch(d, limit, expected)) return *reach;
   const Eigen::Vector3d& origin = brightest_.point.position;
   const double sine = std::sin(limit), cosine = std::cos(limit);
-  // Three pairs (f, s), the newest first; the oldest is P_B itself.
-  double f[3] = {0, 0, 0}, s[3] = {expected, 0, 0};
-  f[1] = sineAbove(brightest_.point, sine, cosine);
+  // Over s; the oldest pair is P_B itself.
+  Pairs pairs{{0, sineAbove(brightest_.point, sine, cosine), 0}, {expected, 0, 0}};
   SurfacePoint at = neighbour;
-  if (f[1] < 0)
+  if (pairs.f[1] < 0)
     for (int i = 0; i < kMost; ++i) {
-      Outcome<SurfacePoint> p = foot(origin + s[0] * d, at);
+      Outcome<SurfacePoint> p = foot(origin + pairs.x[0] * d, at);
       if (!p) break;
-      f[0] = sineAbove(*p, sine, cosine);
-      if (!(std::abs(f[0]) < kTrust * limit)) break;
-      if (std::abs(f[0]) <= options_.toleranceRad) {
-        if (i > 0 && !((f[0] - f[1]) * (s[0] - s[1]) >= 0)) break;  // falling: not the first crossing
-        return Reach{s[0], std::move(*p)};
+      pairs.f[0] = sineAbove(*p, sine, cosine);
+      if (!(std::abs(pairs.f[0]) < kTrust * limit)) break;
+      if (std::abs(pairs.f[0]) <= options_.toleranceRad) {
+        if (i > 0 && pairs.falls()) break;
+        return Reach{pairs.x[0], std::move(*p)};
       }
       at = std::move(*p);
-      // Inverse interpolation at f = 0: the chord first, then the parabola through three pairs.
-      double next = s[0] - f[0] * (s[0] - s[1]) / (f[0] - f[1]);
-      if (i > 0) {
-        const double second = ((s[0] - s[1]) / (f[0] - f[1]) - (s[1] - s[2]) / (f[1] - f[2])) / (f[0] - f[2]);
-        next += f[0] * f[1] * second;
-      }
+      const double next = pairs.next(i);
       if (!(std::abs(next - expected) < kTrust * expected)) break;
-      s[2] = s[1];
-      f[2] = f[1];
-      s[1] = s[0];
-      f[1] = f[0];
-      s[0] = next;
+      pairs.add(next);
     }
   return reachOnSurface(d, limit, scale);
 }
 
 Outcome<TangentWalk::Reach> TangentWalk::reachContour(const Eigen::Vector3d& d, const Polyline& contour, double scale) const {
   const Eigen::Vector3d& origin = brightest_.point.position;
-  const auto& points = contour.points;
-  const std::size_t n = points.size();
-  // The end of the walk is known to the round-off of pixel coordinates, whatever the size of the highlight.
-  double largest = 1;
-  for (const Pixel& p : points) largest = std::max(largest, p.cwiseAbs().maxCoeff());
-  const double roundOffPx = 4 * std::numeric_limits<double>::epsilon() * largest;
-  SurfacePoint at = brightest_.point;
   std::optional<Pixel> from = camera_.project(origin);
   if (!from) return Failure{Reason::BehindCamera, ""};
   if (!contains(contour, *from)) return Failure{Reason::NotReached, "the brightest point lies outside the contour"};
+  SurfacePoint at = brightest_.point;
   double a = 0, step = scale;
   for (int i = 0; i < options_.maxSteps; ++i) {
     double b = a + step;
@@ -331,59 +342,8 @@ Outcome<TangentWalk::Reach> TangentWalk::reachContour(const Eigen::Vector3d& d, 
     if (!next) return next.failure();
     const std::optional<Pixel> to = camera_.project(next->position);
     if (!to) return Failure{Reason::BehindCamera, ""};
-    // First edge crossed by the step's pixels.
-    double best = 2;
-    std::size_t edge = 0;
-    for (std::size_t k = 0; k < n; ++k) {
-      const Pixel &p = points[k], &q = points[(k + 1) % n];
-      const Pixel r = *to - *from, s = q - p, w = p - *from;
-      const double denominator = r.x() * s.y() - r.y() * s.x();
-      if (denominator == 0) continue;
-      const double t = (w.x() * s.y() - w.y() * s.x()) / denominator, u = (w.x() * r.y() - w.y() * r.x()) / denominator;
-      if (t > 0 && t <= 1 && u >= -1e-12 && u <= 1 + 1e-12 && t < best) best = t, edge = k;  // a corner belongs to both edges
-    }
-    if (best <= 1) {
-      // Solve on the line of that edge; when the solution lies on a neighbouring edge instead (the path bends), take that one.
-      SurfacePoint hit = *next;
-      double s = b;
-      for (int move = 0; move < 4; ++move) {
-        const Pixel p = points[edge], q = points[(edge + 1) % n];
-        const Pixel normal(q.y() - p.y(), p.x() - q.x());
-        const double size = normal.norm();
-        if (!(size > 0)) return Failure{Reason::NotConverged, "repeated contour point"};
-        const double sign = normal.dot(*from - p) > 0 ? -1.0 : 1.0;
-        std::optional<Failure> lost;
-        Pixel pixel = *to;
-        const auto f = [&](double x) {
-          const Outcome<SurfacePoint> foot_ = foot(origin + x * d, hit);
-          if (!foot_) {
-            lost = foot_.failure();
-            return std::nan("");
-          }
-          const std::optional<Pixel> here = camera_.project(foot_->position);
-          if (!here) {
-            lost = Failure{Reason::BehindCamera, ""};
-            return std::nan("");
-          }
-          hit = *foot_;
-          pixel = *here;
-          return sign * normal.dot(pixel - p) / size;
-        };
-        const double fa = f(a), fb = f(b);
-        if (lost) return *lost;
-        if (!(fa <= 0 && fb >= 0)) break;  // the line is not crossed within the step: keep the last solution
-        s = bracketedRoot(f, a, fa, b, fb, roundOffPx);
-        if (lost) return *lost;
-        const double u = (pixel - p).dot(q - p) / (q - p).squaredNorm();
-        if (u < 0)
-          edge = (edge + n - 1) % n;
-        else if (u > 1)
-          edge = (edge + 1) % n;
-        else
-          break;
-      }
-      return Reach{s, hit};
-    }
+    if (const std::optional<std::size_t> edge = firstEdgeCrossed(contour.points, *from, *to))
+      return reachOnEdge(d, contour, *edge, {a, b, *from, *to, *next});
     a = b;
     at = *next;
     from = to;
@@ -392,6 +352,46 @@ Outcome<TangentWalk::Reach> TangentWalk::reachContour(const Eigen::Vector3d& d, 
   return Failure{Reason::NotReached, "the walk did not meet the contour"};
 }
 
+Outcome<TangentWalk::Reach> TangentWalk::reachOnEdge(const Eigen::Vector3d& d, const Polyline& contour, std::size_t edge,
+                                                     const Step& step) const {
+  const std::vector<Pixel>& points = contour.points;
+  const std::size_t n = points.size();
+  // The end of the walk is known to the round-off of pixel coordinates, whatever the size of the highlight.
+  double largest = 1;
+  for (const Pixel& p : points) largest = std::max(largest, p.cwiseAbs().maxCoeff());
+  const double roundOffPx = 4 * std::numeric_limits<double>::epsilon() * largest;
+  SurfacePoint hit = step.end;
+  double s = step.b;
+  for (int move = 0; move < 4; ++move) {
+    const Pixel p = points[edge], q = points[(edge + 1) % n];
+    const Pixel normal(q.y() - p.y(), p.x() - q.x());
+    const double size = normal.norm();
+    if (!(size > 0)) return Failure{Reason::NotConverged, "repeated contour point"};
+    const double sign = normal.dot(step.from - p) > 0 ? -1.0 : 1.0;
+    std::optional<Failure> lost;
+    Pixel pixel = step.to;
+    const auto f = [&](double x) {
+      const Outcome<SurfacePoint> foot_ = foot(brightest_.point.position + x * d, hit);
+      const std::optional<Pixel> here = foot_ ? camera_.project(foot_->position) : std::nullopt;
+      if (!here) {
+        lost = foot_ ? Failure{Reason::BehindCamera, ""} : foot_.failure();
+        return std::nan("");
+      }
+      hit = *foot_;
+      pixel = *here;
+      return sign * normal.dot(pixel - p) / size;
+    };
+    const double fa = f(step.a), fb = f(step.b);
+    if (lost) return *lost;
+    if (!(fa <= 0 && fb >= 0)) break;  // the line is not crossed within the step: keep the last solution
+    s = bracketedRoot(f, step.a, fa, step.b, fb, roundOffPx);
+    if (lost) return *lost;
+    const double u = (pixel - p).dot(q - p) / (q - p).squaredNorm();
+    if (!(u < 0 || u > 1)) break;
+    edge = (edge + (u < 0 ? n - 1 : 1)) % n;
+  }
+  return Reach{s, hit};
+}
 double TangentWalk::metresPerPixel() const {
   const double f = std::max(camera_.pixelFromRay(0, 0), camera_.pixelFromRay(1, 1));
   return std::abs(camera_.depth(brightest_.point.position)) / f;

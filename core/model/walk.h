@@ -76,6 +76,15 @@ class TangentWalk {
   double sineAbove(const SurfacePoint& p, double sineLimit, double cosineLimit) const;
   /// reachNear on a local quadric at P_B, by its closed forms; nothing where the general walk has to look.
   std::optional<Reach> reachOnPatch(const Eigen::Vector3d& direction, double limit, double expected) const;
+  /// Part of a walk: distances on T, pixels of the feet at both ends, and the last foot.
+  struct Step {
+    double a, b;
+    Pixel from, to;
+    SurfacePoint end;
+  };
+  /// Where the foot's pixel lies on the line of a contour's edge, within a step that crosses it; on the line of a neighbouring edge
+  /// where the path bends. BehindCamera; NotConverged; the failures of foot().
+  Outcome<Reach> reachOnEdge(const Eigen::Vector3d& direction, const Polyline& contour, std::size_t edge, const Step& step) const;
 
   const Surface& surface_;
   const Camera& camera_;

@@ -191,28 +191,75 @@ bool explainsClearlyBetter(const PixelFit& larger, const PixelFit& smaller) {
   return (smaller.cost - larger.cost) / larger.cost * smaller.independentCells > kBeyondNoise;
 }
 
+namespace {
+
+/// Fewer cells for the search: a lamp with an extent, wide beside its lobe, takes many evaluations a cell.
+void coarsenForSearch(Cells& cells, const LobeModel& start) {
+  cells.coarsen();
+  if (start.lamp.isPoint()) return;
+  while (cells.coarsen()) {
+  }
+  while (evaluationsOf(start, cells.all()) > kMostEvaluations && cells.coarsen(kFewestFrom)) {
+  }
+}
+
+struct FullFit {
+  patch::Attempt attempt;
+  bool blur = false;  ///< shows
+};
+
+/// In full, as far as an extended lamp lets it, then with a blur where it shows. @param iterations  are added
+FullFit solveInFull(PixelProblem& problem, const patch::State& start, const PixelFitOptions& options, int& iterations) {
+  const bool point = start.lamp.isPoint();
+  patch::SolveOptions solving{false, options.maxIterations};
+  solving.progress = options.progress;
+  if (!point) {
+    solving.mostEvaluations = 4 * kMostEvaluations;  // it may grow a little more
+    solving.work = kExtentWork;
+  }
+  FullFit fit{patch::solve(problem, start, solving)};
+  iterations += fit.attempt.iterations;
+  if (!std::isfinite(fit.attempt.cost) || !options.blur || !(point || fit.attempt.converged)) return fit;
+  patch::State blurred = fit.attempt.at;
+  blurred.blurVariance = 1;
+  solving.blur = true;
+  const patch::Attempt b = patch::solve(problem, blurred, solving);
+  iterations += b.iterations;
+  fit.blur = b.cost < (1 - kClearGain) * fit.attempt.cost;
+  if (fit.blur) fit.attempt = b;
+  return fit;
+}
+
+/// What a model leaves in all pixels, so that fits can be compared. False where its lobe does not reach them.
+bool describeAllPixels(const std::vector<const PixelPatch*>& patches, PixelFit& fit) {
+  const patch::Normalised whole = patch::normalised(patches);
+  PixelProblem problem(whole, fit.model.lobe, fit.background);
+  const patch::State at = stateOf(fit.model, whole);
+  problem.chooseRule(at);
+  std::vector<double> residuals(whole.cells);
+  if (!problem.residualsAt(at, residuals.data())) return false;
+  fit.cost = 0;
+  for (const double r : residuals) fit.cost += r * r;
+  fit.cells = static_cast<int>(whole.cells);
+  patch::describeResiduals(problem, fit);
+  return true;
+}
+
+}  // namespace
+
 Outcome<PixelFit> fitPixels(const std::vector<Lobe>& lobes, const std::vector<const PixelPatch*>& patches, const Lamp& lamp,
                             double roughness, const PixelFitOptions& options) {
   require(!lobes.empty() && roughness > 0 && std::isfinite(roughness), "fitPixels: lobes and roughness");
   Cells full(patches), coarse(patches);
   if (full.all().cells < 30)
     return Failure{Reason::TooFewPoints, "only " + std::to_string(full.all().cells) + " pixels can be used"};
-  coarse.coarsen();
-  if (!lamp.isPoint())
-    while (coarse.coarsen()) {
-    }
   const LobeModel first{lobes.front(), roughness, lamp, 0};
-  // A lamp that is wide beside its lobe takes many evaluations a cell: fewer cells then.
-  while (!lamp.isPoint() && evaluationsOf(first, coarse.all()) > kMostEvaluations && coarse.coarsen(kFewestFrom)) {
-  }
+  coarsenForSearch(coarse, first);
   const patch::Normalised& few = coarse.all();
-
   Search search(few, options);
   const std::optional<Search::Candidate> chosen = search.run(lobes, stateOf(first, few));
   if (!chosen) return Failure{Reason::NotConverged, "no lobe reaches the pixels from the contours' light"};
-  int iterations = search.iterations();
 
-  // In full, as far as an extended lamp lets it, then with a blur where it shows.
   const patch::State found = chosen->attempt.at;
   const LobeModel start{chosen->lobe, found.roughness(), inWorld(found, few), 0};
   while (!lamp.isPoint() && evaluationsOf(start, full.all()) > kMostEvaluations &&
@@ -220,44 +267,19 @@ Outcome<PixelFit> fitPixels(const std::vector<Lobe>& lobes, const std::vector<co
   }
   const patch::Normalised& fine = full.all();
   PixelProblem problem(fine, chosen->lobe, chosen->kind);
-  patch::SolveOptions solving{false, options.maxIterations};
-  solving.progress = options.progress;
-  if (!lamp.isPoint()) {
-    solving.mostEvaluations = 4 * kMostEvaluations;  // it may grow a little more
-    solving.work = kExtentWork;
-  }
-  patch::Attempt a = patch::solve(problem, stateOf(start, fine), solving);
-  iterations += a.iterations;
-  if (!std::isfinite(a.cost)) return Failure{Reason::NotConverged, "pixels"};
-  bool blur = false;
-  if (options.blur && (lamp.isPoint() || a.converged)) {
-    patch::State blurred = a.at;
-    blurred.blurVariance = 1;
-    solving.blur = true;
-    const patch::Attempt b = patch::solve(problem, blurred, solving);
-    iterations += b.iterations;
-    if ((blur = b.cost < (1 - kClearGain) * a.cost)) a = b;
-  }
   PixelFit fit;
-  fit.model = {chosen->lobe, a.at.roughness(), inWorld(a.at, fine), a.at.blurVariance};
   fit.background = chosen->kind;
-  fit.iterations = iterations;
-  // All pixels say what it leaves, so that fits can be compared.
-  const patch::Normalised whole = patch::normalised(patches);
-  PixelProblem described(whole, chosen->lobe, chosen->kind);
-  const patch::State at = stateOf(fit.model, whole);
-  described.chooseRule(at);
-  std::vector<double> residuals(whole.cells);
-  if (!described.residualsAt(at, residuals.data())) return Failure{Reason::NotConverged, "pixels"};
-  fit.cost = 0;
-  for (const double r : residuals) fit.cost += r * r;
-  fit.cells = static_cast<int>(whole.cells);
-  patch::describeResiduals(described, fit);
+  fit.iterations = search.iterations();
+  const FullFit best = solveInFull(problem, stateOf(start, fine), options, fit.iterations);
+  const patch::State& at = best.attempt.at;
+  if (!std::isfinite(best.attempt.cost)) return Failure{Reason::NotConverged, "pixels"};
+  fit.model = {chosen->lobe, at.roughness(), inWorld(at, fine), at.blurVariance};
+  if (!describeAllPixels(patches, fit)) return Failure{Reason::NotConverged, "pixels"};
   // The cells that were fitted say how well: joined ones hold the same evidence.
-  problem.chooseRule(a.at);
+  problem.chooseRule(at);
   std::vector<double> fitted(fine.cells);
-  if (!problem.residualsAt(a.at, fitted.data())) return Failure{Reason::NotConverged, "pixels"};
-  patch::describeUncertainty(problem, a.at, blur, fit);
+  if (!problem.residualsAt(at, fitted.data())) return Failure{Reason::NotConverged, "pixels"};
+  patch::describeUncertainty(problem, at, best.blur, fit);
   return fit;
 }
 

@@ -31,6 +31,70 @@ Ellipse around(const Ellipse& e, double level, double by) {
   return wide;
 }
 
+/// Cells over the box with a margin for the blur; all of them without values.
+void placeCells(PixelPatch& patch, const Eigen::AlignedBox2d& box, int width, int height, const PatchOptions& options) {
+  patch.cellPx = std::max(1, static_cast<int>(std::ceil(std::sqrt(box.volume() / options.cells))));
+  const int margin = std::max(1, static_cast<int>(std::ceil(3 * options.blurPx / patch.cellPx))) * patch.cellPx;
+  const double low = (patch.cellPx - 1) / 2.0;  // from the first pixel's centre to the cell's
+  const int left = static_cast<int>(std::floor(std::clamp(box.min().x(), 0.0, width - 1.0))) - margin;
+  const int top = static_cast<int>(std::floor(std::clamp(box.min().y(), 0.0, height - 1.0))) - margin;
+  const int right = static_cast<int>(std::ceil(std::clamp(box.max().x(), 0.0, width - 1.0))) + margin;
+  const int bottom = static_cast<int>(std::ceil(std::clamp(box.max().y(), 0.0, height - 1.0))) + margin;
+  patch.firstCell = Pixel(left + low, top + low);
+  patch.columns = (right - left) / patch.cellPx + 1;
+  patch.rows = (bottom - top) / patch.cellPx + 1;
+  const std::size_t n = static_cast<std::size_t>(patch.columns) * patch.rows;
+  patch.value.assign(n, 0);
+  patch.used.assign(n, 0);
+  patch.onSurface.assign(n, 0);
+  patch.seen.resize(n);
+}
+
+Pixel idealPixelOf(const PixelPatch& patch, int row, int column) {
+  return patch.camera.undistorted(patch.firstCell + patch.cellPx * Pixel(column, row));
+}
+
+/// Joins a cell with what its centre shows; false off the surface.
+bool joinWithSurface(PixelPatch& patch, std::size_t cell, const Pixel& ideal, const Surface& surface) {
+  if (!ideal.allFinite()) return false;
+  const Outcome<SurfacePoint> hit = surface.firstHit(patch.camera.ray(ideal));
+  if (!hit || !hit->position.allFinite() || !hit->normal.allFinite()) return false;
+  const Eigen::Vector3d eye = patch.camera.centreInWorld();
+  const SurfacePoint p = facing(*hit, eye);
+  patch.onSurface[cell] = 1;
+  patch.seen[cell] = {p.position, p.normal, (eye - p.position).normalized()};
+  return true;
+}
+
+/// Mean of a cell's pixels. @return whether all of them lie in the image and may be used
+bool takeMean(PixelPatch& patch, std::size_t cell, int row, int column, const LinearPixels& pixels) {
+  const int width = pixels.value.width, height = pixels.value.height;
+  const Pixel first = patch.firstCell - Pixel::Constant((patch.cellPx - 1) / 2.0);
+  const int x0 = static_cast<int>(first.x()) + column * patch.cellPx, y0 = static_cast<int>(first.y()) + row * patch.cellPx;
+  if (x0 < 0 || y0 < 0 || x0 + patch.cellPx > width || y0 + patch.cellPx > height) return false;
+  double sum = 0;
+  bool whole = true;
+  for (int y = y0; y < y0 + patch.cellPx; ++y)
+    for (int x = x0; x < x0 + patch.cellPx; ++x) {
+      whole = whole && pixels.usable[static_cast<std::size_t>(y) * width + x];
+      sum += pixels.value.at(x, y);
+    }
+  patch.value[cell] = static_cast<float>(sum / (patch.cellPx * patch.cellPx));
+  return whole;
+}
+
+/// A cell at the edge of the object mixes it with what lies behind.
+void dropEdges(PixelPatch& patch) {
+  for (int row = 0; row < patch.rows; ++row)
+    for (int column = 0; column < patch.columns; ++column) {
+      bool inside = row > 0 && column > 0 && row + 1 < patch.rows && column + 1 < patch.columns;
+      for (int dy = -1; dy <= 1 && inside; ++dy)
+        for (int dx = -1; dx <= 1; ++dx)
+          inside = inside && patch.onSurface[static_cast<std::size_t>(row + dy) * patch.columns + column + dx];
+      if (!inside) patch.used[static_cast<std::size_t>(row) * patch.columns + column] = 0;
+    }
+}
+
 }  // namespace
 
 LinearPixels linearPixels(const Image& linear, const Image* mask, double clipValue) {
@@ -67,7 +131,6 @@ Outcome<PixelPatch> pixelPatch(const LinearPixels& pixels, const Camera& camera,
   require(options.reach > 1 && options.cells >= 100 && options.blurPx >= 0, "pixelPatch: options");
   if (!highlight.ellipse) return Failure{Reason::NotSupported, "a highlight without an ellipse"};
   const Ellipse region = around(*highlight.ellipse, highlight.level, options.reach);
-  const int width = pixels.value.width, height = pixels.value.height;
   Eigen::AlignedBox2d box;
   for (const Pixel& p : region.sample(kOutline)) {
     const Pixel measured = camera.distorted(p);
@@ -81,64 +144,23 @@ Outcome<PixelPatch> pixelPatch(const LinearPixels& pixels, const Camera& camera,
   patch.camera = camera;
   patch.peak = highlight.peak;
   patch.radiusPx = highlight.ellipse->semiAxes.mean();
-  patch.cellPx = std::max(1, static_cast<int>(std::ceil(std::sqrt(box.volume() / options.cells))));
-  const int margin = std::max(1, static_cast<int>(std::ceil(3 * options.blurPx / patch.cellPx)));
-  const double low = (patch.cellPx - 1) / 2.0;  // from the first pixel's centre to the cell's
-  const int left = static_cast<int>(std::floor(std::clamp(box.min().x(), 0.0, width - 1.0))) - margin * patch.cellPx;
-  const int top = static_cast<int>(std::floor(std::clamp(box.min().y(), 0.0, height - 1.0))) - margin * patch.cellPx;
-  const int right = static_cast<int>(std::ceil(std::clamp(box.max().x(), 0.0, width - 1.0))) + margin * patch.cellPx;
-  const int bottom = static_cast<int>(std::ceil(std::clamp(box.max().y(), 0.0, height - 1.0))) + margin * patch.cellPx;
-  patch.firstCell = Pixel(left + low, top + low);
-  patch.columns = (right - left) / patch.cellPx + 1;
-  patch.rows = (bottom - top) / patch.cellPx + 1;
-  const std::size_t n = static_cast<std::size_t>(patch.columns) * patch.rows;
-  patch.value.assign(n, 0);
-  patch.used.assign(n, 0);
-  patch.onSurface.assign(n, 0);
-  patch.seen.resize(n);
+  placeCells(patch, box, pixels.value.width, pixels.value.height, options);
 
   std::vector<Ellipse> elsewhere;
   for (const Highlight& o : others)
     if (o.ellipse) elsewhere.push_back(around(*o.ellipse, o.level, kOthersReach));
-  const Eigen::Vector3d eye = camera.centreInWorld();
   for (int row = 0; row < patch.rows; ++row)
     for (int column = 0; column < patch.columns; ++column) {
       const std::size_t i = static_cast<std::size_t>(row) * patch.columns + column;
-      const Pixel ideal = camera.undistorted(patch.firstCell + patch.cellPx * Pixel(column, row));
-      if (!ideal.allFinite()) continue;
-      const Outcome<SurfacePoint> hit = surface.firstHit(camera.ray(ideal));
-      if (!hit || !hit->position.allFinite() || !hit->normal.allFinite()) continue;
-      const SurfacePoint p = facing(*hit, eye);
-      patch.onSurface[i] = 1;
-      patch.seen[i] = {p.position, p.normal, (eye - p.position).normalized()};
-      const int x0 = left + column * patch.cellPx, y0 = top + row * patch.cellPx;
-      if (x0 < 0 || y0 < 0 || x0 + patch.cellPx > width || y0 + patch.cellPx > height) continue;
-      double sum = 0;
-      bool whole = true;
-      for (int y = y0; y < y0 + patch.cellPx; ++y)
-        for (int x = x0; x < x0 + patch.cellPx; ++x) {
-          whole = whole && pixels.usable[static_cast<std::size_t>(y) * width + x];
-          sum += pixels.value.at(x, y);
-        }
-      patch.value[i] = static_cast<float>(sum / (patch.cellPx * patch.cellPx));
-      const bool ofOther =
-          std::any_of(elsewhere.begin(), elsewhere.end(), [&](const Ellipse& e) { return squaredRadius(e, ideal) < 1; });
-      patch.used[i] = whole && !ofOther && squaredRadius(region, ideal) < 1;
+      const Pixel ideal = idealPixelOf(patch, row, column);
+      if (!joinWithSurface(patch, i, ideal, surface) || !takeMean(patch, i, row, column, pixels)) continue;
+      patch.used[i] = squaredRadius(region, ideal) < 1 && std::none_of(elsewhere.begin(), elsewhere.end(), [&](const Ellipse& e) {
+                        return squaredRadius(e, ideal) < 1;
+                      });
     }
-  // A cell at the edge of the object mixes it with what lies behind.
-  std::vector<char> inside(n, 0);
-  for (int row = 1; row + 1 < patch.rows; ++row)
-    for (int column = 1; column + 1 < patch.columns; ++column) {
-      bool all = true;
-      for (int dy = -1; dy <= 1; ++dy)
-        for (int dx = -1; dx <= 1; ++dx)
-          all = all && patch.onSurface[static_cast<std::size_t>(row + dy) * patch.columns + column + dx];
-      inside[static_cast<std::size_t>(row) * patch.columns + column] = all;
-    }
-  for (std::size_t i = 0; i < n; ++i) {
-    patch.used[i] = patch.used[i] && inside[i];
+  dropEdges(patch);
+  for (std::size_t i = 0; i < patch.size(); ++i)
     if (patch.used[i]) patch.top = std::max<double>(patch.top, patch.value[i]);
-  }
   if (patch.usedCells() < kLeastCells)
     return Failure{Reason::TooFewPoints,
                    "only " + std::to_string(patch.usedCells()) + " pixels around the highlight can be used"};
@@ -147,19 +169,11 @@ Outcome<PixelPatch> pixelPatch(const LinearPixels& pixels, const Camera& camera,
 }
 
 PixelPatch onSurface(PixelPatch patch, const Surface& surface) {
-  const Eigen::Vector3d eye = patch.camera.centreInWorld();
   for (int row = 0; row < patch.rows; ++row)
     for (int column = 0; column < patch.columns; ++column) {
       const std::size_t i = static_cast<std::size_t>(row) * patch.columns + column;
-      if (!patch.onSurface[i]) continue;
-      const Pixel ideal = patch.camera.undistorted(patch.firstCell + patch.cellPx * Pixel(column, row));
-      const Outcome<SurfacePoint> hit = surface.firstHit(patch.camera.ray(ideal));
-      if (!hit || !hit->position.allFinite() || !hit->normal.allFinite()) {
+      if (patch.onSurface[i] && !joinWithSurface(patch, i, idealPixelOf(patch, row, column), surface))
         patch.onSurface[i] = patch.used[i] = 0;
-        continue;
-      }
-      const SurfacePoint p = facing(*hit, eye);
-      patch.seen[i] = {p.position, p.normal, (eye - p.position).normalized()};
     }
   return patch;
 }

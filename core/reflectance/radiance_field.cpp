@@ -103,86 +103,121 @@ std::optional<double> RadianceField::at(const Pixel& p) const {
   return hit ? at(*hit) : std::nullopt;
 }
 
-std::optional<RadiancePeak> RadianceField::climb(Pixel p, double marginPx) const {
-  const auto value = [&](const Pixel& q) -> std::optional<double> {
-    return depthInImage(q, image_, marginPx) < 0 ? std::nullopt : at(q);
-  };
-  std::optional<double> here = value(p);
-  if (!here) return std::nullopt;
-  double pattern = kFirstPatternPx;
-  int heading = 0;  // eighths of a turn
-  double stride = kFirstStridePx;
-  for (int step = 0; step < kMaxSteps && pattern > kLeastPatternPx; ++step) {
-    // Beside, above, and two corners: central differences of second order want no more.
-    std::optional<double> f[3][3];
-    bool whole = true;
-    for (const auto& [i, j] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, -1}}) {
-      f[i + 1][j + 1] = value(p + kStencilPx * Pixel(i, j));
-      whole = whole && f[i + 1][j + 1];
-      if (!whole) break;
+namespace {
+
+/// The way uphill in a field, within its image and a margin.
+class Climb {
+ public:
+  Climb(const RadianceField& field, const Eigen::AlignedBox2d& image, double marginPx, const Pixel& start)
+      : field_(field), image_(image), marginPx_(marginPx), p_(start) {}
+
+  /// False where the field is undefined at the start.
+  bool run() {
+    const std::optional<double> first = value(p_);
+    if (!first) return false;
+    here_ = *first;
+    for (; step_ < kMaxSteps && pattern_ > kLeastPatternPx; ++step_) {
+      const Taken taken = newtonStep();
+      if (taken == Taken::AtTop) break;
+      if (taken == Taken::None) searchAround();
     }
-    bool moved = false, last = false;
-    if (whole) {
-      const Eigen::Vector2d gradient(*f[2][1] - *f[0][1], *f[1][2] - *f[1][0]);
-      Eigen::Matrix2d hessian;
-      hessian(0, 0) = *f[2][1] - 2 * *here + *f[0][1];
-      hessian(1, 1) = *f[1][2] - 2 * *here + *f[1][0];
-      hessian(0, 1) = hessian(1, 0) = (*f[2][2] + *f[0][0] - 2 * *here - hessian(0, 0) - hessian(1, 1)) / 2;
-      const bool concave = hessian(0, 0) < 0 && hessian.determinant() > 0;
-      Eigen::Vector2d move =
-          concave ? Eigen::Vector2d(-0.5 * kStencilPx * hessian.ldlt().solve(gradient))
-                  : Eigen::Vector2d(gradient.norm() > 0 ? Eigen::Vector2d(stride * gradient.normalized()) : Pixel(0, 0));
-      if (move.norm() > kLongestStridePx) move *= kLongestStridePx / move.norm();
-      if (concave && move.norm() < kSettledPx) break;
-      for (double share = 1; share > 1e-3; share *= 0.25) {  // shorter: then the model is wrong, not the step too long
-        const std::optional<double> next = value(p + share * move);
-        if (!next || !(*next > *here)) continue;
-        p += share * move;
-        here = next;
-        moved = true;
-        last = concave && share == 1 && move.norm() < kLastMovePx;
-        stride = std::min(share == 1 ? 2 * stride : kFirstStridePx, kLongestStridePx);
-        break;
-      }
-      // Uphill by less than the values' own round-off: this is the top.
-      if (!moved && concave && move.norm() < 1e-3) break;
-    }
-    if (last) break;
-    if (moved) continue;
-    // The field ends in the stencil, or has a kink (flat facets): to better neighbours, closer and closer.
-    for (; !moved && pattern > kLeastPatternPx; pattern *= moved ? 1 : kPatternShrink)
-      for (int tried = 0; tried < 8 && step < kMaxSteps; ++tried) {
-        // The way that led on first, then the ways beside it.
-        const double a = (heading + (tried % 2 ? 1 : -1) * ((tried + 1) / 2)) * M_PI / 4;
-        const Pixel q = p + pattern * Pixel(std::cos(a), std::sin(a));
-        const std::optional<double> next = value(q);
-        if (!next || !(*next > *here)) continue;
-        p = q;
-        here = next;
-        moved = true;
-        heading += (tried % 2 ? 1 : -1) * ((tried + 1) / 2);
-        // The way along the border may be as long as the image.
-        if (tried == 0 && depthInImage(p, image_, marginPx) < kAtBorderPx) pattern = std::min(2 * pattern, kLongestStridePx);
-        tried = -1;
-        ++step;
-      }
+    return true;
   }
-  const std::optional<SurfacePoint> point = visible(p);
-  if (!point) return std::nullopt;
-  RadiancePeak peak{p, *point, *here};
-  if (depthInImage(p, image_, marginPx) < kAtBorderPx) {
-    // At the border of the domain: does the field rise outwards?
+  const Pixel& pixel() const { return p_; }
+  double height() const { return here_; }
+
+  /// At the border of the domain: whether the field rises outwards.
+  bool risesBeyond() const {
+    if (depthInImage(p_, image_, marginPx_) >= kAtBorderPx) return false;
     Pixel outwards(0, 0);
     for (int i = 0; i < 2; ++i) {
-      const double first = image_.min()(i) - marginPx, last = image_.max()(i) + marginPx;
-      outwards(i) = p(i) - first < kAtBorderPx ? -1 : last - p(i) < kAtBorderPx ? 1 : 0;
+      const double first = image_.min()(i) - marginPx_, last = image_.max()(i) + marginPx_;
+      outwards(i) = p_(i) - first < kAtBorderPx ? -1 : last - p_(i) < kAtBorderPx ? 1 : 0;
     }
-    const std::optional<double> beyond = at(Pixel(p + kFirstStridePx * kStencilPx * outwards));
-    peak.cut = beyond && *beyond > *here;
+    const std::optional<double> beyond = field_.at(Pixel(p_ + kFirstStridePx * kStencilPx * outwards));
+    return beyond && *beyond > here_;
   }
-  return peak;
-}
 
+ private:
+  enum class Taken { None, Uphill, AtTop };
+
+  std::optional<double> value(const Pixel& q) const {
+    return depthInImage(q, image_, marginPx_) < 0 ? std::nullopt : field_.at(q);
+  }
+
+  /// Newton's method, or uphill where the field is not concave. None where the field ends nearby or does not rise as it says.
+  Taken newtonStep() {
+    // Beside, above, and two corners: central differences of second order want no more.
+    double f[3][3];
+    for (const auto& [i, j] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, -1}}) {
+      const std::optional<double> v = value(p_ + kStencilPx * Pixel(i, j));
+      if (!v) return Taken::None;
+      f[i + 1][j + 1] = *v;
+    }
+    const Eigen::Vector2d gradient(f[2][1] - f[0][1], f[1][2] - f[1][0]);
+    Eigen::Matrix2d hessian;
+    hessian(0, 0) = f[2][1] - 2 * here_ + f[0][1];
+    hessian(1, 1) = f[1][2] - 2 * here_ + f[1][0];
+    hessian(0, 1) = hessian(1, 0) = (f[2][2] + f[0][0] - 2 * here_ - hessian(0, 0) - hessian(1, 1)) / 2;
+    const bool concave = hessian(0, 0) < 0 && hessian.determinant() > 0;
+    Eigen::Vector2d move =
+        concave ? Eigen::Vector2d(-0.5 * kStencilPx * hessian.ldlt().solve(gradient))
+                : Eigen::Vector2d(gradient.norm() > 0 ? Eigen::Vector2d(stride_ * gradient.normalized()) : Pixel(0, 0));
+    if (move.norm() > kLongestStridePx) move *= kLongestStridePx / move.norm();
+    if (concave && move.norm() < kSettledPx) return Taken::AtTop;
+    for (double share = 1; share > 1e-3; share *= 0.25) {  // shorter: then the model is wrong, not the step too long
+      const std::optional<double> next = value(p_ + share * move);
+      if (!next || !(*next > here_)) continue;
+      p_ += share * move;
+      here_ = *next;
+      stride_ = std::min(share == 1 ? 2 * stride_ : kFirstStridePx, kLongestStridePx);
+      return concave && share == 1 && move.norm() < kLastMovePx ? Taken::AtTop : Taken::Uphill;
+    }
+    // Uphill by less than the values' own round-off: this is the top.
+    return concave && move.norm() < 1e-3 ? Taken::AtTop : Taken::None;
+  }
+
+  /// The field ends in the stencil, or has a kink (flat facets): to better neighbours, closer and closer.
+  void searchAround() {
+    bool moved = false;
+    for (; !moved && pattern_ > kLeastPatternPx; pattern_ *= moved ? 1 : kPatternShrink)
+      for (int tried = 0; tried < 8 && step_ < kMaxSteps; ++tried) {
+        // The way that led on first, then the ways beside it.
+        const int turn = (tried % 2 ? 1 : -1) * ((tried + 1) / 2);
+        const double a = (heading_ + turn) * M_PI / 4;
+        const Pixel q = p_ + pattern_ * Pixel(std::cos(a), std::sin(a));
+        const std::optional<double> next = value(q);
+        if (!next || !(*next > here_)) continue;
+        p_ = q;
+        here_ = *next;
+        moved = true;
+        heading_ += turn;
+        // The way along the border may be as long as the image.
+        if (tried == 0 && depthInImage(p_, image_, marginPx_) < kAtBorderPx) pattern_ = std::min(2 * pattern_, kLongestStridePx);
+        tried = -1;
+        ++step_;
+      }
+  }
+
+  const RadianceField& field_;
+  const Eigen::AlignedBox2d& image_;
+  double marginPx_;
+  Pixel p_;
+  double here_ = 0;  ///< value at p_
+  double pattern_ = kFirstPatternPx, stride_ = kFirstStridePx;
+  int heading_ = 0;  ///< eighths of a turn
+  int step_ = 0;
+};
+
+}  // namespace
+
+std::optional<RadiancePeak> RadianceField::climb(Pixel start, double marginPx) const {
+  Climb climb(*this, image_, marginPx, start);
+  if (!climb.run()) return std::nullopt;
+  const std::optional<SurfacePoint> point = visible(climb.pixel());
+  if (!point) return std::nullopt;
+  return RadiancePeak{climb.pixel(), *point, climb.height(), climb.risesBeyond()};
+}
 double RadianceField::fallOfLobe(const SurfacePoint& p) const {
   const Eigen::Vector3d toCamera = (eye_ - p.position).normalized();
   const Eigen::Vector3d mirrored = reflect(toCamera, p.normal);

@@ -6,7 +6,6 @@
 #include <limits>
 #include <map>
 
-#include "core/base/json_dom.h"
 #include "core/base/median.h"
 #include "core/base/number_text.h"
 #include "core/scene/corrected_files.h"
@@ -17,7 +16,6 @@
 
 namespace glint {
 namespace {
-using Json = nlohmann::ordered_json;
 
 constexpr int kLeastDepthSamples = 20;  // vertices compared with a depth map: fewer may all lie on an edge
 
@@ -324,6 +322,57 @@ class Triangles {
   std::map<std::string, TriangleMesh> read_, made_;
 };
 
+ConventionReport::SurfaceFacts factsOfSurface(const std::string& id, const SurfaceSource& source, const TriangleMesh& mesh,
+                                              ConventionReport& report) {
+  ConventionReport::SurfaceFacts facts;
+  facts.id = id;
+  facts.kind = source.kind();
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3d& v : mesh.vertices) box.extend(v);
+  if (!box.isEmpty()) {
+    facts.lower = box.min();
+    facts.upper = box.max();
+  }
+  facts.vertices = static_cast<int>(mesh.vertices.size());
+  facts.triangles = static_cast<int>(mesh.triangles.size());
+  if (std::get_if<MeshFile>(&source)) {
+    facts.grid = coordinateGrid(mesh.vertices);
+    facts.side = medianSide(mesh);
+    if (const std::string sides = sidesOf(mesh); !sides.empty())
+      report.add("the mesh of surface '" + id + "' has its sides reversed: " + sides +
+                     " (Glint turns normals towards the camera; other programs may not)",
+                 flipFacesCorrection());
+  }
+  facts.hasNormals = !source.hasTriangles() || !mesh.normals.empty();
+  return facts;
+}
+
+ConventionReport::FrameFacts factsOfFrame(int index, const Frame& frame, Triangles& triangles, const ConventionReport& report) {
+  ConventionReport::FrameFacts facts;
+  facts.frame = index;
+  facts.id = frame.id;
+  facts.surface = frame.surface;
+  const Outcome<std::optional<Image>> depth = readDepth(frame);
+  if (!depth) facts.problems.push_back(depth.failure().detail);
+  const std::optional<Image> usable = depth ? *depth : std::nullopt;
+  if (!frame.surface.empty()) {
+    for (const auto& s : report.surfaces)
+      if (s.id == frame.surface) facts.distance = (frame.camera.centreInWorld() - (s.lower + s.upper) / 2).norm();
+    compareVertices(triangles.of(frame.surface), frame, usable, facts);
+  } else if (usable) {
+    facts.seesSurface = std::any_of(usable->data.begin(), usable->data.end(), [](float v) { return v > 0; });
+  }
+  countPixels(frame, facts);
+  if (const auto mask = readMask(frame); !mask) facts.problems.push_back(mask.failure().detail);
+  if (const auto normals = readNormals(frame); !normals) facts.problems.push_back(normals.failure().detail);
+  return facts;
+}
+
+/// Adds findings of one check; its correction belongs to the last of them.
+void addAll(const std::vector<std::string>& findings, const std::optional<Correction>& correction, ConventionReport& report) {
+  for (const std::string& f : findings) report.add(f, &f == &findings.back() ? correction : std::nullopt);
+}
+
 }  // namespace
 
 bool ConventionReport::anyFrameSeesSurface() const {
@@ -346,7 +395,7 @@ std::string ConventionReport::cleanBill() const {
 }
 
 void ConventionReport::take(CameraCheck check) {
-  for (const std::string& f : check.findings) add(f, &f == &check.findings.back() ? check.correction : std::nullopt);
+  addAll(check.findings, check.correction, *this);
   cameras = std::move(check);
 }
 
@@ -366,232 +415,17 @@ ConventionReport conventionReport(const Scene& scene, const ProgressFn& progress
   int done = 0;
   for (const auto& [id, source] : scene.surfaces) {
     if (!glint::report(progress, {"surface", done++, static_cast<int>(scene.surfaces.size())})) throw Stopped{};
-    ConventionReport::SurfaceFacts facts;
-    facts.id = id;
-    facts.kind = source.kind();
-    const TriangleMesh& mesh = triangles.of(id);
-    Eigen::AlignedBox3d box;
-    for (const Eigen::Vector3d& v : mesh.vertices) box.extend(v);
-    if (!box.isEmpty()) {
-      facts.lower = box.min();
-      facts.upper = box.max();
-    }
-    facts.vertices = static_cast<int>(mesh.vertices.size());
-    facts.triangles = static_cast<int>(mesh.triangles.size());
-    if (std::get_if<MeshFile>(&source)) {
-      facts.grid = coordinateGrid(mesh.vertices);
-      facts.side = medianSide(mesh);
-      if (const std::string sides = sidesOf(mesh); !sides.empty())
-        report.add("the mesh of surface '" + id + "' has its sides reversed: " + sides +
-                       " (Glint turns normals towards the camera; other programs may not)",
-                   flipFacesCorrection());
-    }
-    facts.hasNormals = !source.hasTriangles() || !mesh.normals.empty();
-    report.surfaces.push_back(facts);
+    report.surfaces.push_back(factsOfSurface(id, source, triangles.of(id), report));
   }
   for (std::size_t i = 0; i < scene.frames.size(); ++i) {
     if (!glint::report(progress, {"read", static_cast<int>(i), static_cast<int>(scene.frames.size())})) throw Stopped{};
-    const Frame& frame = scene.frames[i];
-    ConventionReport::FrameFacts facts;
-    facts.frame = static_cast<int>(i);
-    facts.id = frame.id;
-    facts.surface = frame.surface;
-    const Outcome<std::optional<Image>> depth = readDepth(frame);
-    if (!depth) facts.problems.push_back(depth.failure().detail);
-    const std::optional<Image> usable = depth ? *depth : std::nullopt;
-    if (!frame.surface.empty()) {
-      for (const auto& s : report.surfaces)
-        if (s.id == frame.surface) facts.distance = (frame.camera.centreInWorld() - (s.lower + s.upper) / 2).norm();
-      compareVertices(triangles.of(frame.surface), frame, usable, facts);
-    } else if (usable) {
-      facts.seesSurface = std::any_of(usable->data.begin(), usable->data.end(), [](float v) { return v > 0; });
-    }
-    countPixels(frame, facts);
-    if (const auto mask = readMask(frame); !mask) facts.problems.push_back(mask.failure().detail);
-    if (const auto normals = readNormals(frame); !normals) facts.problems.push_back(normals.failure().detail);
-    report.frames.push_back(std::move(facts));
+    report.frames.push_back(factsOfFrame(static_cast<int>(i), scene.frames[i], triangles, report));
   }
   conclude(scene, checkSight(scene, [&](const std::string& id) -> const TriangleMesh& { return triangles.of(id); }), report);
   report.tracks = checkTracks(scene, progress);
-  if (report.tracks)
-    for (const std::string& f : report.tracks->findings)
-      report.add(f, &f == &report.tracks->findings.back() ? report.tracks->correction : std::nullopt);
+  if (report.tracks) addAll(report.tracks->findings, report.tracks->correction, report);
   concludeGrids(scene, report);
   return report;
-}
-
-namespace {
-/// How the pixels became linear: a line for each way, with the number of its frames.
-std::string lightLines(const ConventionReport& r) {
-  std::vector<std::pair<std::string, int>> ways;
-  for (const auto& f : r.frames) {
-    if (f.linear.empty()) continue;
-    const std::string way = (f.source == "radiance" ? "radiance, " : "") + f.linear;
-    const auto known = std::find_if(ways.begin(), ways.end(), [&](const auto& w) { return w.first == way; });
-    if (known == ways.end())
-      ways.emplace_back(way, 1);
-    else
-      ++known->second;
-  }
-  std::string out;
-  for (const auto& [way, n] : ways)
-    out += "  light     " + way + (ways.size() > 1 ? formatted(": %d frames", n) : std::string()) + "\n";
-  return out;
-}
-/// What the highlights say about the cameras.
-std::string cameraLines(const CameraCheck& check) {
-  if (check.hypotheses.empty()) return "\n  cameras   not checked with highlights: " + check.whyNot + "\n";
-  std::string out =
-      formatted("\n  cameras   from the highlights of %d frames: mirrored rays pass one lamp by %s; contours fit one light ",
-                check.views, check.missDeg ? formatted("%.2g degrees", *check.missDeg).c_str() : "more than can be measured");
-  std::string separator;
-  constexpr std::size_t kAlwaysListed = 4;  // as given, and mirrored images
-  std::size_t listed = 0, others = 0;
-  for (const CameraCheck::Hypothesis& h : check.hypotheses) {
-    if (!h.rmsPx && listed >= kAlwaysListed) {
-      ++others;
-      continue;
-    }
-    ++listed;
-    out += separator + (h.rmsPx ? formatted("to %.2g px ", *h.rmsPx) : std::string("not at all ")) + "(" + h.change + ")";
-    separator = ", ";
-  }
-  if (others) out += formatted(", not at all (%zu other changes)", others);
-  out += "\n";
-  return out;
-}
-}  // namespace
-
-std::string toText(const ConventionReport& r) {
-  std::string out = r.file + ": " + r.recognisedAs + "\n";
-  out += "  name      " + r.name + "\n";
-  out += formatted("  frames    %zu\n", r.frames.size());
-  out += formatted("  lights    %d (truth, for comparison only)\n", r.lights);
-  out += "  axes      cameras x right, y down, z forward; right-handed world, metres\n";
-  for (const auto& s : r.surfaces)
-    out += "  surface   " + s.id +
-           formatted(": %s, %d vertices, %d triangles, %s normals, box %.4g %.4g %.4g .. %.4g %.4g %.4g\n", s.kind.c_str(),
-                     s.vertices, s.triangles, s.hasNormals ? "with" : "without", s.lower.x(), s.lower.y(), s.lower.z(),
-                     s.upper.x(), s.upper.y(), s.upper.z());
-  out += lightLines(r);
-  out += "\n  frame       surface     inside image      depth - surface: median, 95 %     values: NaN, negative\n";
-  for (const auto& f : r.frames) {
-    std::string line = formatted("  %-11s %-11s ", f.id.c_str(), f.surface.empty() ? "(depth)" : f.surface.c_str());
-    line += f.vertices > 0 ? formatted("%7d of %-7d", f.verticesInImage, f.vertices)
-                           : std::string(f.seesSurface ? "  depth map       " : "  nothing         ");
-    line += f.depthSamples > 0 ? formatted(" %10.3g mm %10.3g mm          ", 1e3 * f.depthMedian, 1e3 * f.depthP95)
-                               : std::string("          -             -          ");
-    line += f.pixels > 0 ? formatted("%8lld %8lld (%s)", f.notFinite, f.negative, f.source.c_str())
-                         : std::string("       -        -");
-    out += line + "\n";
-  }
-  if (r.tracks) {
-    out += formatted("\n  points    %d sparse points", r.tracks->points);
-    out += r.tracks->withTracks
-               ? formatted(", seen %d times: projected %.2g px (median), %.2g px (95 %%) from where they were seen\n",
-                           r.tracks->observations, r.tracks->medianPx, r.tracks->p95Px)
-               : formatted("; which images show them is not said: %d of %d lie inside of one\n", r.tracks->inView,
-                           r.tracks->sampled);
-    if (r.tracks->met > 0)
-      out += formatted("            %d of %d in front of the surface lie on it (depth within 1 %%)\n", r.tracks->onSurface,
-                       r.tracks->met);
-  }
-  if (r.cameras) out += cameraLines(*r.cameras);
-  for (const std::string& f : r.facts) out += "fact: " + f + "\n";
-  for (const std::string& w : r.warnings) out += "warning: " + w + "\n";
-  out += r.findings.empty() ? r.cleanBill() + "\n" : findingsText(r);
-  return out;
-}
-
-std::string findingsText(const ConventionReport& r) {
-  std::string out;
-  for (std::size_t i = 0; i < r.findings.size(); ++i) {
-    out += "finding: " + r.findings[i] + "\n";
-    for (const auto& c : r.corrections)
-      if (c.finding == i) out += "  fix:   glint convert INPUT --fix " + c.correction.fix + " --out corrected.json\n";
-  }
-  return out;
-}
-
-namespace {
-void addFindings(const ConventionReport& r, Json& j) {
-  j["findings"] = r.findings;
-  j["fixes"] = Json::array();
-  for (const auto& c : r.corrections)
-    j["fixes"].push_back({{"finding", c.finding}, {"fix", c.correction.fix}, {"words", c.correction.words}});
-}
-void addConclusions(const ConventionReport& r, Json& j) {
-  j["facts"] = r.facts;
-  j["warnings"] = r.warnings;
-  addFindings(r, j);
-}
-}  // namespace
-
-std::string toJson(const ConventionReport& r) {
-  const auto vector = [](const Eigen::Vector3d& v) { return Json::array({v.x(), v.y(), v.z()}); };
-  const auto vector2 = [](const Eigen::Vector2d& v) { return Json::array({v.x(), v.y()}); };
-  Json j = {{"glint_info", 1}, {"input", r.file}, {"recognised_as", r.recognisedAs}, {"name", r.name}, {"lights", r.lights}};
-  j["surfaces"] = Json::array();
-  for (const auto& s : r.surfaces)
-    j["surfaces"].push_back({{"id", s.id},
-                             {"kind", s.kind},
-                             {"vertices", s.vertices},
-                             {"triangles", s.triangles},
-                             {"normals", s.hasNormals},
-                             {"box", Json::array({vector(s.lower), vector(s.upper)})},
-                             {"grid_m", s.grid ? Json(s.grid->spacing) : Json()}});
-  j["frames"] = Json::array();
-  for (const auto& f : r.frames) {
-    Json one = {{"index", f.frame},
-                {"id", f.id},
-                {"surface", f.surface.empty() ? Json() : Json(f.surface)},
-                {"sees_surface", f.seesSurface},
-                {"vertices", f.vertices},
-                {"vertices_in_front", f.verticesInFront},
-                {"vertices_in_image", f.verticesInImage},
-                {"distance_m", f.distance}};
-    one["depth_difference_m"] =
-        f.depthSamples > 0 ? Json{{"samples", f.depthSamples}, {"median", f.depthMedian}, {"p95", f.depthP95}} : Json();
-    one["source"] = f.source.empty() ? Json() : Json(f.source);
-    one["linear"] = f.linear.empty() ? Json() : Json(f.linear);
-    one["not_finite"] = f.notFinite;
-    one["negative"] = f.negative;
-    one["problems"] = f.problems;
-    j["frames"].push_back(std::move(one));
-  }
-  j["cameras"] = Json();
-  if (r.cameras) {
-    const CameraCheck& c = *r.cameras;
-    Json hypotheses = Json::array();
-    for (const CameraCheck::Hypothesis& h : c.hypotheses)
-      hypotheses.push_back({{"change", h.change}, {"rms_px", h.rmsPx ? Json(*h.rmsPx) : Json()}});
-    j["cameras"] = {{"views", c.views},
-                    {"miss_deg", c.missDeg ? Json(*c.missDeg) : Json()},
-                    {"why_not", c.whyNot.empty() ? Json() : Json(c.whyNot)},
-                    {"hypotheses", std::move(hypotheses)},
-                    {"focal_pct", c.focalPct ? Json(*c.focalPct) : Json()},
-                    {"shift_px", c.shiftPx ? Json(*c.shiftPx) : Json()}};
-  }
-  j["points"] = Json();
-  if (r.tracks)
-    j["points"] = {{"points", r.tracks->points},
-                   {"observations", r.tracks->observations},
-                   {"behind", r.tracks->behind},
-                   {"median_px", r.tracks->withTracks ? Json(r.tracks->medianPx) : Json()},
-                   {"p95_px", r.tracks->withTracks ? Json(r.tracks->p95Px) : Json()},
-                   {"shift_px", r.tracks->withTracks ? vector2(r.tracks->shiftPx) : Json()},
-                   {"in_view", r.tracks->withTracks ? Json() : Json(r.tracks->inView)},
-                   {"met", r.tracks->met},
-                   {"on_surface", r.tracks->onSurface},
-                   {"depth_ratio", r.tracks->depthRatio}};
-  addConclusions(r, j);
-  return json_dom::pretty(j);
-}
-
-std::string withFindings(const std::string& json, const ConventionReport& report) {
-  Json j = Json::parse(json);
-  addFindings(report, j);
-  return json_dom::pretty(j);
 }
 
 }  // namespace glint

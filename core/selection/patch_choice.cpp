@@ -56,93 +56,128 @@ bool sameHighlights(const Prediction& exact, const Prediction& walked) {
          });
 }
 
-}  // namespace
-
-std::optional<PatchChoice> choosePatches(const Inspection& inspection, const HighlightModel& model,
-                                         const std::vector<Fold>& folds, const std::vector<Answer>& exact, double mostPct,
-                                         const ProgressFn& progress) {
-  const Settings& settings = inspection.request.settings;
-  if (!model.walks() || settings.text("predict.query") != "exact") return std::nullopt;
-  Settings onPatches = settings;
-  onPatches.set("predict.query", std::string("local-quadric"));
-  const Clock::time_point start = Clock::now();
-  PatchChoice c;
-  c.variation = c.meanPct = c.predictUs = c.exactUs = std::nan("");
-  const auto decided = [&](bool goodEnough, const std::string& why) {
-    c.goodEnough = goodEnough;
-    c.timeUs = microsecondsSince(start);
-    c.why = (goodEnough ? "Walks on local quadrics are good enough: " : "Walks stay exact: ") + why + " (found in " +
-            formatted("%.3g ms).", c.timeUs * 1e-3);
-    return c;
-  };
-  const auto tooCurved = [&] { return c.variation > kLargestVariation; };
-  const auto curved = [&](const std::string& id) {
-    return decided(false, "over the highlight of frame " + id + " the curvature varies by " + formatted("%.2g", c.variation) +
-                              ", and local quadrics are good enough up to " + formatted("%g", kLargestVariation));
-  };
-  const auto checkStop = [&](int done, int total) {
-    if (!report(progress, {"local quadrics", done, total})) throw Stopped{};
-  };
-
-  double sum = 0;
-  std::vector<std::size_t> timed;
-  for (std::size_t i = 0; i < folds.size(); ++i) {
-    if (!exact[i].errorPct) continue;
-    checkStop(static_cast<int>(i), static_cast<int>(folds.size()));
-    const std::string& id = inspection.scene->frames[folds[i].left.frame].id;
-    const Answer a = predictLeft(folds[i], model, *exact[i].fit, onPatches);
-    if (std::isnan(a.variation) && a.highlights > 0) return std::nullopt;  // this fit is not walked, as with a long light
-    ++c.views;
-    c.variation = std::fmax(c.variation, a.variation);
-    if (tooCurved()) return curved(id);
-    if (!a.errorPct) return decided(false, "on local quadrics frame " + id + " has no prediction: " + a.failure->message());
-    if (a.highlights != exact[i].highlights || a.coverage < exact[i].coverage)
-      return decided(false, "in frame " + id + " local quadrics do not give the same highlights");
-    sum += *a.errorPct;
-    if (timed.size() < kTimedViews) timed.push_back(i);
-  }
-  if (c.views == 0) return std::nullopt;
-
-  for (const Other& o : othersOf(inspection, folds, exact)) {
-    checkStop(c.views, c.views);
-    const Frame& frame = inspection.scene->frames[o.frame];
-    const Outcome<std::shared_ptr<const Surface>> surface = surfaceFor(inspection, o.frame, o.light);
-    if (!surface) continue;  // no prediction of any kind
-    const Prediction walked = model.predict(*o.fit, frame.camera, surface->get(), onPatches);
-    ++c.others;
-    c.variation = std::fmax(c.variation, variationOf(walked));
-    if (tooCurved()) return curved(frame.id);
-    const Prediction whole = model.predict(*o.fit, frame.camera, surface->get(), settings);
-    if (!sameHighlights(whole, walked))
-      return decided(false, "in frame " + frame.id + ", a frame to predict, local quadrics do not give the same highlights");
+/// Holds walks on local quadrics against exact ones; each check decides, or leaves it to the next.
+class PatchTrial {
+ public:
+  PatchTrial(const Inspection& inspection, const HighlightModel& model, const std::vector<Fold>& folds,
+             const std::vector<Answer>& exact, const ProgressFn& progress)
+      : inspection_(inspection), model_(model), folds_(folds), exact_(exact), progress_(progress) {
+    onPatches_.set("predict.query", std::string("local-quadric"));
+    c_.variation = c_.meanPct = c_.predictUs = c_.exactUs = std::nan("");
   }
 
-  c.meanPct = sum / c.views;
-  if (c.meanPct > mostPct)
-    return decided(false, "on local quadrics the leave-one-out error is " + percentText(c.meanPct) + ", above the " +
-                              percentText(mostPct) + " that the rule allows");
+  std::optional<PatchChoice> run(double mostPct) {
+    if (std::optional<PatchChoice> decision = onLeftOutViews()) return decision;
+    if (c_.views == 0) return std::nullopt;
+    if (std::optional<PatchChoice> decision = onOthers()) return decision;
+    c_.meanPct = sumPct_ / c_.views;
+    if (c_.meanPct > mostPct)
+      return decided(false, "on local quadrics the leave-one-out error is " + percentText(c_.meanPct) + ", above the " +
+                                percentText(mostPct) + " that the rule allows");
+    // For the report alone, so that a choice is the same on every machine.
+    c_.predictUs = medianTime(onPatches_);
+    c_.exactUs = medianTime(settings_);
+    const std::string times =
+        formatted("%.3g us", c_.predictUs) + " instead of " + formatted("%.3g us", c_.exactUs) + " per prediction";
+    return decided(true, "over a highlight the curvature varies by at most " + formatted("%.2g", c_.variation) + " (limit " +
+                             formatted("%g", kLargestVariation) + "), the leave-one-out error is " + percentText(c_.meanPct) +
+                             " (the rule allows " + percentText(mostPct) + "), and they take " + times);
+  }
 
-  // For the report alone, so that a choice is the same on every machine. Folds run side by side; these times are of one thread.
-  const auto timeOf = [&](const Settings& how) {
+ private:
+  /// Leaves `views` at 0 where nothing is walked.
+  std::optional<PatchChoice> onLeftOutViews() {
+    for (std::size_t i = 0; i < folds_.size(); ++i) {
+      if (!exact_[i].errorPct) continue;
+      checkStop(static_cast<int>(i), static_cast<int>(folds_.size()));
+      const std::string& id = inspection_.scene->frames[folds_[i].left.frame].id;
+      const Answer a = predictLeft(folds_[i], model_, *exact_[i].fit, onPatches_);
+      if (std::isnan(a.variation) && a.highlights > 0) {  // this fit is not walked, as with a long light
+        c_.views = 0;
+        return std::nullopt;
+      }
+      ++c_.views;
+      if (tooCurved(a.variation)) return curved(id);
+      if (!a.errorPct) return decided(false, "on local quadrics frame " + id + " has no prediction: " + a.failure->message());
+      if (a.highlights != exact_[i].highlights || a.coverage < exact_[i].coverage)
+        return decided(false, "in frame " + id + " local quadrics do not give the same highlights");
+      sumPct_ += *a.errorPct;
+      if (timed_.size() < kTimedViews) timed_.push_back(i);
+    }
+    return std::nullopt;
+  }
+
+  /// On frames to predict, against what exact walks predict there.
+  std::optional<PatchChoice> onOthers() {
+    for (const Other& o : othersOf(inspection_, folds_, exact_)) {
+      checkStop(c_.views, c_.views);
+      const Frame& frame = inspection_.scene->frames[o.frame];
+      const Outcome<std::shared_ptr<const Surface>> surface = surfaceFor(inspection_, o.frame, o.light);
+      if (!surface) continue;  // no prediction of any kind
+      const Prediction walked = model_.predict(*o.fit, frame.camera, surface->get(), onPatches_);
+      ++c_.others;
+      if (tooCurved(variationOf(walked))) return curved(frame.id);
+      const Prediction whole = model_.predict(*o.fit, frame.camera, surface->get(), settings_);
+      if (!sameHighlights(whole, walked))
+        return decided(false, "in frame " + frame.id + ", a frame to predict, local quadrics do not give the same highlights");
+    }
+    return std::nullopt;
+  }
+
+  /// The time of one prediction, us. Folds run side by side; these times are of one thread.
+  double medianTime(const Settings& how) const {
     std::vector<double> times;
-    for (const std::size_t i : timed) {
+    for (const std::size_t i : timed_) {
       double shortest = std::numeric_limits<double>::infinity();
       for (int r = 0; r < kTimedRepeats; ++r) {
         const Clock::time_point now = Clock::now();
-        model.predict(*exact[i].fit, folds[i].left.camera, folds[i].leftSurface.get(), how);
+        model_.predict(*exact_[i].fit, folds_[i].left.camera, folds_[i].leftSurface.get(), how);
         shortest = std::min(shortest, microsecondsSince(now));
       }
       times.push_back(shortest);
     }
     return statisticOf(times).median;
-  };
-  c.predictUs = timeOf(onPatches);
-  c.exactUs = timeOf(settings);
-  const std::string times =
-      formatted("%.3g us", c.predictUs) + " instead of " + formatted("%.3g us", c.exactUs) + " per prediction";
-  return decided(true, "over a highlight the curvature varies by at most " + formatted("%.2g", c.variation) + " (limit " +
-                           formatted("%g", kLargestVariation) + "), the leave-one-out error is " + percentText(c.meanPct) +
-                           " (the rule allows " + percentText(mostPct) + "), and they take " + times);
+  }
+
+  PatchChoice decided(bool goodEnough, const std::string& why) {
+    c_.goodEnough = goodEnough;
+    c_.timeUs = microsecondsSince(start_);
+    c_.why = (goodEnough ? "Walks on local quadrics are good enough: " : "Walks stay exact: ") + why + " (found in " +
+             formatted("%.3g ms).", c_.timeUs * 1e-3);
+    return c_;
+  }
+  bool tooCurved(double variation) {
+    c_.variation = std::fmax(c_.variation, variation);
+    return c_.variation > kLargestVariation;
+  }
+  PatchChoice curved(const std::string& id) {
+    return decided(false, "over the highlight of frame " + id + " the curvature varies by " + formatted("%.2g", c_.variation) +
+                              ", and local quadrics are good enough up to " + formatted("%g", kLargestVariation));
+  }
+  void checkStop(int done, int total) const {
+    if (!report(progress_, {"local quadrics", done, total})) throw Stopped{};
+  }
+
+  const Inspection& inspection_;
+  const HighlightModel& model_;
+  const std::vector<Fold>& folds_;
+  const std::vector<Answer>& exact_;
+  const ProgressFn& progress_;
+  const Settings& settings_ = inspection_.request.settings;
+  Settings onPatches_ = settings_;
+  Clock::time_point start_ = Clock::now();
+  std::vector<std::size_t> timed_;  ///< folds
+  double sumPct_ = 0;               ///< on local quadrics, of the views
+  PatchChoice c_;
+};
+
+}  // namespace
+
+std::optional<PatchChoice> choosePatches(const Inspection& inspection, const HighlightModel& model,
+                                         const std::vector<Fold>& folds, const std::vector<Answer>& exact, double mostPct,
+                                         const ProgressFn& progress) {
+  if (!model.walks() || inspection.request.settings.text("predict.query") != "exact") return std::nullopt;
+  return PatchTrial(inspection, model, folds, exact, progress).run(mostPct);
 }
 
 }  // namespace glint

@@ -264,10 +264,8 @@ struct Window {
   bool empty() const { return !((max - min).minCoeff() > 0); }
 };
 
-Window windowOf(const Surface& surface, const Camera& camera, double marginFraction) {
-  const Eigen::AlignedBox2d image = seenWindow(camera);
-  const Vector2d size = image.sizes();
-  Window window{image.min() - marginFraction * size, image.max() + marginFraction * size};
+/// @param window  the image with its margin
+Window windowOf(const Surface& surface, const Camera& camera, Window window) {
   const Eigen::AlignedBox3d box = surface.bounds();
   if (!box.sizes().allFinite()) return window;
   Eigen::AlignedBox2d seen;
@@ -296,75 +294,88 @@ std::optional<Vector3d> linearZero(const Vector2d& a, const Vector2d& b, const V
   return w;
 }
 
-std::vector<Seed> gridSeeds(const Sighting& sighting, const Window& window, double step, int& hits) {
-  // Fine across a surface that is seen edge on, but not as fine along it.
-  const auto nodesAlong = [&](double length) { return 1 + static_cast<int>(std::min(std::ceil(length / step), kMostCells)); };
-  const int nx = nodesAlong(window.max.x() - window.min.x()), ny = nodesAlong(window.max.y() - window.min.y());
-  const Vector2d cell((window.max.x() - window.min.x()) / (nx - 1), (window.max.y() - window.min.y()) / (ny - 1));
-  const Matrix3d worldFromPixel = sighting.camera.camFromWorld.linear().transpose() *
-                                  sighting.camera.pixelFromRay.triangularView<Eigen::Upper>().solve(Matrix3d::Identity());
-  std::vector<Ray> rays(static_cast<std::size_t>(nx) * ny);
-  const auto pixelOf = [&](int i, int j) { return Pixel(window.min.x() + i * cell.x(), window.min.y() + j * cell.y()); };
-  for (int j = 0; j < ny; ++j)
-    for (int i = 0; i < nx; ++i) rays[j * nx + i] = {sighting.eye, (worldFromPixel * pixelOf(i, j).homogeneous()).normalized()};
-  const std::vector<std::optional<SurfacePoint>> found = sighting.surface.approximateHits(rays);
+/// The tangential part of H over a grid of rays, in the camera's x and y axes: continuous, zero only where H is along N.
+class SeedGrid {
+ public:
+  SeedGrid(const Sighting& sighting, const Window& window, double step) : min_(window.min) {
+    // Fine across a surface that is seen edge on, but not as fine along it.
+    const auto nodesAlong = [&](double length) { return 1 + static_cast<int>(std::min(std::ceil(length / step), kMostCells)); };
+    nx_ = nodesAlong(window.max.x() - window.min.x()), ny_ = nodesAlong(window.max.y() - window.min.y());
+    cell_ = {(window.max.x() - window.min.x()) / (nx_ - 1), (window.max.y() - window.min.y()) / (ny_ - 1)};
+    const Matrix3d worldFromPixel = sighting.camera.camFromWorld.linear().transpose() *
+                                    sighting.camera.pixelFromRay.triangularView<Eigen::Upper>().solve(Matrix3d::Identity());
+    std::vector<Ray> rays;
+    for (int n = 0; n < nx_ * ny_; ++n) rays.push_back({sighting.eye, (worldFromPixel * pixelOf(n).homogeneous()).normalized()});
+    found_ = sighting.surface.approximateHits(rays);
+    nodes_.resize(rays.size());
+    const Vector3d axisX = sighting.camera.camFromWorld.linear().row(0), axisY = sighting.camera.camFromWorld.linear().row(1);
+    for (std::size_t n = 0; n < nodes_.size(); ++n) {
+      if (!found_[n]) continue;
+      const SurfacePoint p = facing(*found_[n], sighting.eye);
+      const Shading s = sighting.shade(p);
+      const double alpha = s.alpha();
+      if (!std::isfinite(alpha)) continue;
+      const Vector3d tangential = s.h - s.cosine * p.normal;
+      nodes_[n] = {{tangential.dot(axisX), tangential.dot(axisY)}, alpha};
+    }
+  }
 
-  // Tangential part of H in the camera's x and y axes: continuous over the picture, zero only where H is along N.
+  bool hits() const {
+    return std::any_of(found_.begin(), found_.end(), [](const auto& p) { return p.has_value(); });
+  }
+
+  /// Nodes next to a zero of the part's linear interpolation, and those lower than their neighbours; the lowest first.
+  std::vector<Seed> seeds() const {
+    std::vector<Seed> seeds;
+    std::vector<char> taken(nodes_.size(), 0);
+    addZeros(seeds, taken);
+    for (int n = 0; n < nx_ * ny_; ++n)
+      if (!taken[n] && isLowest(n % nx_, n / nx_)) seeds.push_back({*found_[n], nodes_[n].alpha, std::nullopt});
+    std::stable_sort(seeds.begin(), seeds.end(), [](const Seed& a, const Seed& b) { return a.alpha < b.alpha; });
+    if (seeds.size() > kMaxSeeds) seeds.resize(kMaxSeeds);
+    return seeds;
+  }
+
+ private:
   struct Node {
     Vector2d g;
     double alpha = std::numeric_limits<double>::infinity();
   };
-  std::vector<Node> nodes(rays.size());
-  const Vector3d axisX = sighting.camera.camFromWorld.linear().row(0), axisY = sighting.camera.camFromWorld.linear().row(1);
-  hits = 0;
-  for (std::size_t n = 0; n < nodes.size(); ++n) {
-    if (!found[n]) continue;
-    ++hits;
-    const SurfacePoint p = facing(*found[n], sighting.eye);
-    const Shading s = sighting.shade(p);
-    const double alpha = s.alpha();
-    if (!std::isfinite(alpha)) continue;
-    const Vector3d tangential = s.h - s.cosine * p.normal;
-    nodes[n].g = {tangential.dot(axisX), tangential.dot(axisY)};
-    nodes[n].alpha = alpha;
+  Pixel pixelOf(int n) const { return {min_.x() + (n % nx_) * cell_.x(), min_.y() + (n / nx_) * cell_.y()}; }
+
+  void addZeros(std::vector<Seed>& seeds, std::vector<char>& taken) const {
+    for (int j = 0; j + 1 < ny_; ++j)
+      for (int i = 0; i + 1 < nx_; ++i) {
+        const int n = j * nx_ + i;
+        for (const auto& corner : {std::array<int, 3>{n, n + 1, n + nx_ + 1}, std::array<int, 3>{n, n + nx_ + 1, n + nx_}}) {
+          const Node &a = nodes_[corner[0]], &b = nodes_[corner[1]], &c = nodes_[corner[2]];
+          if (!std::isfinite(a.alpha + b.alpha + c.alpha)) continue;
+          const std::optional<Vector3d> w = linearZero(a.g, b.g, c.g);
+          if (!w) continue;
+          Pixel zero(0, 0);
+          for (int k = 0; k < 3; ++k) zero += (*w)[k] * pixelOf(corner[k]);
+          Eigen::Index best = 0;
+          w->maxCoeff(&best);
+          taken[corner[best]] = 1;
+          seeds.push_back({*found_[corner[best]], nodes_[corner[best]].alpha, zero});
+        }
+      }
   }
 
-  std::vector<char> taken(nodes.size(), 0);
-  std::vector<Seed> seeds;
-  const auto add = [&](int node, std::optional<Pixel> zero) {
-    if (taken[node] && !zero) return;
-    taken[node] = 1;
-    seeds.push_back({*found[node], nodes[node].alpha, zero});
-  };
-  for (int j = 0; j + 1 < ny; ++j)
-    for (int i = 0; i + 1 < nx; ++i) {
-      const int n = j * nx + i;
-      for (const auto& corner : {std::array<int, 3>{n, n + 1, n + nx + 1}, std::array<int, 3>{n, n + nx + 1, n + nx}}) {
-        if (!std::isfinite(nodes[corner[0]].alpha + nodes[corner[1]].alpha + nodes[corner[2]].alpha)) continue;
-        const std::optional<Vector3d> w = linearZero(nodes[corner[0]].g, nodes[corner[1]].g, nodes[corner[2]].g);
-        if (!w) continue;
-        Pixel zero(0, 0);
-        for (int k = 0; k < 3; ++k) zero += (*w)[k] * pixelOf(corner[k] % nx, corner[k] / nx);
-        Eigen::Index best = 0;
-        w->maxCoeff(&best);
-        add(corner[best], zero);
-      }
-    }
-  for (int j = 0; j < ny; ++j)
-    for (int i = 0; i < nx; ++i) {
-      const double here = nodes[j * nx + i].alpha;
-      if (!std::isfinite(here)) continue;
-      bool lowest = true;
-      for (int y = std::max(0, j - 1); y <= std::min(ny - 1, j + 1) && lowest; ++y)
-        for (int x = std::max(0, i - 1); x <= std::min(nx - 1, i + 1); ++x)
-          if (nodes[y * nx + x].alpha < here) lowest = false;
-      if (lowest) add(j * nx + i, std::nullopt);
-    }
-  std::stable_sort(seeds.begin(), seeds.end(), [](const Seed& a, const Seed& b) { return a.alpha < b.alpha; });
-  if (seeds.size() > kMaxSeeds) seeds.resize(kMaxSeeds);
-  return seeds;
-}
+  bool isLowest(int i, int j) const {
+    const double here = nodes_[j * nx_ + i].alpha;
+    if (!std::isfinite(here)) return false;
+    for (int y = std::max(0, j - 1); y <= std::min(ny_ - 1, j + 1); ++y)
+      for (int x = std::max(0, i - 1); x <= std::min(nx_ - 1, i + 1); ++x)
+        if (nodes_[y * nx_ + x].alpha < here) return false;
+    return true;
+  }
 
+  Pixel min_, cell_;
+  int nx_, ny_;
+  std::vector<std::optional<SurfacePoint>> found_;
+  std::vector<Node> nodes_;
+};
 /// Why candidates were turned down, for the detail of the failure.
 struct Rejected {
   int notVisible = 0, notLit = 0, outside = 0, edge = 0;
@@ -551,7 +562,7 @@ Outcome<std::vector<BrightestPoint>> predictedBrightestPoints(const Surface& sur
   const Eigen::AlignedBox2d photograph = seenWindow(camera);
   const Vector2d size = photograph.sizes();
   const Window image{photograph.min() - options.marginFraction * size, photograph.max() + options.marginFraction * size};
-  const Window window = windowOf(surface, camera, options.marginFraction);
+  const Window window = windowOf(surface, camera, image);
   if (window.empty()) return Failure{Reason::NoBrightestPoint, "off the surface: it is outside the image and its margin"};
   // A surface that is small in the picture still gets a grid of about 8 cells across.
   const double step = std::clamp((window.max - window.min).minCoeff() / 8, 1e-3, options.seedStepPx);
@@ -574,13 +585,13 @@ Outcome<std::vector<BrightestPoint>> predictedBrightestPoints(const Surface& sur
         finder.polishPlaces(std::move(*places));
         if (finder.found()) return std::move(finder).result(true);
       }
-    int hits = 0;
-    for (const Seed& seed : gridSeeds(sighting, window, step, hits)) {
+    const SeedGrid grid(sighting, window, step);
+    for (const Seed& seed : grid.seeds()) {
       // Another seed has led to where this one points: solutions closer than a third of a cell are the twin search's work.
       if (seed.zero && finder.alreadyFoundNear(*seed.zero, 0.34 * step)) continue;
       finder.polish(seed.point);
     }
-    anyHit = anyHit || hits > 0;
+    anyHit = anyHit || grid.hits();
   }
   return std::move(finder).result(anyHit);
 }

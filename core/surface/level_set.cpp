@@ -431,6 +431,38 @@ std::optional<Component> traceAround(const PixelField& field, const PixelFieldBa
   return std::nullopt;
 }
 
+/// Lowers the minimum of components that contain a place with a lower value. @return whether any contains it
+bool lowerMinima(std::vector<Component>& components, const Pixel& p, double value) {
+  bool known = false;
+  for (Component& c : components) {
+    if (!contains(c.outline(), p)) continue;
+    known = true;
+    if (value < c.minimum) c.minimum = value, c.minimumAt = p;
+  }
+  return known;
+}
+
+/// Outlines as smooth as asked for, the largest first.
+std::vector<LevelSetComponent> refined(const std::vector<Component>& components, const Region& region,
+                                       const LevelSetOptions& options) {
+  std::vector<LevelSetComponent> result;
+  Splitter splitter(region, options);
+  for (const Component& c : components) {
+    LevelSetComponent out;
+    for (const Vertex& v : splitter.refined(c.vertices)) {
+      out.outline.points.push_back(v.p);
+      out.onBorder.push_back(v.border);
+    }
+    out.minimum = c.minimum + region.level();
+    out.minimumAt = c.minimumAt;
+    if (out.outline.points.size() >= 3) result.push_back(std::move(out));
+  }
+  std::stable_sort(result.begin(), result.end(), [](const LevelSetComponent& a, const LevelSetComponent& b) {
+    return std::abs(signedArea(a.outline)) > std::abs(signedArea(b.outline));
+  });
+  return result;
+}
+
 }  // namespace
 
 std::vector<LevelSetComponent> traceLevelSets(const PixelField& field, const PixelFieldBatch& batch, double level, int width,
@@ -464,48 +496,20 @@ std::vector<LevelSetComponent> traceLevelSets(const PixelField& field, const Pix
   for (const Pixel& p : todo) {
     const std::optional<double> value = region.at(p);
     if (!value || !(*value < 0)) continue;
-    bool known = false;
-    for (Component& c : components)
-      if (contains(c.outline(), p)) {
-        known = true;
-        if (*value < c.minimum) {
-          c.minimum = *value;
-          c.minimumAt = p;
-        }
-      }
-    if (known) continue;
+    if (lowerMinima(components, p, *value)) continue;
     const auto [smallest, largest] = reachFrom(region, p, 8 * options.gridStepPx);
     // At most 64 cells along the region and at least four across it; 1e-3 px as in reachFrom.
     const double step = std::clamp(smallest / 4, std::max(largest / 64, 1e-3), options.gridStepPx);
     const Eigen::Vector2d half = Eigen::Vector2d::Constant(1.2 * largest + 3 * step);
     std::optional<Component> c = traceAround(field, batch, level, domain, p, step, Box(p - half, p + half), options.tolerancePx);
     if (!c) continue;
-    if (*value < c->minimum) {
-      c->minimum = *value;
-      c->minimumAt = p;
-    }
+    if (*value < c->minimum) c->minimum = *value, c->minimumAt = p;
     // What the finer grid shows to be one part replaces the pieces seen before.
     const Polyline outline = c->outline();
     std::erase_if(components, [&](const Component& old) { return contains(outline, old.minimumAt); });
     components.push_back(std::move(*c));
   }
-
-  std::vector<LevelSetComponent> result;
-  Splitter splitter(region, options);
-  for (const Component& c : components) {
-    LevelSetComponent out;
-    for (const Vertex& v : splitter.refined(c.vertices)) {
-      out.outline.points.push_back(v.p);
-      out.onBorder.push_back(v.border);
-    }
-    out.minimum = c.minimum + level;
-    out.minimumAt = c.minimumAt;
-    if (out.outline.points.size() >= 3) result.push_back(std::move(out));
-  }
-  std::stable_sort(result.begin(), result.end(), [](const LevelSetComponent& a, const LevelSetComponent& b) {
-    return std::abs(signedArea(a.outline)) > std::abs(signedArea(b.outline));
-  });
-  return result;
+  return refined(components, region, options);
 }
 
 }  // namespace glint

@@ -38,16 +38,9 @@ Vector3d faceVector(const TriangleMesh& mesh, const Vector3i& t) {
   return (mesh.vertices[t.y()] - mesh.vertices[t.x()]).cross(mesh.vertices[t.z()] - mesh.vertices[t.x()]);
 }
 
-}  // namespace
-
-MeshTopology topologyOf(const TriangleMesh& mesh) {
+/// Drops triangles without a normal, and those that repeat another one.
+void dropBadTriangles(const TriangleMesh& mesh, const std::vector<int>& welded, MeshTopology& topology) {
   const int count = static_cast<int>(mesh.triangles.size());
-  const std::vector<int> welded = weld(mesh.vertices);
-  MeshTopology topology;
-  topology.alive.assign(count, 1);
-  topology.turned.assign(count, 0);
-  topology.neighbours.assign(count, Vector3i(-1, -1, -1));
-
   std::vector<std::pair<std::array<int, 3>, int>> keys(count);
   for (int i = 0; i < count; ++i) {
     const Vector3i& t = mesh.triangles[i];
@@ -62,12 +55,19 @@ MeshTopology topologyOf(const TriangleMesh& mesh) {
   std::sort(keys.begin(), keys.end());
   for (int i = 1; i < count; ++i)
     if (keys[i].first == keys[i - 1].first) topology.alive[keys[i].second] = 0;
+}
 
+/// For each side of a triangle whether its neighbour winds the other way.
+using Opposed = std::vector<std::array<char, 3>>;
+
+/// Joins triangles over edges that two of them share.
+Opposed joinNeighbours(const TriangleMesh& mesh, const std::vector<int>& welded, MeshTopology& topology) {
   struct HalfEdge {
     std::uint64_t key;
     int triangle;
     std::int8_t corner, forward;
   };
+  const int count = static_cast<int>(mesh.triangles.size());
   std::vector<HalfEdge> edges;
   edges.reserve(3 * static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) {
@@ -80,7 +80,7 @@ MeshTopology topologyOf(const TriangleMesh& mesh) {
   }
   std::sort(edges.begin(), edges.end(),
             [](const HalfEdge& a, const HalfEdge& b) { return a.key != b.key ? a.key < b.key : a.triangle < b.triangle; });
-  std::vector<std::array<char, 3>> opposed(count, {0, 0, 0});  // the neighbour winds the other way
+  Opposed opposed(count, {0, 0, 0});
   for (std::size_t i = 0; i < edges.size();) {
     std::size_t end = i + 1;
     while (end < edges.size() && edges[end].key == edges[i].key) ++end;
@@ -92,12 +92,16 @@ MeshTopology topologyOf(const TriangleMesh& mesh) {
     }
     i = end;
   }
+  return opposed;
+}
 
-  std::vector<char> seen(count, 0);
+/// Turns each part to one side, the one that most of its triangles have.
+void turnParts(const Opposed& opposed, MeshTopology& topology) {
+  std::vector<char> seen(opposed.size(), 0);
   std::vector<int> part;
-  for (int start = 0; start < count; ++start) {
+  for (std::size_t start = 0; start < opposed.size(); ++start) {
     if (seen[start] || !topology.alive[start]) continue;
-    part.assign(1, start);
+    part.assign(1, static_cast<int>(start));
     seen[start] = 1;
     std::size_t turned = 0;
     for (std::size_t head = 0; head < part.size(); ++head) {
@@ -114,6 +118,19 @@ MeshTopology topologyOf(const TriangleMesh& mesh) {
     if (2 * turned > part.size())
       for (const int t : part) topology.turned[t] ^= 1;
   }
+}
+
+}  // namespace
+
+MeshTopology topologyOf(const TriangleMesh& mesh) {
+  const std::size_t count = mesh.triangles.size();
+  const std::vector<int> welded = weld(mesh.vertices);
+  MeshTopology topology;
+  topology.alive.assign(count, 1);
+  topology.turned.assign(count, 0);
+  topology.neighbours.assign(count, Vector3i(-1, -1, -1));
+  dropBadTriangles(mesh, welded, topology);
+  turnParts(joinNeighbours(mesh, welded, topology), topology);
   return topology;
 }
 

@@ -57,100 +57,130 @@ struct Candidate {
   double value;
 };
 
+bool dimmer(const Candidate& a, const Candidate& b) { return a.value < b.value; }
+
+/// One light in one view: how bright it shows, and where it is brightest.
+class LightView {
+ public:
+  LightView(const Surface& surface, const Camera& camera, const TrueLight& light, const Material& material,
+            const ExactOptions& options)
+      : surface_(surface), camera_(camera), light_(light), material_(material), options_(options) {}
+
+  bool limit() const { return options_.kind == ContourKind::LimitAngle; }
+  const Eigen::AlignedBox2d& window() const { return window_; }
+
+  /// The larger, the brighter: log I, or -alpha.
+  std::optional<double> brightness(const Pixel& pixel) const {
+    if (!limit()) return logSpecular(surface_, camera_, pixel, light_, material_);
+    const Ray ray = camera_.ray(pixel);
+    const Outcome<SurfacePoint> hit = surface_.firstHit(ray);
+    if (!hit) return std::nullopt;
+    const SurfacePoint p = facing(*hit, ray.origin);
+    const Eigen::Vector3d toLight = centre_.directionFrom(p.position);
+    if (!(p.normal.dot(toLight) > 0)) return std::nullopt;
+    if (surface_.occluded(p, occlusionTarget(surface_, p.position, centre_, (ray.origin - p.position).norm())))
+      return std::nullopt;
+    return -incidentAngle(p.normal, toLight, -ray.direction);
+  }
+
+  /// The brightest first.
+  std::vector<Candidate> peaks() const {
+    std::vector<Candidate> peaks;
+    BrightestPointOptions search;
+    search.marginFraction = std::max(search.marginFraction, options_.marginPx / window_.sizes().minCoeff());
+    if (const Outcome<std::vector<BrightestPoint>> points = predictedBrightestPoints(surface_, camera_, centre_, search))
+      for (const BrightestPoint& point : *points) {
+        const Pixel at = limit() ? point.pixel : maximumNear(point.pixel).value_or(point.pixel);
+        if (const std::optional<double> value = brightness(at)) peaks.push_back({at, *value});
+      }
+    // A light that is wide, or whose mirror point is hidden, may have its maximum elsewhere: the coarse grid of the image decides.
+    if (!limit() || peaks.empty())
+      if (std::optional<Candidate> best = brightestOfGrid();
+          best && (peaks.empty() || best->value > std::max_element(peaks.begin(), peaks.end(), dimmer)->value)) {
+        if (!limit())
+          if (const std::optional<Pixel> at = maximumNear(best->pixel)) best = Candidate{*at, *brightness(*at)};
+        peaks.push_back(*best);
+      }
+    std::sort(peaks.begin(), peaks.end(), [](const Candidate& a, const Candidate& b) { return dimmer(b, a); });
+    return peaks;
+  }
+
+  /// Empty for a region that is too small or outside of the photograph.
+  std::optional<Highlight> highlightOf(const LevelSetComponent& component, const std::vector<Candidate>& peaks) const {
+    Highlight h;
+    h.light = light_.id;
+    h.level = options_.level;
+    h.contour = component.outline;
+    h.areaPx2 = std::abs(signedArea(h.contour));
+    if (h.contour.points.size() < 5 || !(h.areaPx2 > 0)) return std::nullopt;
+    // The window of a wide lens has corners that the photograph does not show.
+    const auto shown = [&](const Pixel& p) { return isInPhotograph(camera_, p, options_.marginPx + 0.5); };
+    if (camera_.hasDistortion() && std::none_of(h.contour.points.begin(), h.contour.points.end(), shown) &&
+        !shown(component.minimumAt))
+      return std::nullopt;
+    const Candidate peak = peakIn(h.contour, component, peaks);
+    h.peak = peak.pixel;
+    h.peakValue = limit() ? 0 : std::exp(peak.value);
+    const double outer = options_.marginPx - 1e-6;  // px: vertices on the border lie on it to the root finder's tolerance
+    for (const Pixel& p : h.contour.points) h.touchesBorder = h.touchesBorder || !isInPhotograph(camera_, p, outer);
+    if (const Outcome<Ellipse> ellipse = fitEllipse(h.contour.points)) h.ellipse = *ellipse;
+    return h;
+  }
+
+ private:
+  std::optional<Pixel> maximumNear(const Pixel& start) const {
+    return polishedMaximum([&](const Pixel& p) { return brightness(p); }, start);
+  }
+  std::optional<Candidate> brightestOfGrid() const {
+    constexpr double kGridPx = 16;
+    std::optional<Candidate> best;
+    for (double y = window_.min().y() + 0.5; y < window_.max().y(); y += kGridPx)
+      for (double x = window_.min().x() + 0.5; x < window_.max().x(); x += kGridPx)
+        if (const std::optional<double> value = brightness(Pixel(x, y)); value && (!best || *value > best->value))
+          best = Candidate{Pixel(x, y), *value};
+    return best;
+  }
+  Candidate peakIn(const Polyline& contour, const LevelSetComponent& component, const std::vector<Candidate>& peaks) const {
+    const auto inside = std::find_if(peaks.begin(), peaks.end(), [&](const Candidate& p) { return contains(contour, p.pixel); });
+    if (inside != peaks.end()) return *inside;
+    if (!limit())
+      if (const std::optional<Pixel> at = maximumNear(component.minimumAt); at && contains(contour, *at))
+        return {*at, *brightness(*at)};
+    return {component.minimumAt, -component.minimum};
+  }
+
+  const Surface& surface_;
+  const Camera& camera_;
+  const TrueLight& light_;
+  const Material& material_;
+  const ExactOptions& options_;
+  Light centre_ = lightOf(light_.lamp);  ///< stands for the lamp where one direction is needed (seeds, limit angles)
+  Eigen::AlignedBox2d window_ = seenWindow(camera_);
+};
+
 }  // namespace
 
 Outcome<std::vector<Highlight>> exactHighlights(const Surface& surface, const Camera& camera, const TrueLight& light,
                                                 const Material& material, const ExactOptions& options) {
-  const bool limit = options.kind == ContourKind::LimitAngle;
-  if (limit && !light.lamp.isPoint()) return Failure{Reason::NotSupported, "a limit angle needs a point light"};
-  const Light centre = lightOf(light.lamp);  // stands for the lamp where one direction is needed (seeds, limit angles)
-
-  // The larger, the brighter: log I, or -alpha.
-  const auto brightness = [&](const Pixel& pixel) -> std::optional<double> {
-    if (!limit) return logSpecular(surface, camera, pixel, light, material);
-    const Ray ray = camera.ray(pixel);
-    const Outcome<SurfacePoint> hit = surface.firstHit(ray);
-    if (!hit) return std::nullopt;
-    const SurfacePoint p = facing(*hit, ray.origin);
-    const Eigen::Vector3d toLight = centre.directionFrom(p.position);
-    if (!(p.normal.dot(toLight) > 0)) return std::nullopt;
-    if (surface.occluded(p, occlusionTarget(surface, p.position, centre, (ray.origin - p.position).norm()))) return std::nullopt;
-    return -incidentAngle(p.normal, toLight, -ray.direction);
-  };
-
-  std::vector<Candidate> peaks;
-  BrightestPointOptions search;
-  const Eigen::AlignedBox2d window = seenWindow(camera);
-  search.marginFraction = std::max(search.marginFraction, options.marginPx / window.sizes().minCoeff());
-  if (const Outcome<std::vector<BrightestPoint>> points = predictedBrightestPoints(surface, camera, centre, search)) {
-    for (const BrightestPoint& point : *points) {
-      const Pixel at = limit ? point.pixel : polishedMaximum(brightness, point.pixel).value_or(point.pixel);
-      if (const std::optional<double> value = brightness(at)) peaks.push_back({at, *value});
-    }
-  }
-  // A light that is wide, or whose mirror point is hidden, may have its maximum elsewhere: the coarse grid of the image decides.
-  if (!limit || peaks.empty()) {
-    constexpr double kGridPx = 16;
-    std::optional<Candidate> best;
-    for (double y = window.min().y() + 0.5; y < window.max().y(); y += kGridPx)
-      for (double x = window.min().x() + 0.5; x < window.max().x(); x += kGridPx)
-        if (const std::optional<double> value = brightness(Pixel(x, y)); value && (!best || *value > best->value))
-          best = Candidate{Pixel(x, y), *value};
-    if (best &&
-        (peaks.empty() || best->value > std::max_element(peaks.begin(), peaks.end(), [](const Candidate& a, const Candidate& b) {
-                                          return a.value < b.value;
-                                        })->value)) {
-      if (!limit)
-        if (const std::optional<Pixel> at = polishedMaximum(brightness, best->pixel)) best = Candidate{*at, *brightness(*at)};
-      peaks.push_back(*best);
-    }
-  }
+  const LightView view(surface, camera, light, material, options);
+  if (view.limit() && !light.lamp.isPoint()) return Failure{Reason::NotSupported, "a limit angle needs a point light"};
+  const std::vector<Candidate> peaks = view.peaks();
   if (peaks.empty()) return Failure{Reason::NoHighlight, "no surface point is visible and lit"};
-  std::sort(peaks.begin(), peaks.end(), [](const Candidate& a, const Candidate& b) { return a.value > b.value; });
 
-  const double threshold = limit ? options.limitAngle : -(peaks.front().value + std::log(options.level));
+  const double threshold = view.limit() ? options.limitAngle : -(peaks.front().value + std::log(options.level));
   LevelSetOptions trace;
   trace.sagittaPx = options.sagittaPx;
   trace.marginPx = options.marginPx;
   for (const Candidate& peak : peaks)
     if (-peak.value < threshold) trace.seeds.push_back(peak.pixel);
   const PixelField field = [&](const Pixel& pixel) -> std::optional<double> {
-    const std::optional<double> value = brightness(pixel);
+    const std::optional<double> value = view.brightness(pixel);
     if (!value) return std::nullopt;
     return -*value;
   };
   std::vector<Highlight> highlights;
-  for (const LevelSetComponent& component : traceLevelSets(field, {}, threshold, window, trace)) {
-    Highlight h;
-    h.light = light.id;
-    h.level = options.level;
-    h.contour = component.outline;
-    h.areaPx2 = std::abs(signedArea(h.contour));
-    if (h.contour.points.size() < 5 || !(h.areaPx2 > 0)) continue;
-    // The window of a wide lens has corners that the photograph does not show.
-    const auto shown = [&](const Pixel& p) { return isInPhotograph(camera, p, options.marginPx + 0.5); };
-    if (camera.hasDistortion() && std::none_of(h.contour.points.begin(), h.contour.points.end(), shown) &&
-        !shown(component.minimumAt))
-      continue;
-    double value = -component.minimum;
-    h.peak = component.minimumAt;
-    const auto inside =
-        std::find_if(peaks.begin(), peaks.end(), [&](const Candidate& p) { return contains(h.contour, p.pixel); });
-    if (inside != peaks.end()) {
-      h.peak = inside->pixel;
-      value = inside->value;
-    } else if (!limit) {
-      if (const std::optional<Pixel> at = polishedMaximum(brightness, h.peak); at && contains(h.contour, *at)) {
-        h.peak = *at;
-        value = *brightness(*at);
-      }
-    }
-    h.peakValue = limit ? 0 : std::exp(value);
-    const double outer = options.marginPx - 1e-6;  // px: vertices on the border lie on it to the root finder's tolerance
-    for (const Pixel& p : h.contour.points) h.touchesBorder = h.touchesBorder || !isInPhotograph(camera, p, outer);
-    if (const Outcome<Ellipse> ellipse = fitEllipse(h.contour.points)) h.ellipse = *ellipse;
-    highlights.push_back(std::move(h));
-  }
+  for (const LevelSetComponent& component : traceLevelSets(field, {}, threshold, view.window(), trace))
+    if (std::optional<Highlight> h = view.highlightOf(component, peaks)) highlights.push_back(std::move(*h));
   if (highlights.empty()) return Failure{Reason::NoHighlight, "no region of the image lies above the level"};
   std::stable_sort(highlights.begin(), highlights.end(),
                    [](const Highlight& a, const Highlight& b) { return a.peakValue > b.peakValue; });

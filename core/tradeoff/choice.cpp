@@ -15,6 +15,67 @@ std::string costText(const TradeoffPoint& p) {
   return formatted("%.3g %%", p.rankedErrorPct) + " at " + formatted("%.3g us", p.predictUs);
 }
 
+/// The last point of the front within a bound, and the first one beyond it; -1 without one.
+struct Bounded {
+  int best = -1, next = -1;
+};
+template <class Within>
+Bounded boundedOn(const std::vector<int>& front, const Within& within) {
+  Bounded b;
+  for (const int i : front) {
+    if (within(i))
+      b.best = i;
+    else if (b.next < 0)
+      b.next = i;
+  }
+  return b;
+}
+
+std::string said(const Tradeoff& t, int i) { return describe(t, t.points[i]) + " (" + costText(t.points[i]) + " per frame)"; }
+
+/// @param front  points by time
+void chooseWithinBudget(Tradeoff& t, const std::vector<Cost>& costs, const std::vector<int>& front, double budgetUs) {
+  Bounded b = boundedOn(front, [&](int i) { return costs[i].us <= budgetUs; });
+  const std::string budget = formatted("%g us", budgetUs);
+  if (b.best < 0) {
+    t.reason = "No measured setting predicts a frame within " + budget + "; the fastest is " + said(t, 0) + ".";
+    return;
+  }
+  // The fastest with the same error, as the preset.
+  const double same = costs[b.best].errorPct + kSameErrorPct;
+  b.best = *std::find_if(front.begin(), front.end(), [&](int i) { return costs[i].errorPct <= same; });
+  t.chosen = b.best;
+  t.reason = "The most accurate setting within " + budget + " per frame is " + said(t, b.best) +
+             (b.next < 0 ? "; no slower one is more accurate."
+                         : "; the next more accurate one, " + said(t, b.next) + ", is over the budget.");
+}
+
+/// @param front  points by time
+void chooseWithinError(Tradeoff& t, const std::vector<Cost>& costs, std::vector<int> front, double maxErrorPct, int exact) {
+  std::reverse(front.begin(), front.end());
+  const Bounded b = boundedOn(front, [&](int i) { return costs[i].errorPct <= maxErrorPct; });
+  const std::string most = formatted("%g %%", maxErrorPct);
+  if (b.best < 0) {
+    t.reason = "No measured setting has an error of at most " + most + "; the most accurate is " + said(t, exact) + ".";
+    return;
+  }
+  t.chosen = b.best;
+  t.reason =
+      "The fastest setting with an error of at most " + most + " is " + said(t, b.best) +
+      (b.next < 0 ? "; no measured one is faster." : "; the next faster one, " + said(t, b.next) + ", is over that error.");
+}
+
+void chooseBalanced(Tradeoff& t, const Presets& presets) {
+  t.chosen = presets.balanced;
+  if (presets.fast == presets.exact)
+    t.reason = said(t, presets.exact) + " is both the fastest usable and the most accurate setting.";
+  else
+    // Where it is one of the others, presetNote() says so.
+    t.reason = "The balanced preset, the knee of the front: " + said(t, presets.balanced) +
+               (presets.balanced == presets.fast ? "" : "; fast: " + said(t, presets.fast)) +
+               (presets.balanced == presets.exact ? "" : "; exact: " + said(t, presets.exact)) + ".";
+}
+
 }  // namespace
 
 double rankedErrorPct(const TradeoffPoint& p) {
@@ -36,8 +97,12 @@ void choosePoint(Tradeoff& t, const TradeoffBound& bound) {
   const bool anyOk = std::any_of(t.points.begin(), t.points.end(), [](const TradeoffPoint& p) { return p.poor.empty(); });
   for (const TradeoffPoint& p : t.points)
     costs.push_back({anyOk && !p.poor.empty() ? std::nan("") : p.rankedErrorPct, p.predictUs});
-  const std::vector<char> front = paretoFront(costs);
-  for (std::size_t i = 0; i < costs.size(); ++i) t.points[i].pareto = front[i] != 0;
+  const std::vector<char> onFront = paretoFront(costs);
+  std::vector<int> front;
+  for (std::size_t i = 0; i < costs.size(); ++i) {
+    t.points[i].pareto = onFront[i] != 0;
+    if (onFront[i]) front.push_back(static_cast<int>(i));
+  }
   t.presets.clear();
   t.chosen.reset();
   const Presets presets = presetsOf(costs);
@@ -46,59 +111,12 @@ void choosePoint(Tradeoff& t, const TradeoffBound& bound) {
     return;
   }
   t.presets = {{"fast", presets.fast}, {"balanced", presets.balanced}, {"exact", presets.exact}};
-  const auto said = [&](int i) { return describe(t, t.points[i]) + " (" + costText(t.points[i]) + " per frame)"; };
-  if (bound.budgetUs) {
-    int best = -1, next = -1;
-    for (int i = 0; i < static_cast<int>(costs.size()); ++i) {
-      if (!front[i]) continue;
-      if (costs[i].us <= *bound.budgetUs)
-        best = i;  // along the front the error falls with time
-      else if (next < 0)
-        next = i;
-    }
-    if (best >= 0) {  // of the same error the fastest, as the preset
-      const double same = costs[best].errorPct + kSameErrorPct;
-      for (int i = best; i >= 0; --i)
-        if (front[i] && costs[i].errorPct <= same) best = i;
-    }
-    const std::string budget = formatted("%g us", *bound.budgetUs);
-    if (best < 0) {
-      t.reason = "No measured setting predicts a frame within " + budget + "; the fastest is " + said(0) + ".";
-      return;
-    }
-    t.chosen = best;
-    t.reason = "The most accurate setting within " + budget + " per frame is " + said(best) +
-               (next < 0 ? "; no slower one is more accurate."
-                         : "; the next more accurate one, " + said(next) + ", is over the budget.");
-    return;
-  }
-  if (bound.maxErrorPct) {
-    int best = -1, next = -1;
-    for (int i = static_cast<int>(costs.size()) - 1; i >= 0; --i) {
-      if (!front[i]) continue;
-      if (costs[i].errorPct <= *bound.maxErrorPct)
-        best = i;
-      else if (next < 0)
-        next = i;
-    }
-    const std::string most = formatted("%g %%", *bound.maxErrorPct);
-    if (best < 0) {
-      t.reason = "No measured setting has an error of at most " + most + "; the most accurate is " + said(presets.exact) + ".";
-      return;
-    }
-    t.chosen = best;
-    t.reason = "The fastest setting with an error of at most " + most + " is " + said(best) +
-               (next < 0 ? "; no measured one is faster." : "; the next faster one, " + said(next) + ", is over that error.");
-    return;
-  }
-  t.chosen = presets.balanced;
-  if (presets.fast == presets.exact)
-    t.reason = said(presets.exact) + " is both the fastest usable and the most accurate setting.";
+  if (bound.budgetUs)
+    chooseWithinBudget(t, costs, front, *bound.budgetUs);
+  else if (bound.maxErrorPct)
+    chooseWithinError(t, costs, front, *bound.maxErrorPct, presets.exact);
   else
-    // Where it is one of the others, presetNote() says so.
-    t.reason = "The balanced preset, the knee of the front: " + said(presets.balanced) +
-               (presets.balanced == presets.fast ? "" : "; fast: " + said(presets.fast)) +
-               (presets.balanced == presets.exact ? "" : "; exact: " + said(presets.exact)) + ".";
+    chooseBalanced(t, presets);
 }
 
 const TradeoffPoint& pointOfPreset(const Tradeoff& t, const std::string& name) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <numeric>
 #include <set>
 
 #include "core/base/elapsed.h"
@@ -59,6 +60,37 @@ std::string keyOfFit(const Trial& trial) {
   return key;
 }
 
+/// A few whole surfaces, so that their fits are the same as with all frames.
+std::vector<int> framesOfFewSurfaces(const Inspection& evidence, const std::vector<int>& frames) {
+  std::vector<std::string> keys;
+  std::map<std::string, std::vector<int>> bySurface;
+  for (const int f : frames) {
+    const std::string key = evidence.surfaces->keyOf(f);
+    if (!bySurface.count(key)) keys.push_back(key);
+    bySurface[key].push_back(f);
+  }
+  std::vector<int> numbers(keys.size()), chosen;
+  std::iota(numbers.begin(), numbers.end(), 0);
+  for (const int i : spread(numbers, 3)) chosen.insert(chosen.end(), bySurface[keys[i]].begin(), bySurface[keys[i]].end());
+  return chosen;
+}
+
+bool isTrained(const TrainSpec& train, int frame) { return std::binary_search(train.frames.begin(), train.frames.end(), frame); }
+
+/// All frames to train on, and a few others with highlights.
+std::vector<int> trainingAndFewOthers(const Inspection& evidence, const std::vector<int>& frames) {
+  std::vector<int> chosen, heldOut;
+  for (const int f : frames) {
+    if (isTrained(evidence.train, f))
+      chosen.push_back(f);
+    else if (!evidence.evidence[f].scored().empty())
+      heldOut.push_back(f);
+  }
+  const std::vector<int> some = spread(heldOut, kFewHeldOut);
+  chosen.insert(chosen.end(), some.begin(), some.end());
+  return chosen;
+}
+
 }  // namespace
 
 /// Some of the frames as a scene of its own, with their evidence.
@@ -85,35 +117,12 @@ TradeoffBench::TradeoffBench(std::shared_ptr<const Scene> scene, const Inspectio
     few_ = all_;  // the user's changes name frames by their number: all of them are tried
     return;
   }
-  const TrainSpec train = all_->evidence.train;
-  const auto excluded = [&](int f) {
-    return std::find(request.excluded.begin(), request.excluded.end(), f) != request.excluded.end();
-  };
-  std::vector<int> chosen, heldOut;
-  if (train.perSurface) {
-    // Whole surfaces, so that their fits are the same as with all frames.
-    std::vector<std::string> keys;
-    std::map<std::string, std::vector<int>> bySurface;
-    for (int f = 0; f < static_cast<int>(scene->frames.size()); ++f) {
-      if (excluded(f)) continue;
-      const std::string key = all_->evidence.surfaces->keyOf(f);
-      if (!bySurface.count(key)) keys.push_back(key);
-      bySurface[key].push_back(f);
-    }
-    std::vector<int> numbers;
-    for (int i = 0; i < static_cast<int>(keys.size()); ++i) numbers.push_back(i);
-    for (const int i : spread(numbers, 3)) chosen.insert(chosen.end(), bySurface[keys[i]].begin(), bySurface[keys[i]].end());
-  } else {
-    for (int f = 0; f < static_cast<int>(scene->frames.size()); ++f) {
-      if (excluded(f)) continue;
-      if (std::binary_search(train.frames.begin(), train.frames.end(), f))
-        chosen.push_back(f);
-      else if (!all_->evidence.evidence[f].scored().empty())
-        heldOut.push_back(f);
-    }
-    const std::vector<int> some = spread(heldOut, kFewHeldOut);
-    chosen.insert(chosen.end(), some.begin(), some.end());
-  }
+  const TrainSpec& train = all_->evidence.train;
+  std::vector<int> frames;
+  for (int f = 0; f < static_cast<int>(scene->frames.size()); ++f)
+    if (std::find(request.excluded.begin(), request.excluded.end(), f) == request.excluded.end()) frames.push_back(f);
+  std::vector<int> chosen =
+      train.perSurface ? framesOfFewSurfaces(all_->evidence, frames) : trainingAndFewOthers(all_->evidence, frames);
   std::sort(chosen.begin(), chosen.end());
   auto part = std::make_shared<Scene>(*scene);
   part->frames.clear();
@@ -121,11 +130,10 @@ TradeoffBench::TradeoffBench(std::shared_ptr<const Scene> scene, const Inspectio
   few_->request.excluded.clear();
   few_->request.models.clear();
   std::string trainIds;
-  for (std::size_t i = 0; i < chosen.size(); ++i) {
-    part->frames.push_back(scene->frames[chosen[i]]);
+  for (const int f : chosen) {
+    part->frames.push_back(scene->frames[f]);
     // Ids, because an id such as "0003" would win over the number 3.
-    if (std::binary_search(train.frames.begin(), train.frames.end(), chosen[i]))
-      trainIds += (trainIds.empty() ? "" : ",") + scene->frames[chosen[i]].id;
+    if (isTrained(train, f)) trainIds += (trainIds.empty() ? "" : ",") + scene->frames[f].id;
   }
   few_->scene = part;
   if (!train.perSurface) few_->request.train = trainIds;

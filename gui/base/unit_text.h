@@ -6,8 +6,6 @@
 
 namespace glint::gui {
 
-inline QString unitText(const std::string& unit) { return toQString(writtenUnit(unit)); }
-
 inline QString unitAfter(const std::string& unit) { return toQString(unitAfterNumber(unit)); }
 
 }  // namespace glint::gui

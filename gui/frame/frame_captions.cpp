@@ -4,8 +4,11 @@
 #include <QColor>
 #include <QObject>
 #include <QStringList>
+#include <algorithm>
+#include <iterator>
 
 #include "core/base/error_text.h"
+#include "core/scene/scene_files.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
 
@@ -75,6 +78,18 @@ FrameCaptions frameCaptions(const Document& document, const draw::FrameOverlay& 
             cell(QObject::tr("error %")) + cell(QObject::tr("px")) + cell(QObject::tr("IoU")) + QStringLiteral("<td></td></tr>") +
             rows + QStringLiteral("</table>") + reasons;
   return {html + lobes, !reasons.isEmpty(), poor};
+}
+
+void keepErrors(const draw::FrameOverlay& results, draw::FrameOverlay& shown) {
+  const auto ofModel = [](const draw::OverlayCaption& c) { return !c.model.empty(); };
+  std::erase_if(shown.captions, ofModel);
+  std::copy_if(results.captions.begin(), results.captions.end(), std::back_inserter(shown.captions), ofModel);
+}
+
+QString unreadableText(const Scene& scene, int frame, const QString& reason) {
+  const QString named = QLatin1String(nameOf(Reason::FrameUnreadable)) + QStringLiteral(": ");
+  return QObject::tr("Frame %1 has no image\n%2")
+      .arg(nameText(scene.frames[std::size_t(frame)].id), toQString(withoutFolder(reason.toStdString(), scene)).remove(named));
 }
 
 }  // namespace glint::gui

@@ -20,5 +20,9 @@ struct FrameCaptions {
 };
 /// @param earlier  the errors are of an earlier state than what is asked for: faded, and the heading says so
 FrameCaptions frameCaptions(const Document& document, const draw::FrameOverlay& overlay, const QPalette& palette, bool earlier);
+/// The errors of the last results stay in sight until new ones follow; a new contour has none yet.
+void keepErrors(const draw::FrameOverlay& results, draw::FrameOverlay& shown);
+/// In place of a photograph that cannot be read. @param reason  may have the scene's folder in it
+QString unreadableText(const Scene& scene, int frame, const QString& reason);
 
 }  // namespace glint::gui

@@ -11,12 +11,10 @@
 #include <QToolButton>
 #include <QVBoxLayout>
 #include <algorithm>
-#include <iterator>
 #include <utility>
 
 #include "core/draw/unmatched.h"
 #include "core/geometry/polyline.h"
-#include "core/scene/scene_files.h"
 #include "core/what_if/knobs.h"
 #include "gui/base/flow_layout.h"
 #include "gui/base/panel_scroll.h"
@@ -37,7 +35,6 @@
 #include "viz/walk_story.h"
 
 namespace glint::gui {
-
 namespace {
 // px of height: below, the switches of the overlays are behind one button, so that the photograph keeps its room.
 constexpr int kRoomForOverlays = 440, kRoomBesidePair = 560;
@@ -81,25 +78,20 @@ FramePanel::FramePanel(Document& document, QWidget* parent) : QWidget(parent), d
       emit probed(text);
     });
     connect(canvas, &FrameCanvas::hovered, this, [this, canvas](double x, double y) {
-      probe_.want(document_.sharedScene(), document_.inspection(),
-                  canvas == canvas_ ? document_.selection().frame : pair_->secondFrame(), {x, y});
+      probe_.want(document_.sharedScene(), document_.inspection(), frameOn(canvas), {x, y});
+    });
+    PhotoLoader* loader = canvas == canvas_ ? &loader_ : &secondLoader_;
+    int& pictured = pictured_[canvas != canvas_];
+    connect(loader, &PhotoLoader::loaded, this, [this, canvas, &pictured](int frame, const FramePicture& picture) {
+      if (frame == frameOn(canvas)) canvas->setPicture(picture), pictured = frame;
+    });
+    connect(loader, &PhotoLoader::failed, this, [this, canvas, &pictured](int frame, const QString& reason) {
+      emit photographFailed(frame, reason);
+      if (frame == frameOn(canvas)) canvas->setMessage(unreadableText(*document_.scene(), frame, reason)), pictured = -1;
     });
   }
   connect(&probe_, &PixelProbeWorker::probed, this, &FramePanel::probed);
-  connect(&loader_, &PhotoLoader::loaded, this, [this](int frame, const FramePicture& picture) {
-    if (frame == document_.selection().frame) canvas_->setPicture(picture), pictured_[0] = frame;
-  });
-  connect(&loader_, &PhotoLoader::failed, this, [this](int frame, const QString& reason) {
-    emit photographFailed(frame, reason);
-    if (frame == document_.selection().frame) canvas_->setMessage(problemText(frame, reason)), pictured_[0] = -1;
-  });
-  connect(&secondLoader_, &PhotoLoader::loaded, this, [this](int frame, const FramePicture& picture) {
-    if (frame == pair_->secondFrame()) second_->setPicture(picture), pictured_[1] = frame;
-  });
-  connect(&secondLoader_, &PhotoLoader::failed, this, [this](int frame, const QString& reason) {
-    emit photographFailed(frame, reason);
-    if (frame == pair_->secondFrame()) second_->setMessage(problemText(frame, reason)), pictured_[1] = -1;
-  });
+
   connectDocument();
   showScene();
 }
@@ -154,6 +146,29 @@ void FramePanel::buildToolbar(QVBoxLayout* column) {
   auto* bar = new QToolBar;  // what a narrow view has no room for is behind its arrow
   bar->setObjectName(QStringLiteral("frameBar"));
   bar->setIconSize({16, 16});
+  bar->addWidget(buildHeading());
+  buildTools(*bar);
+  column->addWidget(bar);
+  auto* content = new QWidget;
+  auto* rows = new QVBoxLayout(content);
+  rows->setContentsMargins(0, 0, 0, 0);
+  rows->setSpacing(0);
+  develop_ = new DevelopBar(document_);
+  rows->addWidget(develop_);
+  rows->addWidget(buildSwitches());
+  switches_ = new PanelScroll(content, {150, 30}, PanelScroll::Height::Hugs);
+  switches_->setAccessibleName(tr("Overlays"));
+  column->addWidget(switches_);
+  // Not in what scrolls: in a low panel its row would be cut, and with it what the lines are.
+  pair_ = new PairBar(document_);
+  column->addWidget(pair_);
+  column->addWidget(pair_->sentence());
+  retexture_ = new RetextureBar(document_, *canvas_, loader_);
+  column->addWidget(retexture_);
+  column->addWidget(retexture_->words());
+}
+
+QWidget* FramePanel::buildHeading() {
   auto* heading = new QWidget;
   auto* row = new QHBoxLayout(heading);
   row->setContentsMargins(4, 0, 0, 0);
@@ -174,10 +189,13 @@ void FramePanel::buildToolbar(QVBoxLayout* column) {
   zoom_->setAlignment(Qt::AlignRight | Qt::AlignVCenter);
   row->addWidget(zoom_);
   heading->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Preferred);
-  bar->addWidget(heading);
+  return heading;
+}
+
+void FramePanel::buildTools(QToolBar& bar) {
   const auto tool = [&](const char* iconName, const QString& tip) {
-    QAction* action = bar->addAction(icon(QLatin1String(iconName)), tip);
-    bar->widgetForAction(action)->setObjectName(QLatin1String(iconName));
+    QAction* action = bar.addAction(icon(QLatin1String(iconName)), tip);
+    bar.widgetForAction(action)->setObjectName(QLatin1String(iconName));
     return action;
   };
   connect(tool("highlight", tr("Zoom to highlight (F or H)")), &QAction::triggered, this, &FramePanel::goToHighlight);
@@ -204,13 +222,10 @@ void FramePanel::buildToolbar(QVBoxLayout* column) {
   retextureTool_ = tool("retexture", tr("Retexture: the predicted highlight over another picture, or the frame without it (R)"));
   retextureTool_->setCheckable(true);
   connect(retextureTool_, &QAction::triggered, this, [this](bool on) { retexture_->setOn(on); });
-  column->addWidget(bar);
-  auto* content = new QWidget;
-  auto* rows = new QVBoxLayout(content);
-  rows->setContentsMargins(0, 0, 0, 0);
-  rows->setSpacing(0);
-  develop_ = new DevelopBar(document_);
-  rows->addWidget(develop_);
+}
+
+/// One for each overlay, and the menu that has them all where there is no room for a row.
+QWidget* FramePanel::buildSwitches() {
   auto* legend = new QWidget;
   auto* flow = new FlowLayout;
   flow->setContentsMargins(4, 0, 4, 3);
@@ -246,17 +261,7 @@ void FramePanel::buildToolbar(QVBoxLayout* column) {
     flow->addWidget(button);
     toggles_.push_back(button);
   }
-  rows->addWidget(legend);
-  switches_ = new PanelScroll(content, {150, 30}, PanelScroll::Height::Hugs);
-  switches_->setAccessibleName(tr("Overlays"));
-  column->addWidget(switches_);
-  // Not in what scrolls: in a low panel its row would be cut, and with it what the lines are.
-  pair_ = new PairBar(document_);
-  column->addWidget(pair_);
-  column->addWidget(pair_->sentence());
-  retexture_ = new RetextureBar(document_, *canvas_, loader_);
-  column->addWidget(retexture_);
-  column->addWidget(retexture_->words());
+  return legend;
 }
 
 void FramePanel::foldOverlays() {
@@ -280,11 +285,8 @@ void FramePanel::changeEvent(QEvent* e) {
   if (e->type() == QEvent::PaletteChange) refresh_.start();  // the captions have colours of the theme
 }
 
-QString FramePanel::problemText(int frame, const QString& reason) const {
-  const Scene& scene = *document_.scene();
-  const QString named = QLatin1String(nameOf(Reason::FrameUnreadable)) + QStringLiteral(": ");
-  return tr("Frame %1 has no image\n%2")
-      .arg(nameText(scene.frames[std::size_t(frame)].id), toQString(withoutFolder(reason.toStdString(), scene)).remove(named));
+int FramePanel::frameOn(const FrameCanvas* canvas) const {
+  return canvas == canvas_ ? document_.selection().frame : pair_->secondFrame();
 }
 
 bool FramePanel::busy() const {
@@ -341,12 +343,13 @@ void FramePanel::showFrame() {
     second_->fit();
   }
   if (document_.scene()) {
-    const auto want = [this](PhotoLoader& loader, FrameCanvas* canvas, int pictured, int frame) {
+    const auto want = [this](PhotoLoader& loader, FrameCanvas* canvas, int pictured) {
+      const int frame = frameOn(canvas);
       if (pictured != frame) canvas->setAwaited(photographAwaited(*document_.scene(), frame));
       loader.want(frame);
     };
-    want(loader_, canvas_, pictured_[0], document_.selection().frame);
-    if (two) want(secondLoader_, second_, pictured_[1], pair_->secondFrame());
+    want(loader_, canvas_, pictured_[0]);
+    if (two) want(secondLoader_, second_, pictured_[1]);
   }
   showOverlay();
 }
@@ -370,15 +373,6 @@ void FramePanel::showWalk(std::shared_ptr<const viz::WalkStory> walk, int step) 
   walkStep_ = step;
   refresh_.start();
 }
-
-namespace {
-/// The errors of the last results stay in sight until new ones follow; a new contour has none yet.
-void keepErrors(const draw::FrameOverlay& results, draw::FrameOverlay& shown) {
-  std::erase_if(shown.captions, [](const draw::OverlayCaption& c) { return !c.model.empty(); });
-  std::copy_if(results.captions.begin(), results.captions.end(), std::back_inserter(shown.captions),
-               [](const draw::OverlayCaption& c) { return !c.model.empty(); });
-}
-}  // namespace
 
 void FramePanel::showOverlay() {
   const std::vector<draw::OverlayLayer>& layers = draw::overlayLayers();
@@ -448,8 +442,7 @@ QList<PairBar::KeyEntry> FramePanel::figureKey() const {
     for (const draw::OverlayLine& line : overlay->lines)
       if (line.role == draw::OverlayRole::PredictedContour && line.highlight >= 0)
         add(toQColor(line.colour),
-            byRole ? roleName(document_.role(overlay == &shown_ ? document_.selection().frame : pair_->secondFrame()))
-                   : toQString(line.model));
+            byRole ? roleName(document_.role(frameOn(overlay == &shown_ ? canvas_ : second_))) : toQString(line.model));
   return key;
 }
 
@@ -504,8 +497,8 @@ void FramePanel::followHighlight(int frame) {
   if (!inspection || std::size_t(frame) >= inspection->evidence.size()) return;
   const std::vector<Highlight>& highlights = inspection->evidence[std::size_t(frame)].highlights;
   if (highlights.empty()) return;
-  const std::string& light = document_.selection().light;
-  const auto same = std::find_if(highlights.begin(), highlights.end(), [&](const Highlight& h) { return h.light == light; });
+  const auto same = std::find_if(highlights.begin(), highlights.end(),
+                                 [&](const Highlight& h) { return h.light == document_.selection().light; });
   const Highlight& h = same == highlights.end() ? highlights.front() : *same;
   canvas_->lookAt(document_.scene()->frames[std::size_t(frame)].camera.distorted(centroid(h.contour)), canvas_->zoom());
 }
@@ -513,22 +506,23 @@ void FramePanel::followHighlight(int frame) {
 void FramePanel::zoomTo(int highlight, bool withCanonical) {
   const std::shared_ptr<const Inspection> inspection = document_.inspection();
   if (!inspection) return;
-  const auto look = [&](FrameCanvas* canvas, int frame, int highlight) {
+  const auto look = [&](FrameCanvas* canvas, int highlight) {
+    const int frame = frameOn(canvas);
     if (frame >= int(inspection->evidence.size())) return;
     const std::vector<Highlight>& highlights = inspection->evidence[std::size_t(frame)].scored();
     const draw::Selection& now = document_.selection();
     const PredictedHighlight* const spurious =
         frame == now.frame && highlight < 0 ? draw::selectedSpurious(*inspection, now) : nullptr;
     if (highlights.empty() && !spurious) return;
+    const Camera& camera = document_.scene()->frames[std::size_t(frame)].camera;
     Eigen::AlignedBox2d box;
     for (const Pixel& p : spurious ? spurious->contour.points
                                    : highlights[std::size_t(std::clamp(highlight, 0, int(highlights.size()) - 1))].contour.points)
-      box.extend(document_.scene()->frames[std::size_t(frame)].camera.distorted(p));
+      box.extend(camera.distorted(p));
     if (box.isEmpty()) return;
     // The highlight fills half of the canvas, so that its surroundings show.
     double share = 0.5;
     if (withCanonical) {  // on a bulging mirror several times as large
-      const Camera& camera = document_.scene()->frames[std::size_t(frame)].camera;
       const Eigen::AlignedBox2d photograph(Pixel(0, 0), Pixel(camera.width, camera.height));
       const draw::FrameOverlay overlay = draw::frameOverlay(*inspection, frame, overlayOptions());
       const Eigen::AlignedBox2d around =
@@ -541,8 +535,8 @@ void FramePanel::zoomTo(int highlight, bool withCanonical) {
     const Eigen::Vector2d size = box.sizes().cwiseMax(4.0);
     canvas->lookAt(box.center(), share * std::min(canvas->width() / size.x(), canvas->height() / size.y()));
   };
-  look(canvas_, document_.selection().frame, highlight);
-  if (pair_->on()) look(second_, pair_->secondFrame(), -1);
+  look(canvas_, highlight);
+  if (pair_->on()) look(second_, -1);
 }
 
 void FramePanel::addActions(Actions& actions, QMenu* menu) {

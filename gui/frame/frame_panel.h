@@ -18,6 +18,7 @@
 #include "gui/frame/pixel_probe.h"
 
 class QLabel;
+class QToolBar;
 class QToolButton;
 class QVBoxLayout;
 
@@ -74,6 +75,9 @@ class FramePanel : public QWidget {
 
  private:
   void buildToolbar(QVBoxLayout* column);
+  QWidget* buildHeading();
+  void buildTools(QToolBar& bar);
+  QWidget* buildSwitches();
   void connectDocument();
   void showScene();
   void showFrame();
@@ -85,11 +89,11 @@ class FramePanel : public QWidget {
   void selectAt(double x, double y);
   void selectModelAt(double x, double y);
   void followLink(const QString& link);
-  /// @param withCanonical  also the canonical ellipses about it that are shown.
   void foldOverlays();
   void followHighlight(int frame);
+  int frameOn(const FrameCanvas* canvas) const;
+  /// @param withCanonical  also the canonical ellipses about it that are shown.
   void zoomTo(int highlight, bool withCanonical = false);
-  QString problemText(int frame, const QString& reason) const;
 
   Document& document_;
   PhotoLoader loader_, secondLoader_;
@@ -118,7 +122,6 @@ class FramePanel : public QWidget {
   bool fewerLines_ = false;              ///< a what-if was put back: the captions may shrink to what there was to say before it
   bool zoomedByLook_ = false;            ///< and the user has not moved it since
   QTimer refresh_;                       ///< many selections at once are drawn once
-  int probedFrame_ = -1;
   std::shared_ptr<const viz::WalkStory> walk_;
   int walkStep_ = 0;
 };

@@ -54,30 +54,41 @@ ErrorTable::ErrorTable(Document& document, QWidget* parent) : QWidget(parent), d
   column->setContentsMargins(0, 0, 0, 0);
   column->setSpacing(0);
   auto* head = new FlowLayout(kHeadGapPx);  // a narrow dock puts the choice of rows below the summary
-  head->setContentsMargins(8, 2, 6, 2);
+  buildHead(*head);
+  column->addLayout(head);
+  column->addWidget(new PinnedSummary(document));
+  buildTable();
+  column->addWidget(view_, 1);
+  connectTable();
+  showWarnings();
+  showSummary();
+}
+
+void ErrorTable::buildHead(QLayout& head) {
+  head.setContentsMargins(8, 2, 6, 2);
   summary_ = new QLabel;
   summary_->setObjectName(QStringLiteral("errorSummary"));
   summary_->setTextFormat(Qt::RichText);
   summary_->setMinimumWidth(1);  // a dock narrower than its first column cuts it rather than growing
   summary_->setTextInteractionFlags(Qt::TextSelectableByMouse);
-  head->addWidget(summary_);
-  buildWarnings(*head);  // beside the summary: a line of their own would cost the table a row
+  head.addWidget(summary_);
+  buildWarnings(head);  // beside the summary: a line of their own would cost the table a row
   filter_ = new QComboBox;
   filter_->setObjectName(QStringLiteral("errorFilter"));
   filter_->addItems({tr("all frames"), tr("held-out frames"), tr("training frames"), tr("problems only"), tr("brushed only")});
   filter_->setAccessibleName(tr("Rows by frame"));
   filter_->setToolTip(
       tr("Which rows are shown. Problems have no error; brushed is what a rectangle in the plot \"Any two columns\" chose"));
-  head->addWidget(filter_);
-  buildFilters(*head);
+  head.addWidget(filter_);
+  buildFilters(head);
   count_ = new QLabel;
   count_->setObjectName(QStringLiteral("errorCount"));
   count_->setProperty("role", "faded");
-  head->addWidget(count_);
-  column->addLayout(head);
-  column->addWidget(new PinnedSummary(document));
+  head.addWidget(count_);
+}
 
-  model_ = new ErrorModel(document, this);
+void ErrorTable::buildTable() {
+  model_ = new ErrorModel(document_, this);
   proxy_ = new RowFilter(*model_, this);
   view_ = new QTableView;
   view_->setObjectName(QStringLiteral("errorTable"));
@@ -112,8 +123,9 @@ ErrorTable::ErrorTable(Document& document, QWidget* parent) : QWidget(parent), d
   columnsButton_->setMenu(columns_->menu());
   view_->installEventFilter(this);
   view_->viewport()->installEventFilter(this);
-  column->addWidget(view_, 1);
+}
 
+void ErrorTable::connectTable() {
   connect(view_->horizontalHeader(), &QHeaderView::sortIndicatorChanged, view_, &QTableView::scrollToTop);  // what one sorts for
   connect(filter_, QOverload<int>::of(&QComboBox::currentIndexChanged), this, [this](int i) {
     proxy_->setFrames(RowFilter::Frames(i));
@@ -138,8 +150,6 @@ ErrorTable::ErrorTable(Document& document, QWidget* parent) : QWidget(parent), d
   });
   connect(&document_, &Document::selectionChanged, this, &ErrorTable::selectFromDocument);
   connect(view_->selectionModel(), &QItemSelectionModel::currentRowChanged, this, &ErrorTable::selectFromTable);
-  showWarnings();
-  showSummary();
 }
 
 void ErrorTable::buildWarnings(QLayout& row) {

@@ -50,6 +50,9 @@ class ErrorTable : public QWidget {
   int columnWidth(int column) const;  ///< px
   int nameWidth() const;              ///< px, of the first column
   void showCount();
+  void buildHead(QLayout& head);  ///< summary, warnings and choice of rows
+  void buildTable();
+  void connectTable();
   void buildWarnings(QLayout& row);
   void buildFilters(QLayout& row);
   void showFiltered();  ///< other rows are shown

@@ -221,10 +221,7 @@ ConditioningPanel::ConditioningPanel(Document& document, QWidget* parent) : QWid
   connect(&document_, &Document::selectionChanged, this, [this] {
     showPrediction();
     const std::shared_ptr<const Inspection> inspection = document_.inspection();
-    const std::string key = inspection && inspection->train.perSurface && inspection->surfaces
-                                ? inspection->surfaces->keyOf(document_.selection().frame)
-                                : "";
-    if (key != surface_) {
+    if (surfaceKey(inspection.get()) != surface_) {
       dirty_ = true;
       refresh();
     } else {
@@ -254,18 +251,19 @@ Chip* ConditioningPanel::chip(const std::string& model, const std::string& findi
 
 QString ConditioningPanel::reason() const { return reason_->text(); }
 
+std::string ConditioningPanel::surfaceKey(const Inspection* inspection) const {
+  const bool each = inspection && inspection->train.perSurface && inspection->surfaces;
+  return each ? inspection->surfaces->keyOf(document_.selection().frame) : "";
+}
+
 void ConditioningPanel::refresh() {
   if (!dirty_ || !isVisible()) return;
   dirty_ = false;
   const std::shared_ptr<const Inspection> inspection = document_.inspection();
   conditioning_ = inspection ? conditioningOf(*inspection) : std::vector<Conditioning>{};
-  surface_ = inspection && inspection->train.perSurface && inspection->surfaces
-                 ? inspection->surfaces->keyOf(document_.selection().frame)
-                 : "";
+  surface_ = surfaceKey(inspection.get());
   if (!surface_.empty())
-    conditioning_.erase(std::remove_if(conditioning_.begin(), conditioning_.end(),
-                                       [this](const Conditioning& c) { return c.surface && *c.surface != surface_; }),
-                        conditioning_.end());
+    std::erase_if(conditioning_, [this](const Conditioning& c) { return c.surface && *c.surface != surface_; });
   showLights();
   // New numbers go into the same chips: a table built anew would be blank for a moment in every step of a drag.
   std::string key = light_ + '|';
@@ -293,6 +291,43 @@ void ConditioningPanel::refresh() {
   explainWorst();
 }
 
+Chip* ConditioningPanel::newChip(int conditioning, int finding) {
+  const Conditioning& c = conditioning_[std::size_t(conditioning)];
+  const Finding& f = c.findings[std::size_t(finding)];
+  auto* chip = new Chip(f.verdict, shortText(f));
+  chip->setObjectName(toQString("chip_" + c.model + "_" + f.id));
+  connect(chip, &Chip::entered, this, [this, conditioning, finding] {
+    const Conditioning& now = conditioning_[std::size_t(conditioning)];
+    explain(now, now.findings[std::size_t(finding)]);
+  });
+  connect(chip, &Chip::clicked, this, [this, conditioning] {
+    draw::Selection s = document_.selection();
+    s.model = conditioning_[std::size_t(conditioning)].model;
+    s.light = conditioning_[std::size_t(conditioning)].light;
+    document_.select(s);
+  });
+  return chip;
+}
+
+namespace {
+/// The model's name over its column; broken where columns are narrow.
+QLabel* columnHeading(const Conditioning& c, bool narrow) {
+  QString name = toQString(c.model);
+  constexpr int kLongName = 8;  // letters: a longer word does not fit into a narrow column
+  if (narrow && name.contains('-'))
+    name.replace("-", "-\n");
+  else if (narrow && name.size() > kLongName)
+    name.insert((name.size() + 1) / 2, "-\n");
+  auto* head = new QLabel(name);
+  head->setToolTip(toQString(c.model + ", " + lightName(c.light) + (c.surface ? ", surface " + *c.surface : std::string())));
+  head->setStyleSheet(
+      QStringLiteral("border-bottom: 2px solid %1; font-size: 8pt;").arg(toQColor(draw::modelColour(c.model, c.poor)).name()));
+  head->setAlignment(Qt::AlignHCenter | Qt::AlignBottom);
+  head->setMinimumWidth(40);
+  return head;
+}
+}  // namespace
+
 void ConditioningPanel::build() {
   chips_.clear();
   titles_.clear();
@@ -314,21 +349,10 @@ void ConditioningPanel::build() {
       const int k = columns[std::size_t(at)];
       const Conditioning& c = conditioning_[std::size_t(k)];
       for (int f = 0; f < int(c.findings.size()); ++f) {
-        const Finding& finding = c.findings[std::size_t(f)];
-        if (finding.id != kRows[r].id) continue;
+        if (c.findings[std::size_t(f)].id != kRows[r].id) continue;
         any = true;
-        auto* chip = new Chip(finding.verdict, shortText(finding));
-        chip->setObjectName(toQString("chip_" + c.model + "_" + finding.id));
-        connect(chip, &Chip::entered, this,
-                [this, k, f] { explain(conditioning_[std::size_t(k)], conditioning_[std::size_t(k)].findings[std::size_t(f)]); });
-        connect(chip, &Chip::clicked, this, [this, k] {
-          draw::Selection s = document_.selection();
-          s.model = conditioning_[std::size_t(k)].model;
-          s.light = conditioning_[std::size_t(k)].light;
-          document_.select(s);
-        });
-        grid->addWidget(chip, row, at + 1);
-        chips_.push_back({chip, k, f, r});
+        chips_.push_back({newChip(k, f), k, f, r});
+        grid->addWidget(chips_.back().chip, row, at + 1);
       }
     }
     if (!any) continue;
@@ -340,22 +364,7 @@ void ConditioningPanel::build() {
   }
   addPrediction(*grid, row, int(columns.size()));
   for (int at = 0; at < int(columns.size()); ++at) {
-    const Conditioning& c = conditioning_[std::size_t(columns[std::size_t(at)])];
-    QString name = toQString(c.model);
-    constexpr int kLongName = 8;  // letters: a longer word does not fit into a narrow column
-    if (columns.size() > 4) {
-      if (name.contains('-'))
-        name.replace("-", "-\n");
-      else if (name.size() > kLongName)
-        name.insert((name.size() + 1) / 2, "-\n");
-    }
-    auto* head = new QLabel(name);
-    head->setToolTip(toQString(c.model + ", " + lightName(c.light) + (c.surface ? ", surface " + *c.surface : std::string())));
-    head->setStyleSheet(
-        QStringLiteral("border-bottom: 2px solid %1; font-size: 8pt;").arg(toQColor(draw::modelColour(c.model, c.poor)).name()));
-    head->setAlignment(Qt::AlignHCenter | Qt::AlignBottom);
-    head->setMinimumWidth(40);
-    grid->addWidget(head, 0, at + 1);
+    grid->addWidget(columnHeading(conditioning_[std::size_t(columns[std::size_t(at)])], columns.size() > 4), 0, at + 1);
     grid->setColumnStretch(at + 1, 1);
   }
   auto* column = static_cast<QVBoxLayout*>(layout());

@@ -60,7 +60,10 @@ class ConditioningPanel : public QWidget {
 
  private:
   void refresh();
+  /// The selected frame's surface where each has its own fits; else "".
+  std::string surfaceKey(const Inspection* inspection) const;
   void build();
+  Chip* newChip(int conditioning, int finding);
   /// A row across all columns: how good the selected model predicts.
   void addPrediction(QGridLayout& grid, int row, int columns);
   void showPrediction();

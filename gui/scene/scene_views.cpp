@@ -449,77 +449,88 @@ void SceneViews::turn(const QPointF& from, const QPointF& to) {
 }
 
 bool SceneViews::mouse(QEvent* event) {
-  if (event->type() == QEvent::Wheel) {
-    return wheel(*static_cast<QWheelEvent*>(event));
+  switch (event->type()) {
+    case QEvent::Wheel: return wheel(*static_cast<QWheelEvent*>(event));
+    case QEvent::MouseButtonPress: return press(*static_cast<QMouseEvent*>(event));
+    case QEvent::MouseMove: return drag(*static_cast<QMouseEvent*>(event));
+    default: return release(*static_cast<QMouseEvent*>(event));
   }
-  const auto* e = static_cast<QMouseEvent*>(event);
-  const QPointF at = e->localPos();
-  if (event->type() == QEvent::MouseButtonPress) {
-    pressed_ = last_ = at;
-    if (e->button() == Qt::LeftButton && onWipe(at)) {
-      drag_ = Drag::Wipe;
-      return true;
-    }
-    activate(viewAt(at));
-    drag_ = active().looksThrough() ? Drag::Photograph : Drag::Vtk;
-    turns_ = drag_ == Drag::Vtk && e->button() == Qt::LeftButton && e->modifiers() == Qt::NoModifier;
-    pivot_.reset();
-    if (options_.lampsMove && e->button() == Qt::LeftButton && drag_ == Drag::Vtk) {
-      const QPointF display = toDisplay(at);
-      if (const auto hit = active().pickLamp(int(display.x()), int(display.y()) - 1)) {
-        drag_ = Drag::Lamp;
-        lamp_ = *hit;
-      }
-    }
-    return drag_ == Drag::Photograph || drag_ == Drag::Lamp;
+}
+
+bool SceneViews::press(const QMouseEvent& event) {
+  const QPointF at = pressed_ = last_ = event.localPos();
+  const bool left = event.button() == Qt::LeftButton;
+  if (left && onWipe(at)) {
+    drag_ = Drag::Wipe;
+    return true;
   }
-  if (event->type() == QEvent::MouseMove) {
-    if (e->buttons() == Qt::NoButton) {
-      widget_->setCursor(onWipe(at) ? Qt::SplitHCursor : Qt::ArrowCursor);
-      return false;
+  activate(viewAt(at));
+  drag_ = active().looksThrough() ? Drag::Photograph : Drag::Vtk;
+  turns_ = drag_ == Drag::Vtk && left && event.modifiers() == Qt::NoModifier;
+  pivot_.reset();
+  if (options_.lampsMove && left && drag_ == Drag::Vtk) {
+    const QPointF display = toDisplay(at);
+    if (const auto hit = active().pickLamp(int(display.x()), int(display.y()) - 1)) {
+      drag_ = Drag::Lamp;
+      lamp_ = *hit;
     }
-    if (drag_ == Drag::Wipe) emit wipeMoved(at.x() / std::max(1, widget_->width()), false);
-    if (drag_ == Drag::Photograph) {
-      const QPointF by = toDisplay(at) - toDisplay(last_);
-      for (int i = 0; i < shown_; ++i)
-        if (i == active_ || options_.arrangement == Arrangement::Wipe) view(i).movePhotograph(by.x(), by.y());
-      scheduleRender();
-    }
-    if (drag_ == Drag::Lamp) {
-      const QPointF from = toDisplay(pressed_), to = toDisplay(at);
-      vtkRenderer* renderer = active().renderer();
-      const Eigen::Vector3d by =
-          viz::worldAt(renderer, to.x(), to.y(), lamp_.position) - viz::worldAt(renderer, from.x(), from.y(), lamp_.position);
-      emit lampMoved(exactQString(lamp_.light), by.x(), by.y(), by.z());
-    }
-    const bool turns = drag_ == Drag::Vtk && turns_ && (e->buttons() & Qt::LeftButton);
-    if (turns) turn(last_, at);
-    last_ = at;
-    return turns || drag_ != Drag::Vtk;
   }
-  // Released
+  return drag_ == Drag::Photograph || drag_ == Drag::Lamp;
+}
+
+bool SceneViews::drag(const QMouseEvent& event) {
+  const QPointF at = event.localPos();
+  if (event.buttons() == Qt::NoButton) {
+    widget_->setCursor(onWipe(at) ? Qt::SplitHCursor : Qt::ArrowCursor);
+    return false;
+  }
+  if (drag_ == Drag::Wipe) emit wipeMoved(at.x() / std::max(1, widget_->width()), false);
+  if (drag_ == Drag::Photograph) {
+    const QPointF by = toDisplay(at) - toDisplay(last_);
+    for (int i = 0; i < shown_; ++i)
+      if (i == active_ || options_.arrangement == Arrangement::Wipe) view(i).movePhotograph(by.x(), by.y());
+    scheduleRender();
+  }
+  if (drag_ == Drag::Lamp) {
+    const QPointF from = toDisplay(pressed_), to = toDisplay(at);
+    vtkRenderer* renderer = active().renderer();
+    const Eigen::Vector3d by =
+        viz::worldAt(renderer, to.x(), to.y(), lamp_.position) - viz::worldAt(renderer, from.x(), from.y(), lamp_.position);
+    emit lampMoved(exactQString(lamp_.light), by.x(), by.y(), by.z());
+  }
+  const bool turns = drag_ == Drag::Vtk && turns_ && (event.buttons() & Qt::LeftButton);
+  if (turns) turn(last_, at);
+  last_ = at;
+  return turns || drag_ != Drag::Vtk;
+}
+
+bool SceneViews::release(const QMouseEvent& event) {
+  const QPointF at = event.localPos();
   const Drag was = std::exchange(drag_, Drag::None);
   if (was == Drag::Wipe) {
     emit wipeMoved(at.x() / std::max(1, widget_->width()), true);
     return true;
   }
   if (was == Drag::Lamp) emit lampReleased();
-  if (e->button() == Qt::RightButton && (at - pressed_).manhattanLength() < 4) {
-    const QPointF display = toDisplay(at);
-    const int x = int(display.x()), y = int(display.y()) - 1;
+  if ((at - pressed_).manhattanLength() < 4) click(event);
+  return was == Drag::Photograph || was == Drag::Lamp;
+}
+
+void SceneViews::click(const QMouseEvent& event) {
+  const QPointF display = toDisplay(event.localPos());
+  const int x = int(display.x()), y = int(display.y()) - 1;
+  if (event.button() == Qt::RightButton) {
     // The menu is a camera's: what lies behind one, or before it, does not count.
     std::optional<viz::Picked> hit = active().pickCamera(x, y);
     if (!hit) hit = active().pick(x, y);
-    if (hit) emit menuWanted(*hit, e->globalPos());
+    if (hit) emit menuWanted(*hit, event.globalPos());
   }
-  if (e->button() == Qt::LeftButton && (at - pressed_).manhattanLength() < 4) {
-    const QPointF display = toDisplay(at);
-    if (const auto hit = active().pick(int(display.x()), int(display.y()) - 1))
+  if (event.button() == Qt::LeftButton) {
+    if (const auto hit = active().pick(x, y))
       emit picked(*hit);
     else
       emit emptyClicked();
   }
-  return was == Drag::Photograph || was == Drag::Lamp;
 }
 
 bool SceneViews::eventFilter(QObject* watched, QEvent* event) {

@@ -107,8 +107,13 @@ class SceneViews : public QWidget {
   void setBehind();
   void endBehind();
   void syncCameras();
+  /// These say whether the event is dealt with: it does not go on to VTK.
   bool mouse(QEvent* event);
   bool wheel(const QWheelEvent& event);
+  bool press(const QMouseEvent& event);
+  bool drag(const QMouseEvent& event);
+  bool release(const QMouseEvent& event);
+  void click(const QMouseEvent& event);
   /// What the user moves about: what lies under a point of the active view, else a place there as far away as the focal point.
   Eigen::Vector3d underPointer(const QPointF& position) const;
   void turn(const QPointF& from, const QPointF& to);

@@ -55,14 +55,20 @@ bool TimelineStrip::axisFits() const {
          });
 }
 
+int TimelineStrip::columns() const { return int(std::min(inView_, chart().width())); }
+
+bool TimelineStrip::perFrame() const { return columns() >= int(inView_); }
+
+double TimelineStrip::middleX(int i) const {
+  return perFrame() ? frameX(i + 0.5) : frameX(first_ + (i + 0.5) * inView_ / columns());
+}
+
 /// A cross for each frame, or column of frames, where a model missed a highlight: it has no error there. A triangle where one is
 /// spurious.
 void TimelineStrip::paintMissed(QPainter& painter) {
   const QRectF row = missedRow();
   if (row.height() <= 0) return;
   painter.setClipRect(row.adjusted(0, -1, 0, 0));
-  const int columns = int(std::min(inView_, row.width()));
-  const bool perFrame = columns >= int(inView_);
   std::vector<const viz::TimelineData::Series*> marked;
   for (const viz::TimelineData::Series& series : data_.series)
     if (marksMissed(series)) marked.push_back(&series);
@@ -75,13 +81,12 @@ void TimelineStrip::paintMissed(QPainter& painter) {
     const auto shownOf = [&](std::vector<char> marks) {
       for (const int frame : shownExcluded(document_))
         if (frame >= 0 && frame < int(marks.size())) marks[std::size_t(frame)] = 0;
-      return perFrame ? marks : viz::columnMarks(marks, first_, first_ + inView_, columns);
+      return perFrame() ? marks : viz::columnMarks(marks, first_, first_ + inView_, columns());
     };
     const std::vector<char> shown = shownOf(marked[k]->missed), spurious = shownOf(marked[k]->spurious);
     for (int i = 0; i < int(shown.size()); ++i) {
       if (!shown[std::size_t(i)] && !spurious[std::size_t(i)]) continue;
-      const QPointF at(perFrame ? frameX(i + 0.5) : frameX(first_ + (i + 0.5) * inView_ / columns),
-                       row.top() + (double(k) + 0.5) * line);
+      const QPointF at(middleX(i), row.top() + (double(k) + 0.5) * line);
       if (spurious[std::size_t(i)]) {
         const double half = r + (shown[std::size_t(i)] ? 1.5 : 0.5);  // around the cross, where there is one
         const QPointF corners[] = {at + QPointF(-half, half), at + QPointF(half, half), at + QPointF(0, -half)};
@@ -106,7 +111,8 @@ void TimelineStrip::paintMissed(QPainter& painter) {
 
 void TimelineStrip::paintErrors(QPainter& painter) {
   QRectF c = chart();
-  painter.setPen(QPen(palette().color(QPalette::Mid), 1, Qt::DotLine));
+  const QPen grid(palette().color(QPalette::Mid), 1, Qt::DotLine);
+  painter.setPen(grid);
   painter.drawLine(c.topLeft(), c.topRight());
   painter.setPen(palette().color(QPalette::Mid));
   painter.drawLine(c.bottomLeft(), c.bottomRight());
@@ -114,31 +120,18 @@ void TimelineStrip::paintErrors(QPainter& painter) {
   painter.setRenderHint(QPainter::Antialiasing);
   paintMissed(painter);
   painter.setRenderHint(QPainter::Antialiasing, false);
-  const double left = c.left() - kBesideChart;  // of the texts beside the chart
   c.setTop(missedRow().bottom());
   if (missedRow().height() > 0) {
-    painter.setPen(QPen(palette().color(QPalette::Mid), 1, Qt::DotLine));
+    painter.setPen(grid);
     painter.drawLine(c.topLeft(), c.topRight());
   }
-  painter.setPen(palette().color(QPalette::PlaceholderText));
-  const QStringList texts = axisTexts();
-  const auto write = [&](const QString& text, double middle) {
-    painter.drawText(QRectF(0, middle - lineHeight() / 2, left, lineHeight()), Qt::AlignRight | Qt::AlignVCenter, text);
-  };
-  // The label stands below the line if the word "missed" is above it.
-  const bool named = missedRow().height() > 0 && chart().height() >= kRoomForName * scale_;
-  const double lower = named ? lineHeight() / 2 : 0;
-  write(texts[0], c.top() + lower);
-  if (c.height() > kTwoTexts * scale_ + lower) write(texts[1], c.bottom() + 1 - lineHeight() / 2);
-  if (texts.size() > 2 && c.height() > kThreeTexts * scale_ + lower) write(texts[2], c.center().y());
+  paintAxisTexts(painter, c);
   painter.setClipRect(c.adjusted(0, -2, 0, 1));
   QColor excluded = toQColor(draw::kExcluded);
   excluded.setAlpha(70);
   for (const int frame : shownExcluded(document_))
     painter.fillRect(QRectF(frameX(frame), c.top(), std::max(1.0, frameX(frame + 1) - frameX(frame)), c.height()), excluded);
   painter.setRenderHint(QPainter::Antialiasing);
-  const int columns = int(std::min(inView_, c.width()));
-  const bool perFrame = columns >= int(inView_);
   for (const viz::TimelineData::Series& series : data_.series) {
     if (bars_ && series.model != plotted_) continue;
     QColor colour = toQColor(draw::modelColour(series.model, series.poor));
@@ -146,43 +139,64 @@ void TimelineStrip::paintErrors(QPainter& painter) {
     std::vector<std::optional<double>> shown = series.errorPct;
     for (const int frame : shownExcluded(document_))
       if (frame >= 0 && frame < int(shown.size())) shown[std::size_t(frame)].reset();
-    const auto yOf = [&](double pct) { return c.bottom() - std::max(1.0, c.height() * axis_.place(pct)); };
     // Per frame where there is room, else the largest error of each screen column.
-    const int count = perFrame ? int(shown.size()) : columns;
-    if (!perFrame) shown = viz::columnMaxima(shown, first_, first_ + inView_, columns);
-    const auto xOf = [&](int i) { return perFrame ? frameX(i + 0.5) : frameX(first_ + (i + 0.5) * inView_ / columns); };
-    if (bars_) {
-      const double slot = c.width() / (perFrame ? inView_ : columns), wide = std::clamp(slot - 2, std::min(1.0, slot), 14.0);
-      for (int i = 0; i < count; ++i) {
-        const std::optional<double>& pct = shown[std::size_t(i)];
-        if (pct) painter.fillRect(QRectF(xOf(i) - wide / 2, yOf(*pct), wide, c.bottom() - yOf(*pct)), colour);
-        const bool unsaid = !pct && perFrame && !series.missed[std::size_t(i)] && !series.reason[std::size_t(i)].empty();
-        if (unsaid && document_.role(i) != FrameRole::Excluded && slot > 8) {
-          painter.setPen(warningColour());
-          painter.drawText(QRectF(xOf(i) - 10, c.bottom() - 15, 20, 14), Qt::AlignCenter, QStringLiteral("?"));
-        }
-      }
-      continue;
-    }
-    QPainterPath path;
-    bool down = false;
-    for (int i = 0; i < count; ++i) {
-      const std::optional<double>& pct = shown[std::size_t(i)];
-      if (!pct) {
-        down = false;
-        continue;
-      }
-      const QPointF at(xOf(i), yOf(*pct));
-      if (down)
-        path.lineTo(at);
-      else
-        path.moveTo(at - QPointF(1, 0)), path.lineTo(at + QPointF(1, 0));  // a lone frame is seen too
-      down = true;
-    }
-    painter.strokePath(
-        path, QPen(colour, series.model == document_.selection().model ? 2.4 : 1.2, series.poor ? Qt::DashLine : Qt::SolidLine));
+    if (!perFrame()) shown = viz::columnMaxima(shown, first_, first_ + inView_, columns());
+    const auto place = [&](int i) {
+      return QPointF(middleX(i), c.bottom() - std::max(1.0, c.height() * axis_.place(*shown[std::size_t(i)])));
+    };
+    std::vector<std::optional<QPointF>> points;
+    for (int i = 0; i < int(shown.size()); ++i) points.push_back(shown[std::size_t(i)] ? std::optional(place(i)) : std::nullopt);
+    if (bars_)
+      paintBars(painter, series, points, colour, c);
+    else
+      paintLine(painter, series, points, colour);
   }
   painter.setClipping(false);
+}
+
+/// Beside the errors, which have the chart's rectangle without the row of missed ones.
+void TimelineStrip::paintAxisTexts(QPainter& painter, const QRectF& errors) {
+  painter.setPen(palette().color(QPalette::PlaceholderText));
+  const QStringList texts = axisTexts();
+  const auto write = [&](const QString& text, double middle) {
+    painter.drawText(QRectF(0, middle - lineHeight() / 2, errors.left() - kBesideChart, lineHeight()),
+                     Qt::AlignRight | Qt::AlignVCenter, text);
+  };
+  // The label stands below the line if the word "missed" is above it.
+  const bool named = missedRow().height() > 0 && chart().height() >= kRoomForName * scale_;
+  const double lower = named ? lineHeight() / 2 : 0;
+  write(texts[0], errors.top() + lower);
+  if (errors.height() > kTwoTexts * scale_ + lower) write(texts[1], errors.bottom() + 1 - lineHeight() / 2);
+  if (texts.size() > 2 && errors.height() > kThreeTexts * scale_ + lower) write(texts[2], errors.center().y());
+}
+
+void TimelineStrip::paintBars(QPainter& painter, const viz::TimelineData::Series& series,
+                              const std::vector<std::optional<QPointF>>& tops, const QColor& colour, const QRectF& errors) {
+  const double slot = errors.width() / (perFrame() ? inView_ : columns()), wide = std::clamp(slot - 2, std::min(1.0, slot), 14.0);
+  for (int i = 0; i < int(tops.size()); ++i) {
+    const std::optional<QPointF>& top = tops[std::size_t(i)];
+    if (top) painter.fillRect(QRectF(top->x() - wide / 2, top->y(), wide, errors.bottom() - top->y()), colour);
+    const bool unsaid = !top && perFrame() && !series.missed[std::size_t(i)] && !series.reason[std::size_t(i)].empty();
+    if (unsaid && document_.role(i) != FrameRole::Excluded && slot > 8) {
+      painter.setPen(warningColour());
+      painter.drawText(QRectF(middleX(i) - 10, errors.bottom() - 15, 20, 14), Qt::AlignCenter, QStringLiteral("?"));
+    }
+  }
+}
+
+void TimelineStrip::paintLine(QPainter& painter, const viz::TimelineData::Series& series,
+                              const std::vector<std::optional<QPointF>>& points, const QColor& colour) {
+  QPainterPath path;
+  bool down = false;
+  for (const std::optional<QPointF>& at : points) {
+    if (at && down)
+      path.lineTo(*at);
+    else if (at)
+      path.moveTo(*at - QPointF(1, 0)), path.lineTo(*at + QPointF(1, 0));  // a lone frame is seen too
+    down = at.has_value();
+  }
+  painter.strokePath(
+      path, QPen(colour, series.model == document_.selection().model ? 2.4 : 1.2, series.poor ? Qt::DashLine : Qt::SolidLine));
 }
 
 }  // namespace glint::gui

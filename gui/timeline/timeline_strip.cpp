@@ -231,7 +231,8 @@ void TimelineStrip::paintBackground() {
   }
   paintThumbnails(painter);
   paintErrors(painter);
-  paintRows(painter);
+  paintLights(painter);
+  paintRoles(painter);
   paintUnreadable(painter);
 }
 
@@ -272,14 +273,12 @@ void TimelineStrip::paintThumbnails(QPainter& painter) {
   thumbnails_.want(wanted, int(std::ceil(row.height() * devicePixelRatioF())));
 }
 
-void TimelineStrip::paintRows(QPainter& painter) {
+void TimelineStrip::paintLights(QPainter& painter) {
   painter.setRenderHint(QPainter::Antialiasing, false);
-  const double rowHeight = lightRowHeight();
+  const double rowHeight = lightRowHeight(), wide = cell(0).width();
   double top = chart().bottom() + 1;
-  const int from = std::max(0, int(first_)), to = std::min(document_.frameCount(), int(std::ceil(first_ + inView_)));
-  const double wide = cell(0).width();
   for (const viz::LightRow& row : data_.lights) {
-    for (int i = from; i < to; ++i) {
+    for (int i = firstInView(); i < endOfView(); ++i) {
       const QRectF box(frameX(i), top, std::max(1.0, wide - (wide > 4 ? 1 : 0)), rowHeight - 1);
       const viz::LightState state = viz::lightState(row, *document_.scene(), document_.request().whatIf, i);
       if (state == viz::LightState::NotStated) continue;
@@ -307,33 +306,42 @@ void TimelineStrip::paintRows(QPainter& painter) {
     painter.drawText(QRectF(0, top - rowHeight * double(data_.lights.size()) / 2 - lineHeight() / 2, left_ - 5, lineHeight()),
                      Qt::AlignRight | Qt::AlignVCenter, tr("lights"));
   }
+}
+
+void TimelineStrip::paintRoles(QPainter& painter) {
   painter.setRenderHint(QPainter::Antialiasing);
+  const int from = firstInView(), to = endOfView();
+  const double wide = cell(0).width();
   int widest = 0;
   for (int i = from; i < to; i += std::max(1, (to - from) / 16))
     widest = std::max(widest, painter.fontMetrics().horizontalAdvance(idText(i)));
   const int labelEvery = std::max(1, int(std::ceil((widest + 10) / wide)));
-  const double r = std::clamp(wide / 2 - 1, 0.75, 4.5);
   for (int i = from; i < to; ++i) {
-    const FrameRole role = document_.role(i);
-    const QPointF mark = roleMark(i).center();
-    if (role == FrameRole::Training) {
-      painter.fillRect(QRectF(mark - QPointF(r, 4.5), mark + QPointF(r, 4.5)), toQColor(draw::kTraining).lighter(130));
-    } else if (role == FrameRole::HeldOut) {
-      painter.setPen(QPen(toQColor(draw::kHeldOut), 1.3));
-      if (wide > 6)
-        painter.drawEllipse(mark, r - 0.5, r - 0.5);
-      else
-        painter.drawPoint(mark);
-    } else {
-      painter.setPen(QPen(toQColor(draw::kExcluded).lighter(130), 1.5));
-      painter.drawLine(mark - QPointF(r, 4), mark + QPointF(r, 4));
-      painter.drawLine(mark + QPointF(-r, 4), mark + QPointF(r, -4));
-    }
-    if (i % labelEvery == 0) {
-      painter.setPen(palette().color(QPalette::PlaceholderText));
-      painter.drawText(QRectF(frameX(i + 0.5) - 40 * scale_, height() - lineHeight() - 1, 80 * scale_, lineHeight()),
-                       Qt::AlignCenter, idText(i));
-    }
+    paintRole(painter, i, wide);
+    if (i % labelEvery != 0) continue;
+    painter.setPen(palette().color(QPalette::PlaceholderText));
+    painter.drawText(QRectF(frameX(i + 0.5) - 40 * scale_, height() - lineHeight() - 1, 80 * scale_, lineHeight()),
+                     Qt::AlignCenter, idText(i));
+  }
+}
+
+/// @param wide  px, of a frame
+void TimelineStrip::paintRole(QPainter& painter, int frame, double wide) {
+  const double r = std::clamp(wide / 2 - 1, 0.75, 4.5);
+  const FrameRole role = document_.role(frame);
+  const QPointF mark = roleMark(frame).center();
+  if (role == FrameRole::Training) {
+    painter.fillRect(QRectF(mark - QPointF(r, 4.5), mark + QPointF(r, 4.5)), toQColor(draw::kTraining).lighter(130));
+  } else if (role == FrameRole::HeldOut) {
+    painter.setPen(QPen(toQColor(draw::kHeldOut), 1.3));
+    if (wide > 6)
+      painter.drawEllipse(mark, r - 0.5, r - 0.5);
+    else
+      painter.drawPoint(mark);
+  } else {
+    painter.setPen(QPen(toQColor(draw::kExcluded).lighter(130), 1.5));
+    painter.drawLine(mark - QPointF(r, 4), mark + QPointF(r, 4));
+    painter.drawLine(mark + QPointF(-r, 4), mark + QPointF(r, -4));
   }
 }
 

@@ -77,8 +77,21 @@ class TimelineStrip : public QWidget {
   void paintThumbnails(QPainter& painter);
   void paintErrors(QPainter& painter);
   void paintMissed(QPainter& painter);
-  void paintRows(QPainter& painter);
+  void paintAxisTexts(QPainter& painter, const QRectF& errors);
+  void paintBars(QPainter& painter, const viz::TimelineData::Series& series, const std::vector<std::optional<QPointF>>& tops,
+                 const QColor& colour, const QRectF& errors);
+  void paintLine(QPainter& painter, const viz::TimelineData::Series& series, const std::vector<std::optional<QPointF>>& points,
+                 const QColor& colour);
+  /// Errors are drawn per frame where there is room, else per column of the screen.
+  bool perFrame() const;
+  int columns() const;
+  double middleX(int i) const;  ///< of a frame or a column
+  void paintLights(QPainter& painter);
+  void paintRoles(QPainter& painter);
+  void paintRole(QPainter& painter, int frame, double wide);
   void paintUnreadable(QPainter& painter);
+  int firstInView() const { return std::max(0, int(first_)); }
+  int endOfView() const { return std::min(document_.frameCount(), int(std::ceil(first_ + inView_))); }
   double frameX(double frame) const;
   QRectF thumbnailRow() const;
   QRectF chart() const;

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "gui/window/main_window.h"
 
-#include <QAbstractButton>
 #include <QApplication>
 #include <QCloseEvent>
 #include <QDockWidget>
 #include <QFileInfo>
 #include <QHBoxLayout>
 #include <QLabel>
-#include <QMenuBar>
 #include <QMimeData>
 #include <QScreen>
 #include <QSplitter>
@@ -16,7 +14,6 @@
 #include <QStatusBar>
 #include <QTableView>
 #include <QTimer>
-#include <QToolBar>
 #include <QUndoView>
 #include <QVBoxLayout>
 #include <initializer_list>
@@ -53,18 +50,12 @@
 #include "gui/timeline/timeline.h"
 #include "gui/whatif/what_if_panel.h"
 #include "gui/window/changed_inputs.h"
-#include "gui/window/context_menus.h"
 #include "gui/window/file_actions.h"
 #include "gui/window/input_report.h"
 #include "gui/window/job_status.h"
 #include "gui/window/message_bar.h"
-#include "gui/window/own_layouts.h"
-#include "gui/window/palette.h"
-#include "gui/window/palette_items.h"
-#include "gui/window/pinned_results.h"
 #include "gui/window/recovery.h"
 #include "gui/window/scripted_actions.h"
-#include "gui/window/shortcut_dialog.h"
 #include "gui/window/start_page.h"
 #include "gui/window/teaching.h"
 #include "gui/window/undecided.h"
@@ -104,6 +95,18 @@ MainWindow::MainWindow(Engine engine, QWidget* parent)
   script_ = new ScriptedActions(
       actions_, [this] { return quiet() && (document_.scene() || document_.inputFile().isEmpty()); }, this);
 
+  connectFiles();
+  connectRunner();
+  connectDocument();
+  offerRecovery();
+  start_->setRecent(files_->recent());
+  showTitle();
+  applyLayout(QStringLiteral("debug"));
+}
+
+MainWindow::~MainWindow() = default;
+
+void MainWindow::connectFiles() {
   connect(files_, &FileActions::problem, this, &MainWindow::showProblem);
   connect(files_, &FileActions::message, this, &MainWindow::tell);
   connect(files_, &FileActions::recentChanged, this, [this] { start_->setRecent(files_->recent()); });
@@ -123,6 +126,18 @@ MainWindow::MainWindow(Engine engine, QWidget* parent)
   exports_->setSnapshot([this] { return snapshot(); });
   exports_->setLog([this] { return log_->text(); });
   files_->setViewSource([this](Opened& opened) { addView(opened); });
+  connect(files_, &FileActions::notice, this, [this](const QString& line) {
+    log(line);
+    messageBar_->showNotice(line);
+  });
+  connect(unreadable_, &UnreadableFiles::problem, this, &MainWindow::showProblem);
+  connect(unreadable_, &UnreadableFiles::message, this, &MainWindow::log);
+  connect(unreadable_, &UnreadableFiles::changed, this, [this] { timeline_->strip()->setUnreadable(unreadable_->all()); });
+  connect(frame_, &FramePanel::photographFailed, unreadable_, &UnreadableFiles::note);
+  connect(frame_, &FramePanel::problem, this, &MainWindow::showProblem);
+}
+
+void MainWindow::connectRunner() {
   connect(&runner_, &Runner::failed, this, [this](const QString& oneLine) {
     runFailed_ = true;
     if (const MissingPtr located = std::exchange(located_, {}); !missing_) missing_ = located;  // it was not the right file
@@ -143,6 +158,13 @@ MainWindow::MainWindow(Engine engine, QWidget* parent)
     report_->start();
   });
   connect(&runner_, &Runner::frameFinished, &document_, &Document::setFrameInspection);
+  // failed() comes next, and shows these.
+  connect(&runner_, &Runner::inputMissing, this, [this](const MissingPtr& missing) { missing_ = missing; });
+  connect(&runner_, &Runner::outsideNamed, this, [this](const OutsidePtr& outside) { outside_ = outside; });
+  connect(&runner_, &Runner::inputUndecided, this, [this](const UndecidedPtr& undecided) { undecided_ = undecided; });
+}
+
+void MainWindow::connectDocument() {
   connect(&document_, &Document::requestChanged, this, &MainWindow::recompute);
   connect(&unexpected(), &Unexpected::problem, this,
           [this](const QString& line) { tell(tr("Unexpected failure: %1").arg(line)); });
@@ -156,24 +178,9 @@ MainWindow::MainWindow(Engine engine, QWidget* parent)
   });
   connect(&document_, &Document::sceneOpened, this, &MainWindow::showTitle);
   connect(&document_, &Document::savedStateChanged, this, &MainWindow::showTitle);
-  connect(&runner_, &Runner::inputMissing, this, [this](const MissingPtr& missing) {
-    missing_ = missing;  // failed() comes next, and shows it
-  });
-  connect(&runner_, &Runner::outsideNamed, this, [this](const OutsidePtr& outside) {
-    outside_ = outside;  // failed() comes next, and shows it
-  });
-  connect(&runner_, &Runner::inputUndecided, this, [this](const UndecidedPtr& undecided) {
-    undecided_ = undecided;  // failed() comes next, and shows it
-  });
-  connect(files_, &FileActions::notice, this, [this](const QString& line) {
-    log(line);
-    messageBar_->showNotice(line);
-  });
-  connect(unreadable_, &UnreadableFiles::problem, this, &MainWindow::showProblem);
-  connect(unreadable_, &UnreadableFiles::message, this, &MainWindow::log);
-  connect(unreadable_, &UnreadableFiles::changed, this, [this] { timeline_->strip()->setUnreadable(unreadable_->all()); });
-  connect(frame_, &FramePanel::photographFailed, unreadable_, &UnreadableFiles::note);
-  connect(frame_, &FramePanel::problem, this, &MainWindow::showProblem);
+}
+
+void MainWindow::offerRecovery() {
   auto* recovery = new Recovery(
       engine_, document_, [this] { return snapshot(); }, *files_, *messageBar_, this);
   connect(recovery, &Recovery::problem, this, &MainWindow::log);
@@ -182,12 +189,7 @@ MainWindow::MainWindow(Engine engine, QWidget* parent)
     history->setEmptyLabel(recovered ? tr("As recovered; earlier steps are lost") : tr("As opened"));
   });
   recovery->offer();
-  start_->setRecent(files_->recent());
-  showTitle();
-  applyLayout(QStringLiteral("debug"));
 }
-
-MainWindow::~MainWindow() = default;
 
 void MainWindow::buildCentre() {
   auto* middle = new QWidget;
@@ -229,22 +231,19 @@ void MainWindow::buildCentre() {
 void MainWindow::buildDocks() {
   setCorner(Qt::BottomLeftCorner, Qt::BottomDockWidgetArea);
   setCorner(Qt::BottomRightCorner, Qt::RightDockWidgetArea);
+  buildLeftDocks();
+  buildRightDocks();
+  buildResultDocks();
+  buildWorkDocks();
+}
+
+void MainWindow::buildLeftDocks() {
   setup_ = new SetupPanel(document_);
   connect(setup_, &SetupPanel::autoRequested, this, [this](double goodEnoughPct) {
     if (document_.scene() && engine_.choose)
       runner_.choose(document_.sharedScene(), document_.request(), goodEnoughPct, document_.computed());
   });
-  connect(&runner_, &Runner::chosen, this, [this](const SelectionPtr& selection, const OpenedPtr& computedFor) {
-    if (computedFor->scene != document_.sharedScene() || computedFor->request != document_.request()) return;  // too late
-    const QString table = toQString(selectionTable(*selection));
-    log(tr("Automatic choice of model\n") + table);
-    setup_->showChoice(toQString(selection->why + (selection->patches ? " " + selection->patches->why : "")), table);
-    if (!selection->best.empty())
-      document_.setRequest(chosenRequest(document_.request(), *selection),
-                           (selection->model.empty() ? tr("Best of those refused: %1") : tr("Automatic choice: %1"))
-                               .arg(toQString(selection->best)));
-    if (document_.stale()) recompute();  // the choice took the place of a run that was under way
-  });
+  connect(&runner_, &Runner::chosen, this, &MainWindow::takeChoice);
   docks_.add("setup", tr("Setup"), setup_, Qt::LeftDockWidgetArea);
   auto* layers = new LayerPanel(document_);
   docks_.add("layers", tr("Layers"), layers, Qt::LeftDockWidgetArea);
@@ -260,7 +259,9 @@ void MainWindow::buildDocks() {
   history->setEmptyLabel(tr("As opened"));
   history->setItemDelegate(new ElidingDelegate(history));
   docks_.add("history", tr("History"), history, Qt::LeftDockWidgetArea, "layers");
+}
 
+void MainWindow::buildRightDocks() {
   parameters_ = new ParameterPanel(document_);
   docks_.add("parameters", tr("Settings"), parameters_, Qt::RightDockWidgetArea);
   whatIf_ = new WhatIfPanel(document_);
@@ -275,7 +276,10 @@ void MainWindow::buildDocks() {
   connect(explain_, &ExplainPanel::lessonRequested, files_, &FileActions::open);
   connect(explain_, &ExplainPanel::problem, this, &MainWindow::showProblem);
   teaching_ = new Teaching({this, document_, docks_, *layout_, *explain_, *scene_, *frame_});
+}
 
+/// At the bottom: what the results are.
+void MainWindow::buildResultDocks() {
   timeline_ = new Timeline(document_);
   docks_.add("timeline", tr("Timeline"), timeline_, Qt::BottomDockWidgetArea);
   errors_ = new ErrorTable(document_);
@@ -297,6 +301,10 @@ void MainWindow::buildDocks() {
   connect(report_, &InputReport::problem, this, &MainWindow::showProblem);
   connect(report_, &InputReport::message, this, &MainWindow::log);
   connect(report_, &InputReport::shown, this, [this] { docks_.bring(QStringLiteral("report")); });
+}
+
+/// At the bottom: what is measured or compared when somebody asks for it.
+void MainWindow::buildWorkDocks() {
   ladder_ = new LadderPanel(document_, *frame_->loader());
   docks_.add("ladder", tr("Ladder"), ladder_, Qt::BottomDockWidgetArea, "errors");
   tradeoff_ = new TradeoffPanel(document_);
@@ -307,12 +315,7 @@ void MainWindow::buildDocks() {
                       (document_.sessionFile().isEmpty() ? document_.inputFile() : document_.sessionFile()).toStdString());
   });
   connect(&runner_, &Runner::busyChanged, tradeoff_, &TradeoffPanel::setBusy);
-  connect(&runner_, &Runner::measured, this, [this](const TradeoffPtr& tradeoff, const OpenedPtr& computedFor) {
-    if (computedFor->scene != document_.sharedScene()) return;
-    document_.setTradeoff(tradeoff);
-    log(tr("Speed and accuracy: %1").arg(toQString(tradeoff->reason)));
-    if (document_.stale()) recompute();  // the measurement took the place of a run that was under way
-  });
+  connect(&runner_, &Runner::measured, this, &MainWindow::takeTradeoff);
   comparison_ = new ComparisonPanel(engine_, document_, *exports_->longJob());
   docks_.add("comparison", tr("Comparison"), comparison_, Qt::BottomDockWidgetArea, "errors");
   connect(comparison_, &ComparisonPanel::problem, this, &MainWindow::showProblem);
@@ -324,131 +327,39 @@ void MainWindow::buildDocks() {
   connect(lamps_, &LampsInWindow::shown, this, [this] { docks_.bring(QStringLiteral("lamps")); });
   connect(plots_, &PlotsPanel::problem, this, &MainWindow::showProblem);
   connect(plots_, &PlotsPanel::shown, this, [this] { docks_.bring(QStringLiteral("plots")); });
-  const auto measureInfluence = [this] {
-    if (document_.inspection() && engine_.influence) runner_.influence(document_.inspection());
-  };
-  connect(plots_, &PlotsPanel::influenceRequested, this, measureInfluence);
-  connect(scene_, &ScenePanel::influenceRequested, this, measureInfluence);
-  connect(tree_, &SceneTree::influenceRequested, this, measureInfluence);
-  connect(&runner_, &Runner::influenceMeasured, this, [this](const InfluencePtr& influence, const InspectionPtr& inspection) {
-    if (inspection->given != document_.sharedScene()) return;
-    document_.setInfluence(influence, inspection->request);
-    if (document_.stale()) recompute();  // it took the place of a run that was under way
-  });
+  connect(plots_, &PlotsPanel::influenceRequested, this, &MainWindow::measureInfluence);
+  connect(scene_, &ScenePanel::influenceRequested, this, &MainWindow::measureInfluence);
+  connect(tree_, &SceneTree::influenceRequested, this, &MainWindow::measureInfluence);
+  connect(&runner_, &Runner::influenceMeasured, this, &MainWindow::takeInfluence);
 }
 
-void MainWindow::buildMenus() {
-  QMenu* file = menuBar()->addMenu(tr("&File"));
-  files_->addActions(actions_, file);
-  file->addSeparator();
-  comparison_->addActions(actions_, file);
-  unreadable_->addActions(actions_, file);
-  exports_->setViews(*scene_, *frame_);
-  exports_->addActions(actions_, file->addMenu(tr("&Export")));
-  log_->setReport(actions_.find("export.diagnostic"));
-  file->addSeparator();
-  actions_.add("file.quit", file, tr("&Quit"), [this] { close(); }, {QKeySequence::keyBindings(QKeySequence::Quit)});
+void MainWindow::takeChoice(const SelectionPtr& selection, const OpenedPtr& computedFor) {
+  if (computedFor->scene != document_.sharedScene() || computedFor->request != document_.request()) return;  // too late
+  const QString table = toQString(selectionTable(*selection));
+  log(tr("Automatic choice of model\n") + table);
+  setup_->showChoice(toQString(selection->why + (selection->patches ? " " + selection->patches->why : "")), table);
+  if (!selection->best.empty())
+    document_.setRequest(chosenRequest(document_.request(), *selection),
+                         (selection->model.empty() ? tr("Best of those refused: %1") : tr("Automatic choice: %1"))
+                             .arg(toQString(selection->best)));
+  if (document_.stale()) recompute();  // the choice took the place of a run that was under way
+}
 
-  QMenu* edit = menuBar()->addMenu(tr("&Edit"));
-  QUndoStack* stack = document_.undoStack();
-  actions_.adopt("edit.undo", edit, stack->createUndoAction(this, tr("&Undo")), {{QKeySequence::Undo}, "undo"});
-  actions_.adopt("edit.redo", edit, stack->createRedoAction(this, tr("&Redo")), {{QKeySequence::Redo}, "redo"});
-  edit->addSeparator();
-  actions_.add("edit.copy-numbers", edit, tr("Copy &numbers"), [this] { numbers_->copy(); }, {{}, "copy"});
-  errors_->addActions(actions_, edit);
-  connect(errors_, &ErrorTable::shown, this, [this] { docks_.bring(QStringLiteral("errors")); });
-  actions_.add("edit.stop", edit, tr("&Stop computation"),
-               [this] {
-                 runner_.cancel();
-                 exports_->longJob()->cancel();
-               },
-               {{Qt::Key_Escape}, "stop"});
-  // Actions with a button in a panel are in menus and the palette, too.
-  const auto press = [this](const char* button) {
-    return [this, button] { findChild<QAbstractButton*>(QLatin1String(button))->click(); };
-  };
-  edit->addSeparator();
-  actions_.add("edit.auto-model", edit, tr("Choose &model automatically"), press("autoModel"));
-  actions_.add("edit.what-if-back", edit, tr("Reset &what-if"), press("whatif.reset"));
+void MainWindow::takeTradeoff(const TradeoffPtr& tradeoff, const OpenedPtr& computedFor) {
+  if (computedFor->scene != document_.sharedScene()) return;
+  document_.setTradeoff(tradeoff);
+  log(tr("Speed and accuracy: %1").arg(toQString(tradeoff->reason)));
+  if (document_.stale()) recompute();  // the measurement took the place of a run that was under way
+}
 
-  edit->addSeparator();
-  palette_ = new Palette(
-      [this](const QString& typed) {
-        const auto leadTo = [this](const char* dock, auto show) {
-          return [this, dock, show](const std::string& key) {
-            docks_.bring(QLatin1String(dock));
-            show(key);
-          };
-        };
-        return paletteItems(typed, actions_, document_,
-                            {leadTo("parameters", [this](const std::string& key) { parameters_->showParameter(key); }),
-                             leadTo("what-if", [this](const std::string& key) { whatIf_->showKnob(key); }),
-                             [this] { return scene_->views().activeView(); }});
-      },
-      this);
-  palette_->setOpener(actions_.add("edit.palette", edit, tr("&Find action, setting or frame…"), [this] { palette_->popUp(); },
-                                   {{QKeySequence("Ctrl+K"), QKeySequence("Ctrl+Shift+P")}}));
-  actions_.add("edit.shortcuts", edit, tr("&Keyboard shortcuts…"), [this] { ShortcutDialog(actions_, this).exec(); });
+void MainWindow::measureInfluence() {
+  if (document_.inspection() && engine_.influence) runner_.influence(document_.inspection());
+}
 
-  QMenu* frame = menuBar()->addMenu(tr("F&rame"));
-  timeline_->addActions(actions_, frame);
-  frame->addSeparator();
-  frame_->addActions(actions_, frame);
-  ladder_->addActions(actions_, frame);
-
-  QMenu* plots = menuBar()->addMenu(tr("&Plots"));
-  plots_->addActions(actions_, plots);
-  plots->addSeparator();
-  actions_.add("plots.measure", plots, tr("Measure speed and &accuracy"), [this, press] {
-    docks_.bring(QStringLiteral("tradeoff"));
-    press("measureTradeoff")();
-  });
-  diagnosis_->addActions(actions_, plots, [this] { docks_.bring(QStringLiteral("problems")); });
-  lamps_->addActions(actions_, plots, file);
-
-  QMenu* view = menuBar()->addMenu(tr("&View"));
-  scene_->addActions(actions_, view);
-  tree_->addActions(actions_, view);
-  view->addSeparator();
-  QMenu* layoutMenu = view->addMenu(tr("&Layout"));
-  for (const Layout& layout : layouts()) {
-    const QString name = QString::fromLatin1(layout.name);
-    actions_.add("view.layout-" + name, layoutMenu, tr(layout.title), [this, name] { applyLayout(name); });
-  }
-  layoutMenu->addSeparator();
-  auto* own = new OwnLayouts(this, views_);
-  own->addActions(actions_, layoutMenu);
-  connect(own, &OwnLayouts::applied, layout_, &WindowLayout::setOwn);
-  docks_.addActions(actions_, view->addMenu(tr("&Panels")));
-  view->addSeparator();
-  actions_.add("view.theme", view, tr("Switch light/dark &theme"),
-               [this] {
-                 setTheme(currentTheme() == Theme::Dark ? Theme::Light : Theme::Dark);
-                 keepTheme(currentTheme());
-               },
-               {{}, "theme"});
-
-  auto* pinned = new PinnedResults(document_, {scene_, frame_}, this);
-  pinned->addActions(actions_, view);
-  connect(pinned, &PinnedResults::message, this, &MainWindow::tell);
-
-  explain_->addActions(actions_, menuBar()->addMenu(tr("E&xplain")));
-  teaching_->addActions(actions_, menuBar()->addMenu(tr("&Help")), view);
-  connect(teaching_, &Teaching::frameRequested, this, [this](int by) { timeline_->strip()->step(by); });
-
-  QToolBar* bar = addToolBar(tr("Tools"));
-  bar->setObjectName(QStringLiteral("tools"));
-  bar->setMovable(false);
-  bar->setIconSize({18, 18});
-  for (const char* id : {"file.open", "file.save", "", "edit.undo", "edit.redo", "", "view.frame-all", "view.look-through",
-                         "frame.highlight", "", "view.theme"}) {
-    if (QAction* action = actions_.find(QLatin1String(id)))
-      bar->addAction(action);
-    else
-      bar->addSeparator();
-  }
-  actions_.loadShortcuts();
-  offerMenus(actions_, *frame_, *plots_, *errors_);
+void MainWindow::takeInfluence(const InfluencePtr& influence, const InspectionPtr& inspection) {
+  if (inspection->given != document_.sharedScene()) return;
+  document_.setInfluence(influence, inspection->request);
+  if (document_.stale()) recompute();  // it took the place of a run that was under way
 }
 
 void MainWindow::buildStatusLine() {

@@ -91,8 +91,25 @@ class MainWindow : public QMainWindow {
  private:
   void buildCentre();
   void buildDocks();
+  void buildLeftDocks();
+  void buildRightDocks();
+  void buildResultDocks();
+  void buildWorkDocks();
   void buildMenus();
+  void fillFileMenu(QMenu* file);
+  void fillEditMenu(QMenu* edit);
+  void fillViewMenu(QMenu* view);
+  void buildPalette();
+  void press(const char* button);  ///< by its object name
   void buildStatusLine();
+  void connectFiles();
+  void connectRunner();
+  void connectDocument();
+  void offerRecovery();
+  void takeChoice(const SelectionPtr& selection, const OpenedPtr& computedFor);
+  void takeTradeoff(const TradeoffPtr& tradeoff, const OpenedPtr& computedFor);
+  void measureInfluence();
+  void takeInfluence(const InfluencePtr& influence, const InspectionPtr& inspection);
   void recompute();
   void showProblem(const QString& oneLine);
   void offerToLocate(const QString& oneLine, const MissingPtr& missing);

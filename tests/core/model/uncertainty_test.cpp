@@ -17,7 +17,7 @@ using namespace test;
 
 // Camera at height d straight above the plane, value = distance from the axis, level r: moving the level by s metres moves the
 // circle by s f / d pixels everywhere.
-TEST(LevelSetSigma, OfACircleSeenFromAbove) {
+TEST(LevelSetShifts, OfACircleSeenFromAbove) {
   const Camera camera = lookAt({0, 0, 4}, {0, 0, 0}, 800);
   const auto surface = makeAnalytic(plane());
   SurfaceField field;
@@ -31,15 +31,17 @@ TEST(LevelSetSigma, OfACircleSeenFromAbove) {
   std::vector<Pixel> circle;
   for (int i = 0; i < 24; ++i)
     circle.push_back(*camera.project({0.3 * std::cos(i * M_PI / 12), 0.3 * std::sin(i * M_PI / 12), 0}));
-  const std::vector<double> sigma = levelSetSigmaPx(circle, field, camera, *surface, slopes);
-  ASSERT_EQ(sigma.size(), 24u);
+  const Eigen::VectorXd sigma = levelSetShiftsPx(circle, field, camera, *surface, slopes).rowwise().norm();
+  ASSERT_EQ(sigma.size(), 24);
   for (int i = 0; i < 24; ++i)  // 1e-4: the difference over half a pixel of a radius of 60 px
     EXPECT_NEAR(sigma[i], s * 800 / 4 * std::hypot(1, 3 * std::cos(i * M_PI / 12)), 1e-4) << i;
   // Points that are not on the level lie on the surface's edge, or nowhere.
-  EXPECT_EQ(levelSetSigmaPx({Pixel(10, 10), Pixel(1e9, 1e9)}, field, camera, *surface, slopes), std::vector<double>({0, 0}));
+  const Eigen::MatrixXd none = levelSetShiftsPx({Pixel(10, 10), Pixel(1e9, 1e9)}, field, camera, *surface, slopes);
+  EXPECT_EQ(none.rows(), 2);
+  EXPECT_FALSE(none.any());
 }
 
-TEST(PolylineSigma, OfAGrowingCircle) {
+TEST(PolylineShifts, OfAGrowingCircle) {
   const auto circle = [](double radius, int n) {
     Polyline line{{}, true};
     for (int i = 0; i < n; ++i)
@@ -47,13 +49,14 @@ TEST(PolylineSigma, OfAGrowingCircle) {
     return line;
   };
   const double step = 0.25;
-  for (const int other : {90, 400})  // the same vertices, and others
-    for (const double s : polylineSigmaPx(circle(20, 90),
-                                          {{circle(20 + 3 * step, other), circle(20 - 3 * step, other)},
-                                           {circle(20 - 4 * step, other), circle(20 + 4 * step, other)}},
-                                          step))
-      EXPECT_NEAR(s, 5, 0.02) << other;  // chords of 90 vertices
-  EXPECT_EQ(polylineSigmaPx(circle(20, 12), {}, step), std::vector<double>(12, 0.0));
+  for (const int other : {90, 400}) {  // the same vertices, and others
+    const Eigen::MatrixXd shifts = polylineShiftsPx(circle(20, 90),
+                                                    {{circle(20 + 3 * step, other), circle(20 - 3 * step, other)},
+                                                     {circle(20 - 4 * step, other), circle(20 + 4 * step, other)}},
+                                                    step);
+    for (int i = 0; i < 90; ++i) EXPECT_NEAR(shifts.row(i).norm(), 5, 0.02) << other;  // chords of 90 vertices
+  }
+  EXPECT_EQ(polylineShiftsPx(circle(20, 12), {}, step).rows(), 12);
 }
 
 TEST(IncidentAngleByLight, AgreesWithDifferences) {
