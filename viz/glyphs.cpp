@@ -150,16 +150,6 @@ vtkSmartPointer<vtkActor> ellipsoidActor(const Eigen::Affine3d& worldFromUnitSph
   return actor;
 }
 
-Points circle(const Eigen::Vector3d& centre, const Eigen::Vector3d& axisU, const Eigen::Vector3d& axisV, int n) {
-  Points points;
-  points.reserve(static_cast<std::size_t>(n) + 1);
-  for (int i = 0; i <= n; ++i) {
-    const double t = 2 * std::numbers::pi * (i % n) / n;
-    points.push_back(centre + std::cos(t) * axisU + std::sin(t) * axisV);
-  }
-  return points;
-}
-
 std::vector<Segment> dashed(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double dash) {
   const double length = (to - from).norm();
   if (!(length > 0) || !(dash > 0)) return {};
@@ -171,7 +161,5 @@ std::vector<Segment> dashed(const Eigen::Vector3d& from, const Eigen::Vector3d& 
   }
   return segments;
 }
-
-std::optional<Eigen::Vector3d> intersection(const Ray& ray, const Plane& plane) { return draw::intersection(ray, plane); }
 
 }  // namespace glint::viz

@@ -6,10 +6,9 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
-#include <optional>
 #include <vector>
 
-#include "core/geometry/plane.h"
+#include "core/draw/scene_drawing.h"
 #include "viz/convert.h"
 #include "viz/style.h"
 
@@ -30,11 +29,7 @@ vtkSmartPointer<vtkActor> sheetActor(const TriangleMesh& mesh, const Colour& col
 /// The lit unit sphere carried by an affine transformation.
 vtkSmartPointer<vtkActor> ellipsoidActor(const Eigen::Affine3d& worldFromUnitSphere, const Colour& colour, double opacity);
 
-/// A circle of `n` points (the first repeated at the end).
-Points circle(const Eigen::Vector3d& centre, const Eigen::Vector3d& axisU, const Eigen::Vector3d& axisV, int n = 96);
 /// Dashes of about `dash` with gaps of the same length, at most 200.
 std::vector<Segment> dashed(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double dash);
-/// Where a ray meets a plane in front of its origin; nothing if it is parallel or behind.
-std::optional<Eigen::Vector3d> intersection(const Ray& ray, const Plane& plane);
 
 }  // namespace glint::viz

@@ -25,26 +25,6 @@ namespace {
 constexpr int kTessellation = 128;     ///< cells a side of an analytic surface
 constexpr int kCoarseDivisions = 120;  ///< cells along the longest side: some 50,000 triangles
 
-bool isFinite(const Eigen::AlignedBox3d& box) { return !box.isEmpty() && box.min().allFinite() && box.max().allFinite(); }
-
-/// Median distance from a camera to its nearest neighbour; infinity for one camera.
-double typicalSpacing(const Inspection& inspection, const std::vector<int>& frames) {
-  std::vector<double> nearest;
-  const std::size_t step = std::max<std::size_t>(1, frames.size() / 200);  // quadratic: a sample is enough for a size
-  for (std::size_t i = 0; i < frames.size(); i += step) {
-    const Eigen::Vector3d a = inspection.scene->frames[static_cast<std::size_t>(frames[i])].camera.centreInWorld();
-    double best = std::numeric_limits<double>::infinity();
-    for (const int other : frames) {
-      const double d = (inspection.scene->frames[static_cast<std::size_t>(other)].camera.centreInWorld() - a).norm();
-      if (other != frames[i] && d > 0) best = std::min(best, d);
-    }
-    nearest.push_back(best);
-  }
-  if (nearest.empty()) return std::numeric_limits<double>::infinity();
-  std::nth_element(nearest.begin(), nearest.begin() + static_cast<std::ptrdiff_t>(nearest.size() / 2), nearest.end());
-  return nearest[nearest.size() / 2];
-}
-
 }  // namespace
 
 bool LayerInput::onSurface(int frame) const { return !inspection->surfaces || inspection->surfaces->keyOf(frame) == surfaceKey; }
@@ -57,31 +37,12 @@ std::vector<const TrainingView*> LayerInput::views() const {
   return result;
 }
 
-std::vector<TrainingView> LayerInput::ownViews() const {
-  std::vector<TrainingView> result;
-  const auto at = static_cast<std::size_t>(selection.frame);
-  if (!surface || at >= inspection->evidence.size() || inspection->isTraining(selection.frame) || !shows(selection.frame))
-    return result;
-  const FrameEvidence& evidence = inspection->evidence[at];
-  for (std::size_t i = 0; i < evidence.highlights.size(); ++i) {
-    TrainingView view = trainingView(evidence, static_cast<int>(i), frame(selection.frame).camera, surface);
-    if (!view.seen) continue;
-    view.frame = selection.frame;  // evidence of one frame alone may not tell it
-    result.push_back(std::move(view));
-  }
-  return result;
-}
-
-std::vector<TrainingView> LayerInput::ownWalks() const {
-  std::vector<TrainingView> result;
-  std::vector<TrainingView> own = ownViews();
-  for (TrainingView& view : own) {
-    const LightEstimate* const light = inspection->lightFor(selection.frame, view.highlight.light);
-    if (!light) continue;
-    addCanonicalContour(view, light->light, inspection->request.settings);
-    if (view.canonical && view.seen) result.push_back(std::move(view));
-  }
-  return result;
+std::vector<TrainingView> LayerInput::ownViews(bool walked) const {
+  const bool looked = static_cast<std::size_t>(selection.frame) < inspection->evidence.size();
+  if (!surface || !looked || inspection->isTraining(selection.frame) || !shows(selection.frame)) return {};
+  std::vector<TrainingView> own = observedViews(*inspection, selection.frame, surface, walked);
+  if (walked) std::erase_if(own, [](const TrainingView& view) { return !view.canonical; });
+  return own;
 }
 
 std::vector<const TrainingView*> LayerInput::viewsOf(const ModelFit& fit) const {
@@ -116,61 +77,17 @@ std::vector<const FrameComparison*> LayerInput::comparisons(const std::string& m
   return result;
 }
 
-int LayerInput::highlightOf(const TrainingView& view) const {
-  const auto frame = static_cast<std::size_t>(view.frame);
-  if (view.frame < 0 || frame >= inspection->evidence.size()) return -1;
-  const std::vector<Highlight>& highlights = inspection->evidence[frame].highlights;
-  int nearest = -1;
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < highlights.size(); ++i) {  // the view may have noise added: the nearest of its light
-    const double d = (highlights[i].peak - view.highlight.peak).norm();
-    if (highlights[i].light != view.highlight.light || !(d < least)) continue;
-    nearest = static_cast<int>(i);
-    least = d;
-  }
-  return nearest;
-}
-
 std::vector<LayerInput::Mirror> LayerInput::mirrors(int frame) const {
   std::vector<Mirror> result;
-  for (const TrainingView* view : views()) {
-    if (view->frame == frame && view->seen)
-      result.push_back({view->seen->tangentPlane, highlightOf(*view), view->highlight.light});
-  }
+  const auto add = [&](const TrainingView& view) {
+    result.push_back({view.seen->tangentPlane, highlightOf(view), view.highlight.light});
+  };
+  for (const TrainingView* view : views())
+    if (view->frame == frame) add(*view);
   if (!result.empty() || !surface || static_cast<std::size_t>(frame) >= inspection->evidence.size()) return result;
   // A held-out frame has no training view: its mirrors are the tangent planes at the observed peaks.
-  const std::vector<Highlight>& highlights = inspection->evidence[static_cast<std::size_t>(frame)].highlights;
-  for (std::size_t i = 0; i < highlights.size(); ++i) {
-    const Outcome<BrightestPoint> b = observedBrightestPoint(*surface, this->frame(frame).camera, highlights[i].peak);
-    if (!b) continue;
-    const SurfacePoint p = facing(b->point, this->frame(frame).camera.centreInWorld());
-    result.push_back({Plane::through(p.position, p.normal), static_cast<int>(i), highlights[i].light});
-  }
+  for (const TrainingView& view : observedViews(*inspection, frame, surface, false)) add(view);
   return result;
-}
-
-SceneScale sceneScale(const Inspection& inspection, const Surface* surface, const std::vector<int>& frames, double glyphScale) {
-  SceneScale scale;
-  if (surface) scale.surfaceBox = draw::shownRegion(inspection, *surface, frames);
-  for (const int frame : frames)
-    scale.sceneBox.extend(inspection.scene->frames[static_cast<std::size_t>(frame)].camera.centreInWorld());
-  if (!isFinite(scale.surfaceBox)) {  // nothing seen: the cameras alone must do
-    scale.surfaceBox = scale.sceneBox;
-    for (const int frame : frames)
-      scale.surfaceBox.extend(inspection.scene->frames[static_cast<std::size_t>(frame)].camera.ray({0, 0}).at(1));
-  }
-  if (!isFinite(scale.surfaceBox)) scale.surfaceBox = {Eigen::Vector3d::Constant(-0.5), Eigen::Vector3d::Constant(0.5)};
-  scale.sceneBox.extend(scale.surfaceBox);
-  const double tiny =
-      1e-12 * std::max(1e-12, scale.sceneBox.min().cwiseAbs().cwiseMax(scale.sceneBox.max().cwiseAbs()).maxCoeff());
-  scale.surfaceSize = std::max(scale.surfaceBox.diagonal().norm(), tiny);
-  scale.sceneSize = std::max(scale.sceneBox.diagonal().norm(), scale.surfaceSize);
-  const double spacing = typicalSpacing(inspection, frames);
-  scale.cameraDepth = glyphScale * std::clamp(0.8 * spacing, 0.03 * scale.sceneSize, 0.10 * scale.sceneSize);
-  scale.lift = 7e-4 * scale.surfaceSize;
-  scale.point = glyphScale * 0.006 * scale.surfaceSize;
-  scale.arrow = glyphScale * 0.09 * scale.surfaceSize;
-  return scale;
 }
 
 std::vector<int> framesToDraw(const Inspection& inspection, const std::string& surfaceKey, int selected,
@@ -196,33 +113,14 @@ std::vector<int> framesToDraw(const Inspection& inspection, const std::string& s
   return frames;
 }
 
-std::optional<Eigen::Vector3d> castPixel(const Camera& camera, const Surface& surface, const Pixel& pixel, double lift) {
-  return draw::castPixel(camera, surface, pixel, lift);
-}
-
 std::vector<Points> castContour(const Camera& camera, const Surface& surface, const Polyline& contour, const SceneScale& scale,
                                 double lift) {
   return draw::castContour(camera, surface, contour, scale.surfaceSize, lift);
 }
 
-std::vector<Points> ellipseOnPlane(const Camera& camera, const Plane& plane, const Ellipse& ellipse, double lift) {
-  return draw::ellipseOnPlane(camera, plane, ellipse, lift);
-}
-
 double planeRadius(const Camera& camera, const Plane& plane, const Eigen::Vector3d& at, const std::vector<Pixel>& contour,
                    const SceneScale& scale, double times) {
   return draw::planeRadius(camera, plane, at, contour, scale.surfaceSize, times);
-}
-
-std::array<Eigen::Vector3d, 4> imagePlane(const Camera& camera, double depth) {
-  const double right = camera.width - 0.5, bottom = camera.height - 0.5;
-  const std::array<Pixel, 4> corners{Pixel(-0.5, -0.5), Pixel(right, -0.5), Pixel(right, bottom), Pixel(-0.5, bottom)};
-  const Eigen::Isometry3d worldFromCam = camera.camFromWorld.inverse();
-  const Eigen::Matrix3d rayFromPixel = camera.pixelFromRay.inverse();
-  std::array<Eigen::Vector3d, 4> world;
-  for (std::size_t i = 0; i < 4; ++i)
-    world[i] = worldFromCam * Eigen::Vector3d(depth * (rayFromPixel * corners[i].homogeneous()));
-  return world;
 }
 
 namespace {

@@ -16,7 +16,9 @@
 #include <string>
 #include <vector>
 
+#include "core/draw/scene_drawing.h"
 #include "core/inspect/inspection.h"
+#include "core/inspect/summary.h"
 #include "core/lamps/lamp_answer.h"
 #include "viz/convert.h"
 #include "viz/hidden_objects.h"
@@ -33,18 +35,6 @@ struct DrawnRuns;
 
 constexpr double kAboutCanonical = 1.3;      ///< radius of a tangent plane that holds a canonical contour, of that contour's
 constexpr long long kLargeSurface = 200000;  ///< triangles: beyond, drawing takes more than 50 ms without a graphics card
-
-/// Sizes that everything drawn is derived from, so that millimetres and kilometres look alike.
-struct SceneScale {
-  Eigen::AlignedBox3d surfaceBox;  ///< the surface where it is bounded, else what the cameras see of it
-  Eigen::AlignedBox3d sceneBox;    ///< surface and camera centres
-  double surfaceSize = 1;          ///< diagonal of surfaceBox, > 0
-  double sceneSize = 1;            ///< diagonal of sceneBox, > 0
-  double cameraDepth = 0.1;        ///< from a camera's centre to its drawn image plane
-  double lift = 1e-3;              ///< one step off the surface, so that what lies on it is not hidden in it
-  double point = 1e-2;             ///< radius of a point
-  double arrow = 0.1;              ///< length of a normal
-};
 
 /// Results of slow look-ups, kept while the inspection (or its scene) stays the same.
 class LayerCache {
@@ -113,11 +103,10 @@ struct LayerInput {
   /// Usable training views on the shown surface, of frames that are shown.
   std::vector<const TrainingView*> views() const;
   /// Where the selected frame does not train: brightest point, tangent plane and virtual camera of each highlight observed in it.
-  /// Without canonical contours. Empty if it trains, has no surface or is hidden.
-  std::vector<TrainingView> ownViews() const;
-  /// The same with the canonical contours of what was observed, by the light that the training frames gave; only those that have
-  /// one. Walks for some milliseconds.
-  std::vector<TrainingView> ownWalks() const;
+  /// Empty if it trains, has no surface or is hidden.
+  /// @param walked  with their canonical contours by the light that the training frames gave, and only those that have one:
+  ///                some milliseconds
+  std::vector<TrainingView> ownViews(bool walked = false) const;
   /// Usable views that a fit was made from, whatever surface they see, of frames that are shown.
   std::vector<const TrainingView*> viewsOf(const ModelFit& fit) const;
   /// Usable fits of a model that apply to the shown surface and are not hidden.
@@ -132,7 +121,11 @@ struct LayerInput {
   };
   std::vector<Mirror> mirrors(int frame) const;
   /// Index of a training view's highlight in its frame's evidence; -1 if it is missing.
-  int highlightOf(const TrainingView& view) const;
+  int highlightOf(const TrainingView& view) const { return draw::highlightOf(*inspection, view); }
+  /// Whether the fit behind a prediction explains its training views badly: it is drawn pale.
+  bool isPoor(const std::string& model, const FrameComparison& comparison) const {
+    return !poorFit(inspection->models.at(model), comparison).empty();
+  }
   /// Ink that reads on the background.
   Colour ink() const { return dark ? kTextOnDark : kTextOnLight; }
 };
@@ -243,20 +236,14 @@ enum class Behind { Nothing, VirtualCameras, Ellipsoids };
 /// away. While something moves, the coarse triangles stand for it.
 void styleSurface(const LayerContent& surface, const LayerInput& in, Behind behind, bool moving);
 
-/// Sizes for one surface of an inspection. @param surface may be null.
-SceneScale sceneScale(const Inspection& inspection, const Surface* surface, const std::vector<int>& frames, double glyphScale);
 /// Frames to draw: one for each distinct pose; where several share a pose, one that sees `surfaceKey` is taken.
 /// @param hidden  are not drawn.
 std::vector<int> framesToDraw(const Inspection& inspection, const std::string& surfaceKey, int selected,
                               const std::set<int>& hidden = {});
 
-/// Pixel of a frame carried onto the surface, lifted towards the camera by `lift`; nothing if the ray misses.
-std::optional<Eigen::Vector3d> castPixel(const Camera& camera, const Surface& surface, const Pixel& pixel, double lift);
 /// A contour on the surface: broken where it leaves the surface or jumps to another part of it.
 std::vector<Points> castContour(const Camera& camera, const Surface& surface, const Polyline& contour, const SceneScale& scale,
                                 double lift);
-/// An image ellipse carried back to a plane, lifted towards the camera.
-std::vector<Points> ellipseOnPlane(const Camera& camera, const Plane& plane, const Ellipse& ellipse, double lift);
 /// Radius of a disc on a tangent plane, so many times as wide as a contour there.
 /// @param times  3: the highlight is in the middle of a plane that is seen as one.
 double planeRadius(const Camera& camera, const Plane& plane, const Eigen::Vector3d& at, const std::vector<Pixel>& contour,
@@ -266,9 +253,6 @@ double directionOf(const Camera& camera, const Highlight& observed, const Pixel&
 /// The vertex of a contour that lies in that direction from the observed one; nothing on an empty contour.
 std::optional<Pixel> vertexInDirection(const Camera& camera, const Highlight& observed, const Polyline& contour,
                                        double direction);
-
-/// The four corners of the drawn image plane, from top left clockwise in the image, `depth` in front of the camera. World units.
-std::array<Eigen::Vector3d, 4> imagePlane(const Camera& camera, double depth);
 
 /// "name = 1.234567 unit" lines for Picked::text.
 std::string line(const std::string& name, double value, const std::string& unit = "");

@@ -138,7 +138,7 @@ std::optional<Framing> highlightFraming(const LayerInput& in, int highlight, Hig
   for (const TrainingView* view : in.views())
     if (view->frame == in.selection.frame && view->canonical && in.highlightOf(*view) == static_cast<int>(wanted))
       addWalks(*view->canonical);
-  for (const TrainingView& view : drawn.walk || in.solo ? in.ownWalks() : std::vector<TrainingView>{})  // where they are drawn
+  for (const TrainingView& view : drawn.walk || in.solo ? in.ownViews(true) : std::vector<TrainingView>{})  // where they are drawn
     if (in.highlightOf(view) == static_cast<int>(wanted)) addWalks(*view.canonical);
   if (drawn.walk || !in.inspection->isTraining(in.selection.frame)) {
     for (const std::string& model : in.models)

@@ -372,7 +372,7 @@ TEST(Layers, AFrameThatDoesNotTrainHasTheCanonicalEllipseOfWhatWasObservedInIt) 
   EXPECT_GT(ofModels(), 0);
   input.solo = true;
   EXPECT_EQ(ofModels(), 0);
-  const std::vector<TrainingView> own = input.ownWalks();
+  const std::vector<TrainingView> own = input.ownViews(true);
   ASSERT_EQ(own.size(), 1u);
   ASSERT_TRUE(own[0].canonical && own[0].canonical->ellipse);
   ASSERT_EQ(canonicalEllipsesLayer(input).drawn.size(), 1u);
@@ -383,14 +383,14 @@ TEST(Layers, AFrameThatDoesNotTrainHasTheCanonicalEllipseOfWhatWasObservedInIt) 
   EXPECT_LT((drawn.center() - expected.center()).norm(), kDrawn);
   EXPECT_FALSE(directionsLayer(input).drawn.empty());
   inspection->lights.clear();  // then nothing tells where they end
-  EXPECT_TRUE(input.ownWalks().empty());
+  EXPECT_TRUE(input.ownViews(true).empty());
 }
 
 TEST(Framing, HoldsTheWholeWalkWhateverItsDirection) {
   const TemporaryFolder folder;
   const auto inspection = smallInspection(folder.path());
   const LayerInput input = heldOutInput(*inspection);
-  const std::vector<TrainingView> own = input.ownWalks();
+  const std::vector<TrainingView> own = input.ownViews(true);
   ASSERT_EQ(own.size(), 1u);
   const Eigen::Vector3d at = own[0].seen->brightest.point.position, n = own[0].seen->tangentPlane.normal;
   double reach = 0;

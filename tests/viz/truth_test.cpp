@@ -2,6 +2,10 @@
 // A picture must not look better than what it shows: missed highlights, excluded frames, influences without an answer, what is
 // loading.
 #include <gmock/gmock.h>
+#include <vtkActor.h>
+#include <vtkMapper.h>
+#include <vtkPolyData.h>
+#include <vtkProperty.h>
 
 #include <algorithm>
 #include <cmath>
@@ -272,6 +276,41 @@ TEST(Layers, ASurfaceThatIsOnItsWayIsNoFailure) {
   input.surfaceProblem = "no such file";
   before = *smallInspection(folder.path());
   EXPECT_THAT(surfaceLayer(input).notes.at(0), HasSubstr("no such file"));
+}
+
+/// Of what a layer draws for a model: its colour, and of how many lines the first thing consists.
+std::pair<Colour, int> lookOf(const LayerContent& content, const std::string& model) {
+  for (const Drawn& drawn : content.drawn) {
+    auto* const actor = vtkActor::SafeDownCast(drawn.prop);
+    if (drawn.info.model != model || !actor) continue;
+    auto* const data = vtkPolyData::SafeDownCast(actor->GetMapper()->GetInputDataObject(0, 0));
+    const double* const c = actor->GetProperty()->GetColor();
+    return {{c[0], c[1], c[2]}, int(data->GetNumberOfLines())};
+  }
+  return {};
+}
+
+TEST(PoorModel, IsPaleAndItsContoursAreDashed) {
+  const TemporaryFolder folder;
+  const auto inspection = smallInspection(folder.path());
+  LayerInput input = test::heldOutInput(*inspection);
+  const Colour full = modelColour("canonical"), half = pale(full);
+  const auto expectColour = [](const Colour& found, const Colour& wanted, const char* what) {
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(found[i], wanted[i], 1e-9) << what;
+  };
+  EXPECT_EQ(lookOf(predictedContoursLayer(input), "canonical").second, 1) << "one line all around";
+  expectColour(lookOf(predictedContoursLayer(input), "canonical").first, full, "contour");
+  ModelFit& fit = *inspection->models["canonical"].fits[0].fit;
+  fit.poor = "it misses its own training views";
+  const auto [colour, lines] = lookOf(predictedContoursLayer(input), "canonical");
+  expectColour(colour, half, "contour");
+  EXPECT_GT(lines, 10) << "dashes";
+  expectColour(lookOf(peaksLayer(input), "canonical").first, half, "brightest point");
+  expectColour(lookOf(ellipsoidsLayer(input), "canonical").first, half, "ellipsoid");
+  fit.lightEstimate = Light::at(Eigen::Vector3d(0, 0, 2));
+  expectColour(lookOf(lightLayer(input), "canonical").first, half, "lamp");
+  input.selection.model = "canonical";
+  expectColour(lookOf(tangentPlanesLayer(input), "canonical").first, half, "tangent plane");
 }
 
 TEST(Samples, PlotsOfOneFrameNameIt) {

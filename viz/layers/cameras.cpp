@@ -53,19 +53,6 @@ Picked cameraPicked(const Inspection& inspection, const std::vector<std::string>
 
 namespace {
 
-/// The frustum, and the tick over its upper edge that shows which side of the image is up.
-std::vector<Points> frustum(const Camera& camera, double depth) {
-  const Eigen::Vector3d eye = camera.centreInWorld();
-  const std::array<Eigen::Vector3d, 4> c = imagePlane(camera, depth);
-  const Eigen::Vector3d up = 0.16 * (c[0] - c[3]), top = 0.5 * (c[0] + c[1]);
-  return {{c[0], c[1], c[2], c[3], c[0]},
-          {eye, c[0]},
-          {eye, c[1]},
-          {eye, c[2]},
-          {eye, c[3]},
-          {top + 0.18 * (c[0] - c[1]), top + up, top + 0.18 * (c[1] - c[0])}};
-}
-
 /// Many cameras of one line width in one actor: a thousand actors would take longer to draw than all the rest.
 class Bundle {
  public:
@@ -122,8 +109,8 @@ LayerContent camerasLayer(const LayerInput& in) {
     const std::vector<Points> chains = frustum(camera, in.scale.cameraDepth);
     if (!selected && besideEye(in, index)) continue;
     if (selected || content.glyphs.size() < kMostGlyphs) {
-      const std::array<Eigen::Vector3d, 4> plane = imagePlane(camera, in.scale.cameraDepth);
-      content.glyphs.push_back({camera.centreInWorld(), plane[0], plane[1], plane[2], plane[3]});
+      content.glyphs.push_back({camera.centreInWorld()});
+      content.glyphs.back().insert(content.glyphs.back().end(), chains[0].begin(), chains[0].end() - 1);
     }
     if (!selected) {
       (in.inspection->isTraining(index) ? training : others).add(chains, colour, index);

@@ -30,7 +30,7 @@ LayerContent canonicalEllipsesLayer(const LayerInput& in) {
   // Shows the selected frame alone: what was observed in it, whether it trains or not. A predicted ellipse beside it would look
   // as if both came from the one contour.
   if (in.solo) {
-    for (const TrainingView& view : in.ownWalks())
+    for (const TrainingView& view : in.ownViews(true))
       if (view.canonical->ellipse) add(view.camera, view.seen->tangentPlane, *view.canonical->ellipse, true, view.frame, "");
     if (!content.drawn.empty()) return content;
   }

@@ -112,7 +112,7 @@ LayerContent conesLayer(const LayerInput& in) {
       info.model = model;
       info.light = fit->light;
       info.text = line(model + " cone of frame", in.frame(cones[i].view->frame).id) + line("apex", cones[i].apex, "m");
-      addCone(content, in, cones[i], target, modelColour(model), strong, info);
+      addCone(content, in, cones[i], target, modelColour(model, !fit->poor.empty()), strong, info);
     }
   }
   return content;

@@ -17,8 +17,6 @@ constexpr std::size_t kMostObservedFrames = 24;  ///< the training frames of a l
 // slants away by 70 degrees, and a little more for what is to show above the others.
 constexpr double kObservedPx = 5, kSelectedPx = 5.5, kPredictedPx = 6, kNextModelPx = 0.25, kMarkPx = 12;
 
-constexpr int kGapPoints = 61;  ///< 20 dots with gaps of twice their length
-
 /// Every third segment of the chains.
 std::vector<Points> dots(const std::vector<Points>& chains) {
   std::vector<Points> result;
@@ -66,7 +64,7 @@ double dashOf(const std::vector<Points>& chains) {
     for (std::size_t i = 1; i < chain.size(); ++i) length += (chain[i] - chain[i - 1]).norm();
   return std::max(length / kDashes, 1e-12);
 }
-const std::vector<double> kMissedDashes{0.6, 0.4}, kSpuriousDashes{0.9, 0.35, 0.2, 0.35};
+const std::vector<double> kMissedDashes{0.6, 0.4}, kSpuriousDashes{0.9, 0.35, 0.2, 0.35}, kPoorDashes{0.5, 0.5};
 
 std::vector<int> observedFrames(const LayerInput& in) {
   std::vector<int> frames;
@@ -167,8 +165,7 @@ void addGhost(LayerContent& content, const LayerInput& in, const std::string& mo
   info.frame = in.selection.frame;
   info.model = model;
   info.text = line("filtered prediction", model) + line("reason", f.reason);
-  Colour colour = modelColour(model);
-  for (double& channel : colour) channel = 0.5 * (channel + 0.5);
+  const Colour colour = modelColour(model, true);
   const std::vector<Points> chains =
       castContour(in.frame(in.selection.frame).camera, *in.surface, f.highlight.contour, in.scale, 0);
   content.addOnSurface(lineActor(inDashes(chains, dashOf(chains), {0.2, 0.4}), colour, 1), info, 1, nearerPx);
@@ -184,6 +181,8 @@ LayerContent predictedContoursLayer(const LayerInput& in) {
   std::stable_partition(models.begin(), models.end(), [&](const std::string& m) { return m != in.selection.model; });
   for (const std::string& model : models) {
     for (const FrameComparison* comparison : in.comparisons(model)) {
+      const bool poor = in.isPoor(model, *comparison);  // pale and dashed, as in the frames
+      const Colour colour = modelColour(model, poor);
       for (std::size_t i = 0; i < comparison->prediction.highlights().size(); ++i) {
         const PredictedHighlight& h = comparison->prediction.highlights()[i];
         Picked info;
@@ -199,33 +198,26 @@ LayerContent predictedContoursLayer(const LayerInput& in) {
         info.text = line(spurious ? "spurious prediction" : "prediction", model) +
                     line("frame", in.frame(in.selection.frame).id) + line("light", comparison->light) +
                     line("coverage", h.coverage) + line("IoU", comparison->iou);
+        if (poor) info.text += line("poor", poorFit(in.inspection->models.at(model), *comparison));
         for (const FrameComparison::Row& row : comparison->rows) {
           if (row.predicted != static_cast<int>(i) || !row.metrics) continue;
           info.text += line("contour error", row.metrics->contourErrorPct, "%") +
                        line("contour error", row.metrics->contourErrorPx, "px") +
                        line("Hausdorff", row.metrics->hausdorffPx, "px") + line("peak offset", row.metrics->peakOffsetPx, "px");
         }
-        std::vector<Points> solid, dotted;
-        for (const ContourRun& run : contourRuns(h)) {
-          Polyline part;
-          part.points = run.points;
-          part.closed = run.closed;
-          if (run.gap && part.points.size() > 1) part.points = resample(part, kGapPoints);
-          for (Points& chain : castContour(camera, *in.surface, part, in.scale, 0))
-            (run.gap ? dotted : solid).push_back(std::move(chain));
-        }
-        const Colour colour = modelColour(model);
+        const std::vector<SceneThing> parts = predictedContourThings(camera, *in.surface, h, in.scale.surfaceSize);
         const Highlight* observed = in.selection.direction ? selectedHighlight(in, comparison->light) : nullptr;
         if (observed && (in.selection.highlight < 0 || in.selection.highlight == info.highlight))
           addMark(content, in, camera, *observed, h.contour, colour, info);
         const bool chosen = spurious && in.selection.highlight < 0 && in.selection.predicted == static_cast<int>(i) &&
                             in.selection.model == model && in.selection.light == comparison->light;
         const double width = chosen ? 4.4 : in.selection.model == model ? 3.4 : 2.2;  // the selected model stands out
-        if (spurious) solid = inDashes(solid, dashOf(solid), kSpuriousDashes);
-        if (!solid.empty()) content.addOnSurface(lineActor(solid, colour, width), info, width, nearerPx);
-        if (!dotted.empty()) {
+        std::vector<Points> chains = parts.front().chains;
+        if (spurious || poor) chains = inDashes(chains, dashOf(chains), spurious ? kSpuriousDashes : kPoorDashes);
+        if (!chains.empty()) content.addOnSurface(lineActor(chains, colour, width), info, width, nearerPx);
+        if (parts.size() > 1) {
           info.text += line("this part", "not predicted; bridges failed directions");
-          content.addOnSurface(lineActor(dots(dotted), colour, 1.5), info, 1.5, nearerPx);
+          content.addOnSurface(lineActor(dots(parts.back().chains), colour, 1.5), info, 1.5, nearerPx);
         }
       }
     }

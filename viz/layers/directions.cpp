@@ -66,7 +66,7 @@ LayerContent directionsLayer(const LayerInput& in) {
     addWalks(content, in, view->seen->tangentPlane, view->seen->brightest.point.position, *view->canonical, view->frame, "");
   }
   if (in.solo)  // what was observed, though the frame has not trained
-    for (const TrainingView& view : in.ownWalks())
+    for (const TrainingView& view : in.ownViews(true))
       addWalks(content, in, view.seen->tangentPlane, view.seen->brightest.point.position, *view.canonical, view.frame, "");
   if (!content.drawn.empty()) return content;  // the predicted walks would lie on the observed ones
   for (const std::string& model : in.models) {

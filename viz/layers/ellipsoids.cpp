@@ -82,38 +82,32 @@ LayerContent ellipsoidsLayer(const LayerInput& in) {
   std::stable_partition(models.begin(), models.end(), [&](const std::string& m) { return m != in.selection.model; });
   for (const std::string& model : models) {
     for (const ModelFit* fit : in.fits(model)) {
-      const EllipsoidFit* const fitted = fit->as<EllipsoidFit>();
-      if (!fitted) continue;
-      if (!fitted->ellipsoid) {
-        addDegenerate(content, in, *fit, *fitted);
+      const std::optional<SceneThing> thing = ellipsoidThing(*fit, in.scale);
+      if (!thing) continue;
+      const EllipsoidFit& fitted = *fit->as<EllipsoidFit>();
+      if (!fitted.ellipsoid) {
+        addDegenerate(content, in, *fit, fitted);
         continue;
       }
-      const Ellipsoid& e = *fitted->ellipsoid;
-      if (!e.centre().allFinite() || !e.semiAxes().allFinite()) continue;
-      if (e.semiAxes().maxCoeff() > 20 * in.scale.sceneSize ||
-          (e.centre() - in.scale.sceneBox.center()).norm() > 50 * in.scale.sceneSize) {
-        content.notes.push_back(model + ": ellipsoid not drawn, far larger or farther away than the scene");
+      if (!thing->problem.empty()) {
+        content.notes.push_back(model + ": " + thing->problem);
         continue;
       }
+      const Ellipsoid& e = *thing->body;
       Picked info;
       info.layer = "ellipsoids";
       info.model = model;
       info.light = fit->light;
-      info.text = fitText(*fit, *fitted) + line("centre", e.centre(), "m") + line("semi-axes", e.semiAxes(), "m");
+      info.text = fitText(*fit, fitted) + line("centre", e.centre(), "m") + line("semi-axes", e.semiAxes(), "m");
       content.behindSurface = content.behindSurface || hiddenBySurface(in, e.centre());
-      const bool poor = !fit->poor.empty();  // pale and dashed, as its contours in the frames
-      const Colour colour = draw::modelColour(model, poor);
+      const bool poor = thing->poor;  // pale and dashed, as its contours
+      const Colour colour = colourOf(*thing);
       // A vanishing axis would make the unit sphere's normals undefined: keep it thinner than a line.
-      const Eigen::Vector3d axes = e.semiAxes().cwiseMax(1e-5 * std::max(e.semiAxes().maxCoeff(), 1e-300));
-      const Eigen::Affine3d worldFromUnit = Eigen::Affine3d(e.worldFromBody()) * Eigen::Scaling(axes);
-      const Eigen::Matrix3d a = worldFromUnit.linear();
-      const Eigen::Vector3d c = e.centre();
-      const std::vector<Points> outlines{circle(c, a.col(0), a.col(1)), circle(c, a.col(1), a.col(2)),
-                                         circle(c, a.col(2), a.col(0))};
+      const Eigen::Affine3d worldFromUnit = ballOf(e, 1e-5);
       const bool selected = in.selection.model == model && (in.selection.light.empty() || in.selection.light == fit->light);
       content.add(ellipsoidActor(worldFromUnit, colour, (selected ? 0.4 : 0.15) * (poor ? 0.5 : 1)), info);
       const auto outline = [&](const Colour& c, double width) {
-        content.add(poor ? segmentActor(dashesOf(outlines), c, width) : lineActor(outlines, c, width), info, width);
+        content.add(poor ? segmentActor(dashesOf(thing->chains), c, width) : lineActor(thing->chains, c, width), info, width);
       };
       if (selected) outline(in.ink(), 5.0);  // ink about the model's colour
       outline(colour, selected ? 3.0 : 1.5);

@@ -11,29 +11,28 @@ namespace glint::viz {
 namespace {
 
 constexpr double kStar = 2.4, kRing = 3.2;  ///< radii of the light's rays and of the ring about a selected one, of its ball's
-constexpr double kFarLight = 4;             ///< in scene sizes: beyond, an arrow shows the direction
 
-std::string distanceText(double metres) { return formatted("%.3g m", metres); }
-
-/// A far light as an arrow from the scene's centre.
-void addDirection(LayerContent& content, const LayerInput& in, const Eigen::Vector3d& direction, const Colour& colour,
-                  const std::string& label, const Picked& info) {
-  const Eigen::Vector3d from = in.scale.surfaceBox.center() + 0.6 * in.scale.surfaceSize * direction;
-  const Eigen::Vector3d to = from + 0.5 * in.scale.surfaceSize * direction;
-  content.add(arrowActor({{from, to}}, 0.5 * in.scale.point, colour), info);
-  content.labels.push_back({to, label, colour});
-  content.extent.push_back(to);
+/// What stands for a lamp that is far away.
+void addArrow(LayerContent& content, const LayerInput& in, const SceneThing& lamp, const Picked& info) {
+  content.add(arrowActor({*lamp.arrow}, 0.5 * in.scale.point, colourOf(lamp)), info);
+  content.labels.push_back({lamp.arrow->second, lamp.label, colourOf(lamp)});
+  content.extent.push_back(lamp.arrow->second);
 }
 
 /// Chains of a lamp's outline: an axis as a thick line, circles as thin ones.
-void addBody(LayerContent& content, const Lamp& lamp, const Colour& colour, double width, const Picked& info) {
+void addBody(LayerContent& content, const std::vector<Points>& outline, const Colour& colour, double width, const Picked& info) {
   std::vector<Points> circles;
-  for (const Points& chain : outlineOf(lamp))
+  for (const Points& chain : outline)
     if (chain.front() == chain.back())
       circles.push_back(chain);
     else
       content.add(lineActor({chain}, colour, 4), info, 4);
   if (!circles.empty()) content.add(lineActor(circles, colour, width), info, width);
+}
+
+std::string placeText(const SceneThing& lamp) {
+  if (lamp.place->w() == 0) return line("direction", Eigen::Vector3d(lamp.place->head<3>().normalized()));
+  return line("position", lamp.position(), "m");
 }
 
 std::string sizeText(const Lamp& lamp) {
@@ -44,22 +43,13 @@ std::string sizeText(const Lamp& lamp) {
   return text;
 }
 
-void addEstimate(LayerContent& content, const LayerInput& in, const Light& light, double size, const Colour& colour,
-                 const std::string& label, Picked info) {
-  const Eigen::Vector3d centre = in.scale.sceneBox.center();
-  const double far = light.atInfinity() ? 0 : (light.position() - centre).norm();
-  if (light.atInfinity()) {
-    info.text += line("direction", light.directionFrom(centre));
-    addDirection(content, in, light.directionFrom(centre), colour, label + ", at infinity", info);
-    return;
-  }
-  info.text += line("position", light.position(), "m");
-  if (far > kFarLight * in.scale.sceneSize) {
-    addDirection(content, in, light.directionFrom(centre), colour, label + ", " + distanceText(far) + " away", info);
-    return;
-  }
+void addEstimate(LayerContent& content, const LayerInput& in, const SceneThing& lamp, double size, Picked info) {
+  const Colour colour = colourOf(lamp);
+  info.text += placeText(lamp);
+  if (lamp.arrow) return addArrow(content, in, lamp, info);
+  addBody(content, lamp.chains, colour, 1.5, info);
   const double r = size * 1.6 * in.scale.point;
-  const Eigen::Vector3d p = light.position();
+  const Eigen::Vector3d p = lamp.position();
   std::vector<Segment> rays;
   Points corners;
   for (int i = 0; i < 26; ++i) {  // a star: the neighbours of a cube's centre
@@ -70,20 +60,11 @@ void addEstimate(LayerContent& content, const LayerInput& in, const Light& light
   }
   content.add(sphereActor({p}, r, colour), info);
   const bool selected = !in.selection.light.empty() && in.selection.light == info.light && info.model.empty();
-  if (selected) addBody(content, sphereLamp(light, kRing * r), in.ink(), 2, info);
+  if (selected) addBody(content, outlineOf(sphereLamp(Light::at(p), kRing * r)), in.ink(), 2, info);
   content.add(segmentActor(rays, colour, 1.5), info, 1.5);
-  content.labels.push_back({p, label, colour, {}, (selected ? kRing : kStar) * r});
+  content.labels.push_back({p, lamp.label, colour, {}, (selected ? kRing : kStar) * r});
   content.glyphs.push_back(std::move(corners));
   content.extent.push_back(p);
-}
-
-/// The size of a lamp as a fitted lobe has it, drawn where the lamp is not far; its words go into `info`.
-void addFittedSize(LayerContent& content, const LayerInput& in, const ModelFit& fit, Picked& info) {
-  const std::optional<Lamp> lamp = fit.lamp();
-  if (!lamp || lamp->atInfinity() || lamp->isPoint()) return;
-  info.text += sizeText(*lamp);
-  if ((fit.lightEstimate->position() - in.scale.sceneBox.center()).norm() > kFarLight * in.scale.sceneSize) return;
-  addBody(content, *lamp, modelColour(info.model), 1.5, info);
 }
 
 /// How far the lamp is that a lobe explains: the noise of contours does not tell what one limit angle gets wrong.
@@ -95,7 +76,7 @@ std::string lampBeside(const LayerInput& in, const std::string& light, const Lig
       if (fit.fit->lightEstimate->atInfinity()) continue;
       const double apart = (fit.fit->lightEstimate->position() - estimate.position()).norm();
       return line("lamp by " + model,
-                  distanceText(apart) + " away from here: this light explains the contours with one limit angle");
+                  formatted("%.3g m", apart) + " away from here: this light explains the contours with one limit angle");
     }
   return "";
 }
@@ -119,24 +100,21 @@ LayerContent lightLayer(const LayerInput& in) {
           line("standard deviation, noise alone", Eigen::Vector3d(estimate.covariance->diagonal().cwiseMax(0).cwiseSqrt()), "m");
     }
     info.text += lampBeside(in, id, estimate.light);
-    addEstimate(content, in, estimate.light, 1, kLightColour, lightName(id) + " (estimate)", info);
+    addEstimate(content, in, estimateThing(id, estimate.light, in.scale), 1, info);
   }
   // A model may refine the light by itself: drawn smaller, in the model's colour, where it differs from the common one.
   for (const std::string& model : in.models) {
     for (const ModelFit* fit : in.fits(model)) {
-      if (!fit->lightEstimate) continue;
-      bool common = false;
-      for (const auto& [key, estimate] : in.inspection->lights)
-        common = common || (estimate && (estimate->light.homogeneous() - fit->lightEstimate->homogeneous()).norm() < 1e-9);
-      if (common) continue;
+      const std::optional<SceneThing> lamp = fittedLampThing(*in.inspection, *fit, in.scale);
+      if (!lamp || lamp->shared) continue;
       Picked info;
       info.layer = "light";
       info.model = model;
       info.light = fit->light;
       info.text = line("light of model", model);
       if (fit->limitAngle()) info.text += line("limit angle", *fit->limitAngle() * 180 / std::numbers::pi, "deg");
-      addFittedSize(content, in, *fit, info);
-      addEstimate(content, in, *fit->lightEstimate, 0.7, modelColour(model), model + " light", info);
+      if (const std::optional<Lamp> shape = fit->lamp(); shape && !shape->atInfinity()) info.text += sizeText(*shape);
+      addEstimate(content, in, *lamp, 0.7, info);
     }
   }
   return content;
@@ -152,24 +130,17 @@ LayerContent trueLightLayer(const LayerInput& in) {
     const Lamp& lamp = light.lamp;
     info.text =
         line("true light (not used by the method)", light.id) + (lamp.isPoint() ? line("radius", 0.0, "m") : sizeText(lamp));
-    const std::string label = "truth: " + lightName(light.id);
-    if (lamp.atInfinity()) {
-      info.text += line("direction", Eigen::Vector3d(lamp.centre.head<3>()));
-      addDirection(content, in, lamp.centre.head<3>(), kTruth, label + ", at infinity", info);
-      continue;
-    }
-    const Eigen::Vector3d middle = lamp.position();
-    if (!endsOf(lamp)) info.text += line("position", middle, "m");
-    const double far = (middle - in.scale.sceneBox.center()).norm();
-    if (far > kFarLight * in.scale.sceneSize) {
-      addDirection(content, in, (middle - in.scale.sceneBox.center()).normalized(), kTruth,
-                   label + ", " + distanceText(far) + " away", info);
-      continue;
-    }
     const double r = std::max(radiusOf(lamp), 4.2 * in.scale.point);
-    addBody(content, withRadius(lamp, r), kTruth, 2.5, info);
+    const SceneThing drawn = trueLampThing(light, r, in.scale);
+    if (!endsOf(lamp)) info.text += placeText(drawn);
+    if (drawn.arrow) {
+      addArrow(content, in, drawn, info);
+      continue;
+    }
+    const Eigen::Vector3d middle = drawn.position();
+    addBody(content, drawn.chains, kTruth, 2.5, info);
     content.add(sphereActor({middle}, 0.5 * in.scale.point, kTruth), info);  // its middle: a full ball would hide the fits in it
-    content.labels.push_back({middle, label, kTruth, {}, r});
+    content.labels.push_back({middle, drawn.label, kTruth, {}, r});
     content.extent.push_back(middle);
   }
   return content;

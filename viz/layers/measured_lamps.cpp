@@ -36,16 +36,11 @@ Picked infoOf(const LampAnswer& lamp) {
 void addRegion(LayerContent& content, const LampAnswer& lamp, const Picked& info, double width) {
   const Outcome<Ellipsoid> region = positionRegion(lamp);
   if (!region || !(region->semiAxes().maxCoeff() > 0)) return;
-  const Eigen::Vector3d axes = region->semiAxes().cwiseMax(kLeastAxis * region->semiAxes().maxCoeff());
-  const Eigen::Affine3d worldFromUnit = Eigen::Affine3d(region->worldFromBody()) * Eigen::Scaling(axes);
-  content.add(ellipsoidActor(worldFromUnit, kMeasuredLamp, 0.25), info);
-  const Eigen::Matrix3d a = worldFromUnit.linear();
-  const Eigen::Vector3d c = region->centre();
-  content.add(lineActor({circle(c, a.col(0), a.col(1)), circle(c, a.col(1), a.col(2)), circle(c, a.col(2), a.col(0))},
-                        kMeasuredLamp, width),
-              info, width);
+  const Eigen::Affine3d ball = ballOf(*region, kLeastAxis);
+  content.add(ellipsoidActor(ball, kMeasuredLamp, 0.25), info);
+  content.add(lineActor(principalEllipses(ball), kMeasuredLamp, width), info, width);
   for (int i = 0; i < 3; ++i)
-    for (const double side : {-1.0, 1.0}) content.extent.push_back(c + side * a.col(i));
+    for (const double side : {-1.0, 1.0}) content.extent.push_back(region->centre() + side * ball.linear().col(i));
 }
 
 /// An arrow from the object towards the lamp, and the cone that holds the true direction with 95 %, if wider than the arrow.

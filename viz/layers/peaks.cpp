@@ -62,7 +62,7 @@ LayerContent peaksLayer(const LayerInput& in) {
       for (const PredictedHighlight& h : comparison->prediction.highlights()) {
         // Without a tangent plane it is no point of the surface: primal has the middle of its ellipsoid there.
         if (!h.tangentPlane || !h.brightest.point.position.allFinite() || h.brightest.point.normal.norm() < 0.5) continue;
-        add(h.brightest, in.frame(in.selection.frame).camera, 1.0, modelColour(model),
+        add(h.brightest, in.frame(in.selection.frame).camera, 1.0, draw::modelColour(model, in.isPoor(model, *comparison)),
             brightestInfo(in, h.brightest, in.selection.frame, model, -1, comparison->light));
       }
     }

@@ -18,14 +18,6 @@ void addRay(LayerContent& content, const LayerInput& in, const TrainingView& vie
   const Eigen::Vector3d eye = view.camera.centreInWorld();
   const SurfacePoint p = facing(view.seen->brightest.point, eye);
   const Eigen::Vector3d v = (eye - p.position).normalized(), r = reflect(v, p.normal);
-  // As far as the light where there is one in reach, so that one sees how well the rays meet there.
-  double reach = 0.6 * in.scale.sceneSize;
-  const Inspection& inspection = *in.inspection;
-  const LightEstimate* const estimate = inspection.lightFor(view.frame, view.highlight.light);
-  if (estimate && !estimate->light.atInfinity()) {
-    const double along = r.dot(estimate->light.position() - p.position);
-    if (along > 0) reach = std::min(1.1 * along, 4 * in.scale.sceneSize);
-  }
   const bool selected = view.frame == in.selection.frame;
   const double width = selected ? 2.5 : 1.2;
   Picked info;
@@ -39,8 +31,9 @@ void addRay(LayerContent& content, const LayerInput& in, const TrainingView& vie
     if (elsewhere) actor->GetProperty()->SetOpacity(kElsewhere);
     content.add(actor, info, widthPx);
   };
-  add(named(segmentActor(dashed(eye, p.position, 0.015 * in.scale.sceneSize), kHeldOut, 1.0), "view"), 1.0);
-  add(named(segmentActor({{p.position, p.position + reach * r}}, kLightColour, width), "reflected"), width);
+  const std::vector<SceneThing> rays = rayThings(*in.inspection, view, in.scale);
+  add(named(segmentActor(dashed(eye, p.position, 0.015 * in.scale.sceneSize), colourOf(rays[0]), 1.0), "view"), 1.0);
+  add(named(lineActor(rays[1].chains, colourOf(rays[1]), width), "reflected"), width);
   if (!in.solo || !selected) return;
   // As long as the normal, so that the three are seen as one figure, each letter at the tip of its own.
   const auto addUnit = [&](const Eigen::Vector3d& direction, const char* letter, const Colour& colour, const char* part) {

@@ -44,12 +44,9 @@ void addRun(LayerContent& content, const LayerInput& in, const DrawnRuns& of, co
   const Colour colour = run.answer ? modelColour(of.model) : in.ink();
   const double r = (run.answer ? 1.0 : 0.6) * in.scale.point, width = run.answer ? 3 : 1;
   const Picked info = infoOf(of, run);
-  const Eigen::Matrix3d axes = r * Eigen::Matrix3d::Identity();
   // The start is hollow, the end is full.
-  content.add(lineActor({circle(from.at, axes.col(0), axes.col(1)), circle(from.at, axes.col(1), axes.col(2)),
-                         circle(from.at, axes.col(2), axes.col(0))},
-                        colour, width),
-              info, width);
+  const Eigen::Affine3d ball(Eigen::Translation3d(from.at) * Eigen::Scaling(r));
+  content.add(lineActor(principalEllipses(ball), colour, width), info, width);
   content.add(sphereActor({to.at}, r, colour), info);
   content.add(segmentActor({{from.at, to.at}}, colour, width), info, width);
   content.extent.push_back(from.at);

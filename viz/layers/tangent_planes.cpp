@@ -18,13 +18,12 @@ double radiusOf(const LayerInput& in, const Camera& camera, const Plane& plane, 
   return std::max(own, planeRadius(camera, plane, at, canonical->pixels, in.scale, kAboutCanonical));
 }
 
-void addPlane(LayerContent& content, const Plane& plane, const Eigen::Vector3d& at, double radius, bool strong, bool filled,
-              const Colour& colour, const Picked& info) {
-  const Eigen::Matrix<double, 3, 2> basis = tangentBasis(plane.normal);
+void addPlane(LayerContent& content, const SceneThing& disc, bool strong, bool filled, const Picked& info) {
   const double width = strong ? 2.0 : 1.0;
-  if (filled) content.addOnSurface(discActor(at, plane.normal, radius, colour, strong ? 0.32 : 0.18), info, 0, kPlanePx);
-  content.addOnSurface(lineActor({circle(at, radius * basis.col(0), radius * basis.col(1))}, colour, width), info, width,
-                       kPlanePx + 0.5);
+  const Colour colour = colourOf(disc);
+  if (filled)
+    content.addOnSurface(discActor(disc.position(), disc.normal, disc.radius, colour, strong ? 0.32 : 0.18), info, 0, kPlanePx);
+  content.addOnSurface(lineActor(disc.chains, colour, width), info, width, kPlanePx + 0.5);
 }
 
 }  // namespace
@@ -44,8 +43,9 @@ LayerContent tangentPlanesLayer(const LayerInput& in) {
     if (!view.seen) return;
     const Eigen::Vector3d& at = view.seen->brightest.point.position;
     const Plane& plane = view.seen->tangentPlane;
-    addPlane(content, plane, at, radiusOf(in, view.camera, plane, at, view.highlight.contour.points, view.canonical),
-             view.frame == in.selection.frame, true, kVirtualCamera, describe(plane, at, view.frame, ""));
+    const double radius = radiusOf(in, view.camera, plane, at, view.highlight.contour.points, view.canonical);
+    addPlane(content, tangentPlaneThing(plane, at, radius), view.frame == in.selection.frame, true,
+             describe(plane, at, view.frame, ""));
   };
   bool trains = false;
   for (const TrainingView* view : in.views()) {
@@ -67,8 +67,10 @@ LayerContent tangentPlanesLayer(const LayerInput& in) {
         const Eigen::Vector3d& at = h.brightest.point.position;
         const double radius =
             radiusOf(in, in.frame(in.selection.frame).camera, *h.tangentPlane, at, h.contour.points, h.canonical);
-        addPlane(content, *h.tangentPlane, at, radius, true, own.empty(), modelColour(model),
-                 describe(*h.tangentPlane, at, in.selection.frame, model));
+        SceneThing disc = tangentPlaneThing(*h.tangentPlane, at, radius);
+        disc.model = model;
+        disc.poor = in.isPoor(model, *comparison);
+        addPlane(content, disc, true, own.empty(), describe(*h.tangentPlane, at, in.selection.frame, model));
       }
     }
   }

@@ -15,11 +15,8 @@ void addPair(LayerContent& content, const LayerInput& in, int frame, const Layer
   // One cannot see the camera that one looks through.
   if (frame == in.selection.frame && in.eyeMirror && in.eyeMirror->normal == plane.normal && in.eyeMirror->offset == plane.offset)
     return;
-  const std::array<Eigen::Vector3d, 4> real = imagePlane(camera, in.scale.cameraDepth);
-  std::array<Eigen::Vector3d, 4> c;
-  for (std::size_t i = 0; i < 4; ++i) c[i] = plane.reflected(real[i]);
-  const Eigen::Vector3d eye = camera.centreInWorld(), mirrored = plane.reflected(eye);
-  const Eigen::Vector3d up = 0.16 * (c[0] - c[3]), top = 0.5 * (c[0] + c[1]);
+  const SceneThing drawn = virtualCameraThing(camera, plane, in.scale.cameraDepth);
+  const Eigen::Vector3d eye = camera.centreInWorld(), mirrored = drawn.position();
   const double width = frame == in.selection.frame ? 3.0 : 1.5;
   Picked info;
   info.layer = "virtual-cameras";
@@ -29,15 +26,11 @@ void addPair(LayerContent& content, const LayerInput& in, int frame, const Layer
   info.text = line("virtual camera of frame", in.frame(frame).id) + line("centre", mirrored, "m") +
               line("tangent plane n", plane.normal) + line("tangent plane offset d", plane.offset, "m") +
               line("distance to the plane", std::abs(plane.signedDistance(eye)), "m");
-  content.add(lineActor({{c[0], c[1], c[2], c[3], c[0]},
-                         {mirrored, c[0]},
-                         {mirrored, c[1]},
-                         {mirrored, c[2]},
-                         {mirrored, c[3]},
-                         {top + 0.18 * (c[0] - c[1]), top + up, top + 0.18 * (c[1] - c[0])}},
-                        kVirtualCamera, width),
-              info, width);
-  if (content.glyphs.size() < kMostGlyphs) content.glyphs.push_back({mirrored, c[0], c[1], c[2], c[3], top + up});
+  content.add(lineActor(drawn.chains, kVirtualCamera, width), info, width);
+  if (content.glyphs.size() < kMostGlyphs) {  // centre, image plane, tip of the tick
+    content.glyphs.push_back({mirrored, drawn.chains[5][1]});
+    content.glyphs.back().insert(content.glyphs.back().end(), drawn.chains[0].begin(), drawn.chains[0].end() - 1);
+  }
   // The pair, joined square through the tangent plane; seen from one of them the lines would only run across the photograph.
   if (in.eye == Eye::Outside) {
     content.add(segmentActor(dashed(eye, mirrored, 0.02 * in.scale.sceneSize), kVirtualCamera, 1.0), info, 1.0);
