@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <fstream>
 #include <system_error>
 
 #include "core/base/file_name_key.h"
@@ -121,5 +122,15 @@ std::string FileFinder::differences() const {
 }
 
 fs::path sameUnder(const fs::path& folder, const fs::path& file) { return FileFinder().under(folder, file.string()); }
+
+std::string firstBytes(const fs::path& file, std::size_t most) {
+  std::error_code error;
+  if (!fs::is_regular_file(file, error)) return "";
+  std::ifstream in(file, std::ios::binary);
+  std::string bytes(most, '\0');
+  in.read(bytes.data(), static_cast<std::streamsize>(most));
+  bytes.resize(static_cast<std::size_t>(std::max<std::streamsize>(0, in.gcount())));
+  return bytes;
+}
 
 }  // namespace glint
