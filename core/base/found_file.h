@@ -48,6 +48,9 @@ std::filesystem::path sameUnder(const std::filesystem::path& folder, const std::
 /// program wait.
 std::string firstBytes(const std::filesystem::path& file, std::size_t most);
 
+/// The ending of a file's name with its dot, ASCII letters in lower case.
+std::string lowerEnding(const std::filesystem::path& file);
+
 /// With slashes in place of backslashes.
 std::string slashed(std::string name);
 

@@ -60,9 +60,7 @@ bool OutputKind::mayBeNamed(const fs::path& file) const {
   static const std::set<std::string> promises{".bmp", ".csv",  ".exr", ".gif", ".glint", ".htm", ".html", ".jpeg",
                                               ".jpg", ".json", ".lp",  ".mp4", ".obj",   ".pdf", ".ply",  ".png",
                                               ".ppm", ".stl",  ".svg", ".tif", ".tiff",  ".webp"};
-  std::string ending = file.extension().string();
-  for (char& c : ending)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  const std::string ending = lowerEnding(file);
   return endings_.empty() || promises.count(ending) == 0 || std::count(endings_.begin(), endings_.end(), ending) > 0;
 }
 
