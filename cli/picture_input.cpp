@@ -2,23 +2,17 @@
 #include "cli/picture_input.h"
 
 #include <algorithm>
-#include <fstream>
 #include <sstream>
 
 #include "cli/inspection_arguments.h"
+#include "core/base/found_file.h"
 #include "core/base/plugin_hint.h"
 
 namespace glint::cli {
 namespace {
 
 /// A session is told by what is in it, not by its name.
-bool isSession(const std::string& input) {
-  std::ifstream file(input);
-  std::string head(4096, '\0');
-  file.read(head.data(), static_cast<std::streamsize>(head.size()));
-  head.resize(static_cast<std::size_t>(std::max<std::streamsize>(0, file.gcount())));
-  return head.find("\"glint_session\"") != std::string::npos;
-}
+bool isSession(const std::string& input) { return firstBytes(input, 4096).find("\"glint_session\"") != std::string::npos; }
 
 /// "+rays,-surface", "none,+surface": applied in order.
 void applyLayers(const std::string& text, viz::SceneView& view) {

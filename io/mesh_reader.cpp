@@ -2,9 +2,9 @@
 #include "io/mesh_reader.h"
 
 #include <algorithm>
-#include <cctype>
 
 #include "core/base/atomic_file.h"
+#include "core/base/found_file.h"
 #include "io/mesh_builder.h"
 #include "io/stl_layout.h"
 #include "io/text_scan.h"
@@ -28,9 +28,7 @@ MeshContent readMeshContent(const std::filesystem::path& file) { return parseMes
 MeshContent parseMesh(std::string_view bytes, const std::filesystem::path& file) {
   const std::string name = file.string();
   if (bytes.empty()) io::fail(name, "", "the file is empty (0 bytes)");
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
-  const bool namedStl = extension == ".stl";
+  const bool namedStl = lowerEnding(file) == ".stl";
   // A binary STL may start with "solid" too; its size follows from its facet count.
   const bool solid = io::beginsAsStlText(bytes);
   const std::size_t promised = io::stlBytesPromised(bytes);

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
+#include <fstream>
 #include <system_error>
 
 #include "core/base/file_name_key.h"
@@ -17,9 +17,7 @@ constexpr std::array<const char*, 10> kImageEndings{".png", ".jpg", ".jpeg", ".t
                                                     ".exr", ".bmp", ".webp", ".hdr", ".ppm"};
 
 std::size_t endingNumber(const fs::path& name) {
-  std::string ending = name.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-  return std::size_t(std::find(kImageEndings.begin(), kImageEndings.end(), ending) - kImageEndings.begin());
+  return std::size_t(std::find(kImageEndings.begin(), kImageEndings.end(), lowerEnding(name)) - kImageEndings.begin());
 }
 bool isImageName(const fs::path& name) { return endingNumber(name) < kImageEndings.size(); }
 
@@ -121,5 +119,22 @@ std::string FileFinder::differences() const {
 }
 
 fs::path sameUnder(const fs::path& folder, const fs::path& file) { return FileFinder().under(folder, file.string()); }
+
+std::string lowerEnding(const fs::path& file) {
+  std::string ending = file.extension().string();
+  for (char& c : ending)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return ending;
+}
+
+std::string firstBytes(const fs::path& file, std::size_t most) {
+  std::error_code error;
+  if (!fs::is_regular_file(file, error)) return "";
+  std::ifstream in(file, std::ios::binary);
+  std::string bytes(most, '\0');
+  in.read(bytes.data(), static_cast<std::streamsize>(most));
+  bytes.resize(static_cast<std::size_t>(std::max<std::streamsize>(0, in.gcount())));
+  return bytes;
+}
 
 }  // namespace glint

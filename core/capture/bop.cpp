@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <map>
 #include <set>
 
 #include "core/base/atomic_file.h"
 #include "core/base/bounded_json.h"
+#include "core/base/found_file.h"
 #include "core/base/number_text.h"
 #include "core/capture/capture.h"
 #include "core/capture/file_names.h"
@@ -372,13 +372,8 @@ class BopReading {
 
 /// Whether a file begins with an image's camera: cheap, and enough to tell it from other JSON.
 bool looksLikeBopCameras(const fs::path& file) {
-  std::error_code ignored;  // unreadable counts as missing
-  if (!fs::is_regular_file(file, ignored)) return false;
   constexpr std::size_t kStart = 4096;  // bytes: the first image has 300
-  std::string start(kStart, '\0');
-  std::ifstream in(file, std::ios::binary);
-  in.read(start.data(), static_cast<std::streamsize>(start.size()));
-  start.resize(static_cast<std::size_t>(in.gcount()));
+  const std::string start = firstBytes(file, kStart);
   const std::size_t first = start.find_first_not_of(" \t\r\n");
   return first != std::string::npos && start[first] == '{' && start.find("\"cam_K\"") != std::string::npos;
 }

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <array>
-#include <fstream>
 #include <map>
 #include <set>
 
 #include "core/base/atomic_file.h"
+#include "core/base/found_file.h"
 #include "core/capture/colmap_parts.h"
 #include "core/capture/file_names.h"
 #include "io/text_scan.h"
@@ -17,18 +17,6 @@ namespace fs = std::filesystem;
 namespace {
 
 // Recognising.
-
-/// The first bytes of a regular file.
-std::string headOfModelFile(const fs::path& file) {
-  constexpr std::size_t kHead = 65536;  // bytes; comments before the first camera are far shorter
-  std::error_code ignored;              // unreadable counts as missing
-  if (!fs::is_regular_file(file, ignored)) return "";
-  std::string head(kHead, '\0');
-  std::ifstream in(file, std::ios::binary);
-  in.read(head.data(), std::streamsize(head.size()));
-  head.resize(std::size_t(in.gcount()));
-  return head;
-}
 
 bool beginsLikeCamerasBinary(const std::string& head) {
   constexpr std::size_t kCount = sizeof(std::uint64_t), kModel = kCount + sizeof(std::uint32_t);
@@ -57,7 +45,8 @@ bool beginsLikeCamerasText(const std::string& head) {
 fs::path camerasIn(const fs::path& folder, bool binary) {
   const Files files{folder, binary};
   if (!files.has("cameras") || !files.has("images")) return {};
-  const std::string head = headOfModelFile(files("cameras"));
+  constexpr std::size_t kHead = 65536;  // bytes; comments before the first camera are far shorter
+  const std::string head = firstBytes(files("cameras"), kHead);
   return (binary ? beginsLikeCamerasBinary(head) : beginsLikeCamerasText(head)) ? files("cameras") : fs::path();
 }
 fs::path camerasIn(const fs::path& folder) {

@@ -6,9 +6,9 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <string>
 
+#include "core/base/found_file.h"
 #include "core/base/image_header.h"
 #include "core/capture/parts.h"
 
@@ -20,7 +20,8 @@ namespace glint::capture {
 class ImageSizes {
  public:
   std::array<int, 2> of(const std::filesystem::path& image, const std::string& file, const std::string& place) {
-    std::string start = startOf(image);
+    constexpr std::size_t kStart = 3 << 15;  // bytes: a JPEG's notes with a thumbnail are a segment of at most two thirds of it
+    std::string start = firstBytes(image, kStart);
     if (const auto size = jpegSizeAtStart(start)) return *size;
     start = pngStart(start);
     if (!start.empty() && start == start_) return size_;
@@ -30,17 +31,6 @@ class ImageSizes {
   }
 
  private:
-  /// Its first bytes; "" if it cannot be read.
-  static std::string startOf(const std::filesystem::path& image) {
-    std::error_code ignored;  // unreadable counts as missing; a pipe would make the program wait
-    if (!std::filesystem::is_regular_file(image, ignored)) return "";
-    constexpr std::size_t kSize = 3 << 15;  // bytes: a JPEG's notes with a thumbnail are a segment of at most two thirds of it
-    std::string start(kSize, '\0');
-    std::ifstream in(image, std::ios::binary);
-    in.read(start.data(), kSize);
-    start.resize(static_cast<std::size_t>(in.gcount()));
-    return start;
-  }
   /// The start of a PNG, up to the end of its size; "" for everything else.
   static std::string pngStart(const std::string& start) {
     constexpr std::size_t kSize = 24;  // bytes: signature 8, length 4, "IHDR" 4, width 4, height 4

@@ -12,6 +12,7 @@
 
 #include "core/base/atomic_file.h"
 #include "core/base/bounded_json.h"
+#include "core/base/found_file.h"
 #include "core/base/number_text.h"
 #include "core/capture/file_names.h"
 #include "core/capture/image_sizes.h"
@@ -325,13 +326,6 @@ fs::path nerfFile(const JsonNode& node, NerfContext& context) {
   return context.names.other(context.folder, node.text(), node.file(), node.place());
 }
 
-/// Lower case, with its dot.
-std::string nerfEnding(const fs::path& file) {
-  std::string ending = file.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-  return ending;
-}
-
 std::optional<JsonNode> givenNerfPath(const JsonNode& frame, const char* key) {
   const std::optional<JsonNode> node = frame.find(key);
   return node && !node->isNull() ? node : std::nullopt;
@@ -350,7 +344,7 @@ void readNerfDepth(const JsonNode& frame, NerfContext& context, CaptureView& vie
     scale = bounded(*factor, kLargestFactor) / context.appliedScale;
   }
   const fs::path path = nerfFile(*node, context);
-  const std::string ending = nerfEnding(path);
+  const std::string ending = lowerEnding(path);
   if (ending == ".npy" || ending == ".npz") {
     context.tally.arrays.add(node->place());
     return;

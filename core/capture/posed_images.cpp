@@ -2,7 +2,6 @@
 // A folder of images, or a video, whose cameras a file of poses says (CaptureOptions::poses).
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <fstream>
 #include <map>
@@ -36,8 +35,7 @@ struct Picture {
 };
 
 bool looksLikeImageName(const fs::path& file) {
-  std::string ending = file.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  const std::string ending = lowerEnding(file);
   static constexpr std::array<const char*, 6> kEndings{".png", ".jpg", ".jpeg", ".tif", ".tiff", ".exr"};
   return std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end();
 }

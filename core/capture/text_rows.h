@@ -4,10 +4,10 @@
 // Internal to core/capture: what the readers of NVM and Bundler share, whose texts hold a row per camera and per point.
 
 #include <algorithm>
-#include <fstream>
 #include <map>
 
 #include "core/base/bounded_json.h"
+#include "core/base/found_file.h"
 #include "core/capture/parts.h"
 #include "io/text_scan.h"
 
@@ -53,12 +53,7 @@ inline std::size_t possibleCount(long long count, std::size_t bytesEach, std::si
 /// The first line without its line break, as far as it matters for what the file is; "" if it cannot be read.
 inline std::string firstLineOf(const std::filesystem::path& file) {
   constexpr std::size_t kMost = 256;  // bytes; the headers that are looked for are shorter
-  std::error_code ignored;            // unreadable counts as missing
-  if (!std::filesystem::is_regular_file(file, ignored)) return {};
-  std::ifstream in(file, std::ios::binary);
-  std::string start(kMost, '\0');
-  in.read(start.data(), static_cast<std::streamsize>(kMost));
-  start.resize(static_cast<std::size_t>(std::max<std::streamsize>(in.gcount(), 0)));
+  const std::string start = firstBytes(file, kMost);
   const std::string_view text = io::withoutMark(start);
   return std::string(text.substr(0, text.find_first_of("\r\n")));
 }

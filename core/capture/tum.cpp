@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <set>
 
 #include "core/base/atomic_file.h"
 #include "core/base/bounded_json.h"
+#include "core/base/found_file.h"
 #include "core/base/number_text.h"
 #include "core/capture/capture.h"
 #include "core/capture/file_names.h"
@@ -254,13 +254,8 @@ class TumReading {
 
 /// Whether the first line that is no comment is a time and a path: enough to tell it from other lists, and cheap.
 bool looksLikeTumList(const fs::path& file) {
-  std::error_code ignored;  // unreadable counts as missing
-  if (!fs::is_regular_file(file, ignored)) return false;
   constexpr std::size_t kStart = 4096;  // bytes: the comments of the benchmark's files have 100
-  std::string start(kStart, '\0');
-  std::ifstream in(file, std::ios::binary);
-  in.read(start.data(), static_cast<std::streamsize>(start.size()));
-  start.resize(static_cast<std::size_t>(in.gcount()));
+  const std::string start = firstBytes(file, kStart);
   const std::optional<capture::Row> row = capture::RowReader(start, file.string()).next();
   return row && row->words.size() == 2 && io::numberOf(row->words[0]) && !io::numberOf(row->words[1]);
 }

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "core/base/angle.h"
+#include "core/base/evenly.h"
 #include "core/base/number_text.h"
 #include "core/highlight/peak.h"
 #include "core/light/estimate.h"
@@ -24,13 +25,6 @@ constexpr const char* kLightOfOneAngle =
 constexpr std::size_t kMostDirections = 256;  // 33,000 pairs: a millisecond
 
 double angleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
-
-std::vector<Eigen::Vector3d> some(const std::vector<Eigen::Vector3d>& all) {
-  if (all.size() <= kMostDirections) return all;
-  std::vector<Eigen::Vector3d> kept;
-  for (std::size_t i = 0; i < kMostDirections; ++i) kept.push_back(all[i * all.size() / kMostDirections]);
-  return kept;
-}
 
 /// Small numbers are good.
 Verdict below(double value, double amber, double red) {
@@ -360,7 +354,7 @@ Verdict Conditioning::worst() const {
 }
 
 double widestAngle(const std::vector<Eigen::Vector3d>& directions) {
-  const std::vector<Eigen::Vector3d> d = some(directions);
+  const std::vector<Eigen::Vector3d> d = evenly(directions, kMostDirections);
   double widest = 0;
   for (std::size_t i = 0; i < d.size(); ++i)
     for (std::size_t j = i + 1; j < d.size(); ++j) widest = std::max(widest, angleBetween(d[i], d[j]));
@@ -369,7 +363,7 @@ double widestAngle(const std::vector<Eigen::Vector3d>& directions) {
 
 double effectiveNumber(const std::vector<Eigen::Vector3d>& directions, double independent) {
   require(independent > 0, "effectiveNumber: the independent angle must be positive");
-  const std::vector<Eigen::Vector3d> d = some(directions);
+  const std::vector<Eigen::Vector3d> d = evenly(directions, kMostDirections);
   if (d.empty()) return 0;
   double similar = double(d.size());  // each with itself
   for (std::size_t i = 0; i < d.size(); ++i)

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <set>
 
+#include "core/base/evenly.h"
 #include "core/base/parallel.h"
 #include "core/diagnostics/polar_residual.h"
 #include "core/score/comparison.h"
@@ -38,10 +39,7 @@ std::vector<int> probesOf(const Inspection& inspection, int most) {
   for (const FrameEvidence& e : inspection.evidence)
     if (e.frame >= 0 && inspection.isHeldOut(e.frame) && !inspection.isTraining(e.frame) && !e.scored().empty())
       all.push_back(e.frame);
-  const int n = int(all.size()), kept = std::min(n, most);
-  std::vector<int> probes;
-  for (int i = 0; i < kept; ++i) probes.push_back(all[std::size_t(i) * std::size_t(n) / std::size_t(kept)]);
-  return probes;
+  return evenly(all, std::size_t(most));
 }
 
 const ModelFit* fitOf(const Inspection& inspection, const ModelResult& result, const TrainingView& view) {

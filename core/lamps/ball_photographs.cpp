@@ -10,6 +10,7 @@
 #include "core/base/atomic_file.h"
 #include "core/base/bounded_json.h"
 #include "core/base/exif.h"
+#include "core/base/found_file.h"
 #include "core/base/image_header.h"
 #include "core/base/number_text.h"
 #include "core/base/parallel.h"
@@ -31,13 +32,6 @@ constexpr double kAroundPx = 8;                       // of a small ball
 constexpr std::size_t kMostForOutline = 24;           // photographs: noise then is a fifth, and shadows of one lamp are averaged
 constexpr std::size_t kBytesForOutline = 256u << 20;  // of memory, for one ball at a time
 constexpr float kWhite = 255;
-
-std::string lowerEnding(const fs::path& file) {
-  std::string ending = file.extension().string();
-  for (char& c : ending)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return ending;
-}
 
 std::set<std::string> photographsIn(const fs::path& folder) {
   std::set<std::string> names;

@@ -12,6 +12,7 @@
 #include <random>
 #include <set>
 
+#include "core/base/evenly.h"
 #include "core/geometry/plane.h"
 #include "core/light/estimate.h"
 
@@ -136,14 +137,6 @@ std::size_t framesOf(const std::vector<Item>& items, const Members& members) {
   return frames.size();
 }
 
-/// Every k-th, so that about `count` stay.
-Members thinned(const Members& all, std::size_t count) {
-  if (all.size() <= count) return all;
-  Members some;
-  for (std::size_t i = 0; i < count; ++i) some.push_back(all[i * all.size() / count]);
-  return some;
-}
-
 /// Pairs of different frames, all of them or a seeded choice.
 std::vector<std::pair<std::size_t, std::size_t>> seedPairs(const std::vector<Item>& items, const Members& among,
                                                            const TrackOptions& options) {
@@ -167,7 +160,7 @@ struct Group {
 /// The light that most of `free` confirm, refined on its own inliers. None when too few frames do.
 std::optional<Group> bestGroup(const std::vector<Item>& items, const Members& free, std::size_t leastFrames,
                                const TrackOptions& options) {
-  const Members voters = thinned(free, kVoters);
+  const Members voters = evenly(free, kVoters);
   std::optional<Light> best;
   double most = 0;
   for (const auto& [a, b] : seedPairs(items, voters, options)) {

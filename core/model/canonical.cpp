@@ -6,13 +6,12 @@
 #include "core/model/models.h"
 #include "core/model/plausible.h"
 #include "core/model/star.h"
-#include "core/model/uncertainty.h"
 #include "core/surface/local_quadric.h"
 
 namespace glint {
 namespace {
 
-class Canonical final : public HighlightModel {
+class Canonical final : public EllipsoidModel {
  public:
   std::string id() const override { return "canonical"; }
   std::string title() const override { return "Canonical JOLIMAS"; }
@@ -27,7 +26,6 @@ class Canonical final : public HighlightModel {
   bool needsLight() const override { return true; }
   bool needsCanonicalContours() const override { return true; }
   ModelTraits traits() const override { return {{0, 158, 115}}; }
-  bool hasOutlines() const override { return true; }
   std::optional<ConicView> outlineIn(const TrainingView& v) const override {
     if (!v.seen || !v.canonical || !v.canonical->ellipse) return std::nullopt;
     return ConicView{v.seen->virtualCamera, *v.canonical->ellipse, v.canonical->pixels};
@@ -36,43 +34,7 @@ class Canonical final : public HighlightModel {
 
   Outcome<ModelFit> fit(const FitInput& input, const Settings& settings) const override {
     if (!input.light) return input.lightFailure ? *input.lightFailure : Failure{Reason::NoLight, ""};
-    std::vector<ConicView> conics;
-    ModelFit fit;
-    std::vector<UsedContour> used;
-    const auto unused = [](const TrainingView& v) -> std::optional<Failure> {
-      if (!v.seen) return v.seen.failure();
-      if (!v.canonical) return Failure{Reason::NoBrightestPoint, ""};
-      if (v.canonical->ellipse) return std::nullopt;
-      // The directions know why there are too few points on the tangent plane for an ellipse.
-      for (const DirectionResult& d : v.canonical->directions)
-        if (d.failure) return d.failure;
-      return Failure{Reason::NotAnEllipse, "the canonical contour"};
-    };
-    for (const TrainingView& v : input.views) {
-      std::optional<ConicView> outline = outlineIn(v);
-      if (!outline) continue;
-      // On the tangent plane the contour is larger than in the photograph, and so are its noise and what the ellipsoid leaves of it.
-      const double canonicalRadius = std::sqrt(outline->ellipse.semiAxes.prod());
-      used.push_back(usedContour(v, canonicalRadius / radiusPx(v.highlight.contour)));
-      conics.push_back(*std::move(outline));
-      fit.frames.push_back(v.frame);
-    }
-    const Outcome<Reconstruction> r = fitEllipsoid(conics, anchorAtLight(input), settings);
-    if (!r) return withUnusedViews(r.failure(), input.views, unused);
-    store(*r, fit);
-    fit.lightEstimate = input.light->light;
-    fit.lightCovariance = input.light->covariance;
-    std::get<EllipsoidFit>(fit.family).limitAngle = input.light->limitAngle;
-    fit.hints = hintsOf(input);
-    if (fit.uncertainty && input.light->uncertainty) {
-      // The light moves the prediction on its own as well. Taken as independent: the contours' noise enters both, through different residuals.
-      const Eigen::MatrixXd ellipsoid = fit.uncertainty->root, lamp = parameters::kLight.of(input.light->uncertainty->root);
-      Eigen::MatrixXd& root = fit.uncertainty->root;
-      root = Eigen::MatrixXd::Zero(ellipsoid.rows() + lamp.rows(), ellipsoid.cols() + lamp.cols());
-      root.topLeftCorner(ellipsoid.rows(), ellipsoid.cols()) = ellipsoid;
-      parameters::kLampOfEllipsoid.of(root).rightCols(lamp.cols()) = lamp;
-    }
-    return explaining(std::move(fit), used, false, settings.number("fit.most_residual"));
+    return EllipsoidModel::fit(input, settings);
   }
 
   Prediction predict(const ModelFit& fit, const Camera& camera, const Surface* surface, const Settings& settings) const override {
@@ -125,9 +87,33 @@ class Canonical final : public HighlightModel {
     return {std::move(found), std::move(why)};
   }
 
-  Eigen::MatrixXd bandShiftsPx(const ModelFit& fit, const PredictedHighlight& highlight, const Camera& camera,
-                               const Surface* surface, const Settings& settings) const override {
-    return ellipsoidBandShiftsPx(*this, fit, highlight, camera, surface, settings);
+ private:
+  std::optional<Failure> unused(const TrainingView& v) const override {
+    if (!v.seen) return v.seen.failure();
+    if (!v.canonical) return Failure{Reason::NoBrightestPoint, ""};
+    if (v.canonical->ellipse) return std::nullopt;
+    // The directions know why there are too few points on the tangent plane for an ellipse.
+    for (const DirectionResult& d : v.canonical->directions)
+      if (d.failure) return d.failure;
+    return Failure{Reason::NotAnEllipse, "the canonical contour"};
+  }
+  /// On the tangent plane the contour is larger than in the photograph, and so are its noise and what the ellipsoid leaves of it.
+  double unitOf(const ConicView& outline, const TrainingView& v) const override {
+    const double canonicalRadius = std::sqrt(outline.ellipse.semiAxes.prod());
+    return canonicalRadius / radiusPx(v.highlight.contour);
+  }
+  void complete(const FitInput& input, ModelFit& fit) const override {
+    fit.lightEstimate = input.light->light;
+    fit.lightCovariance = input.light->covariance;
+    std::get<EllipsoidFit>(fit.family).limitAngle = input.light->limitAngle;
+    fit.hints = hintsOf(input);
+    if (!fit.uncertainty || !input.light->uncertainty) return;
+    // The light moves the prediction on its own as well. Taken as independent: the contours' noise enters both, through different residuals.
+    const Eigen::MatrixXd ellipsoid = fit.uncertainty->root, lamp = parameters::kLight.of(input.light->uncertainty->root);
+    Eigen::MatrixXd& root = fit.uncertainty->root;
+    root = Eigen::MatrixXd::Zero(ellipsoid.rows() + lamp.rows(), ellipsoid.cols() + lamp.cols());
+    root.topLeftCorner(ellipsoid.rows(), ellipsoid.cols()) = ellipsoid;
+    parameters::kLampOfEllipsoid.of(root).rightCols(lamp.cols()) = lamp;
   }
 };
 

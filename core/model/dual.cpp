@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/model/fit_ellipsoid.h"
 #include "core/model/models.h"
-#include "core/model/plausible.h"
-#include "core/model/uncertainty.h"
 
 namespace glint {
 namespace {
 
-class Dual final : public HighlightModel {
+class Dual final : public EllipsoidModel {
  public:
   std::string id() const override { return "dual"; }
   std::string title() const override { return "Dual JOLIMAS"; }
@@ -19,32 +17,9 @@ class Dual final : public HighlightModel {
   bool needsLight() const override { return true; }
   bool needsCanonicalContours() const override { return false; }
   ModelTraits traits() const override { return {{86, 180, 233}, true, true, ModelTraits::Assumes::ConstantCurvature}; }
-  bool hasOutlines() const override { return true; }
   std::optional<ConicView> outlineIn(const TrainingView& v) const override {
     if (!v.seen || !v.highlight.ellipse) return std::nullopt;
     return conicViewOf(v, v.seen->virtualCamera);
-  }
-
-  Outcome<ModelFit> fit(const FitInput& input, const Settings& settings) const override {
-    std::vector<ConicView> conics;
-    ModelFit fit;
-    std::vector<UsedContour> used;
-    const auto unused = [](const TrainingView& v) -> std::optional<Failure> {
-      if (!v.seen) return v.seen.failure();
-      return v.highlight.ellipse ? std::optional<Failure>() : Failure{Reason::NotAnEllipse, "the contour"};
-    };
-    for (const TrainingView& v : input.views) {
-      std::optional<ConicView> outline = outlineIn(v);
-      if (!outline) continue;
-      used.push_back(usedContour(v));
-      conics.push_back(*std::move(outline));
-      fit.frames.push_back(v.frame);
-    }
-    const Outcome<Reconstruction> r = fitEllipsoid(conics, anchorAtLight(input), settings);
-    if (!r) return withUnusedViews(r.failure(), input.views, unused);
-    store(*r, fit);
-    fit.hints = hintsOf(input);
-    return explaining(std::move(fit), used, false, settings.number("fit.most_residual"));
   }
 
   Prediction predict(const ModelFit& fit, const Camera& camera, const Surface* surface, const Settings& settings) const override {
@@ -71,10 +46,12 @@ class Dual final : public HighlightModel {
     return {std::move(found), std::move(why)};
   }
 
-  Eigen::MatrixXd bandShiftsPx(const ModelFit& fit, const PredictedHighlight& highlight, const Camera& camera,
-                               const Surface* surface, const Settings& settings) const override {
-    return ellipsoidBandShiftsPx(*this, fit, highlight, camera, surface, settings);
+ private:
+  std::optional<Failure> unused(const TrainingView& v) const override {
+    if (!v.seen) return v.seen.failure();
+    return v.highlight.ellipse ? std::optional<Failure>() : Failure{Reason::NotAnEllipse, "the contour"};
   }
+  void complete(const FitInput& input, ModelFit& fit) const override { fit.hints = hintsOf(input); }
 };
 
 }  // namespace

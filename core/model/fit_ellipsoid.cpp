@@ -187,6 +187,24 @@ ConicView conicViewOf(const TrainingView& view, const Projection& projection) {
   return {projection, *view.highlight.ellipse, resample(view.highlight.contour, kContourPoints)};
 }
 
+Outcome<ModelFit> EllipsoidModel::fit(const FitInput& input, const Settings& settings) const {
+  std::vector<ConicView> conics;
+  ModelFit fit;
+  std::vector<UsedContour> used;
+  for (const TrainingView& v : input.views) {
+    std::optional<ConicView> outline = outlineIn(v);
+    if (!outline) continue;
+    used.push_back(usedContour(v, unitOf(*outline, v)));
+    conics.push_back(*std::move(outline));
+    fit.frames.push_back(v.frame);
+  }
+  const Outcome<Reconstruction> r = fitEllipsoid(conics, anchor(input), settings);
+  if (!r) return withUnusedViews(r.failure(), input.views, [this](const TrainingView& v) { return unused(v); });
+  store(*r, fit);
+  complete(input, fit);
+  return explaining(std::move(fit), used, false, settings.number("fit.most_residual"));
+}
+
 void store(const Reconstruction& r, ModelFit& fit) {
   fit.family = EllipsoidFit{r.quadric, r.ellipsoid, r.singularValues, r.gapRatio};
   fit.condition = r.condition;

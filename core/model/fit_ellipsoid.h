@@ -49,6 +49,26 @@ void store(const Reconstruction& reconstruction, ModelFit& fit);
 /// The ellipsoid of a fit; NotAnEllipsoid, with what Q* is instead.
 Outcome<Ellipsoid> ellipsoidOf(const ModelFit& fit);
 
+/// A model that fits one ellipsoid to an outline in every view that has one (outlineIn).
+class EllipsoidModel : public HighlightModel {
+ public:
+  bool hasOutlines() const final { return true; }
+  /// fitEllipsoid() with its failures; where views are too few, it says why others have no outline.
+  Outcome<ModelFit> fit(const FitInput& input, const Settings& settings) const override;
+  /// Predicts again with the centre, shape (and light) moved along each column of the uncertainty.
+  Eigen::MatrixXd bandShiftsPx(const ModelFit& fit, const PredictedHighlight& highlight, const Camera& camera,
+                               const Surface* surface, const Settings& settings) const final;
+
+ private:
+  virtual std::optional<CentreAnchor> anchor(const FitInput& input) const { return anchorAtLight(input); }
+  /// Why a view has no outline; nothing where it has one.
+  virtual std::optional<Failure> unused(const TrainingView& view) const = 0;
+  /// UsedContour::unit
+  virtual double unitOf(const ConicView&, const TrainingView&) const { return 1; }
+  /// Adds what the fit holds beside the ellipsoid.
+  virtual void complete(const FitInput&, ModelFit&) const {}
+};
+
 /// The ellipse as a polyline of `points` vertices, as a highlight without directions. @param brightest its peak.
 PredictedHighlight highlightFromEllipse(const Ellipse& ellipse, const BrightestPoint& brightest, int points = 360);
 

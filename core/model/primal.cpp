@@ -2,12 +2,11 @@
 #include "core/model/fit_ellipsoid.h"
 #include "core/model/models.h"
 #include "core/model/plausible.h"
-#include "core/model/uncertainty.h"
 
 namespace glint {
 namespace {
 
-class Primal final : public HighlightModel {
+class Primal final : public EllipsoidModel {
  public:
   std::string id() const override { return "primal"; }
   std::string title() const override { return "Primal JOLIMAS"; }
@@ -18,31 +17,8 @@ class Primal final : public HighlightModel {
   bool needsLight() const override { return false; }
   bool needsCanonicalContours() const override { return false; }
   ModelTraits traits() const override { return {{230, 159, 0}, false, true, ModelTraits::Assumes::Plane}; }
-  bool hasOutlines() const override { return true; }
   std::optional<ConicView> outlineIn(const TrainingView& v) const override {
     return hasWholeEllipse(v) ? std::optional(conicViewOf(v, v.camera.projection())) : std::nullopt;
-  }
-
-  Outcome<ModelFit> fit(const FitInput& input, const Settings& settings) const override {
-    std::vector<ConicView> conics;
-    ModelFit fit;
-    std::vector<UsedContour> used;
-    const auto unused = [](const TrainingView& v) -> std::optional<Failure> {
-      if (hasWholeEllipse(v)) return std::nullopt;
-      if (std::optional<Failure> small = tooSmall(v.highlight.contour)) return small;
-      return v.failure().value_or(Failure{Reason::NotAnEllipse, "the contour"});
-    };
-    for (const TrainingView& v : input.views) {
-      std::optional<ConicView> outline = outlineIn(v);
-      if (!outline) continue;
-      used.push_back(usedContour(v));
-      conics.push_back(*std::move(outline));
-      fit.frames.push_back(v.frame);
-    }
-    const Outcome<Reconstruction> r = fitEllipsoid(conics, anchorFromCentres(input.views), settings);
-    if (!r) return withUnusedViews(r.failure(), input.views, unused);
-    store(*r, fit);
-    return explaining(std::move(fit), used, false, settings.number("fit.most_residual"));
   }
 
   Prediction predict(const ModelFit& fit, const Camera& camera, const Surface*, const Settings&) const override {
@@ -57,9 +33,12 @@ class Primal final : public HighlightModel {
     return std::vector{highlightFromEllipse(*e, brightest)};
   }
 
-  Eigen::MatrixXd bandShiftsPx(const ModelFit& fit, const PredictedHighlight& highlight, const Camera& camera,
-                               const Surface* surface, const Settings& settings) const override {
-    return ellipsoidBandShiftsPx(*this, fit, highlight, camera, surface, settings);
+ private:
+  std::optional<CentreAnchor> anchor(const FitInput& input) const override { return anchorFromCentres(input.views); }
+  std::optional<Failure> unused(const TrainingView& v) const override {
+    if (hasWholeEllipse(v)) return std::nullopt;
+    if (std::optional<Failure> small = tooSmall(v.highlight.contour)) return small;
+    return v.failure().value_or(Failure{Reason::NotAnEllipse, "the contour"});
   }
 };
 

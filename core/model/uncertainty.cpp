@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/light/contour_evidence.h"
+#include "core/model/fit_ellipsoid.h"
 
 namespace glint {
 namespace {
@@ -113,8 +114,8 @@ Eigen::MatrixXd polylineShiftsPx(const Polyline& contour, const std::vector<std:
   return shifts;
 }
 
-Eigen::MatrixXd ellipsoidBandShiftsPx(const HighlightModel& model, const ModelFit& fit, const PredictedHighlight& highlight,
-                                      const Camera& camera, const Surface* surface, const Settings& settings) {
+Eigen::MatrixXd EllipsoidModel::bandShiftsPx(const ModelFit& fit, const PredictedHighlight& highlight, const Camera& camera,
+                                             const Surface* surface, const Settings& settings) const {
   const Ellipsoid* const ellipsoid = fit.ellipsoid();
   if (!fit.uncertainty || !ellipsoid || !parameters::kShape.isIn(fit.uncertainty->root)) return {};
   const Eigen::MatrixXd& root = fit.uncertainty->root;
@@ -129,7 +130,7 @@ Eigen::MatrixXd ellipsoidBandShiftsPx(const HighlightModel& model, const ModelFi
     other.family = EllipsoidFit{moved->dual(), *moved};
     if (fit.lightEstimate && parameters::kLampOfEllipsoid.isIn(change))
       other.lightEstimate = Light::homogeneous(fit.lightEstimate->homogeneous() + parameters::kLampOfEllipsoid.of(change));
-    const Prediction p = model.predict(other, camera, surface, settings);
+    const Prediction p = predict(other, camera, surface, settings);
     const auto distance = [&](const PredictedHighlight& h) { return (h.brightest.pixel - highlight.brightest.pixel).norm(); };
     const auto nearest =
         std::min_element(p.highlights().begin(), p.highlights().end(),

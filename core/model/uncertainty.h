@@ -32,8 +32,4 @@ std::vector<Pixel> outwardNormals(const Polyline& contour);
 /// Distance from each vertex along the outward normal to the nearest crossing of another contour; NaN where it misses that.
 std::vector<double> shiftsAlongNormals(const Polyline& contour, const Polyline& other);
 
-/// HighlightModel::bandShiftsPx of the ellipsoid models: predicts again with the centre, shape (and light) moved along each column.
-Eigen::MatrixXd ellipsoidBandShiftsPx(const HighlightModel& model, const ModelFit& fit, const PredictedHighlight& highlight,
-                                      const Camera& camera, const Surface* surface, const Settings& settings);
-
 }  // namespace glint

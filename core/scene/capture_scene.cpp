@@ -19,8 +19,7 @@ namespace {
 constexpr const char* kSurfaceId = "surface";
 
 bool endsLikeAMesh(const fs::path& file) {
-  std::string ending = file.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  const std::string ending = lowerEnding(file);
   return ending == ".ply" || ending == ".obj" || ending == ".stl" || ending == ".gltf" || ending == ".glb";
 }
 

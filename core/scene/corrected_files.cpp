@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/base/atomic_file.h"
+#include "core/base/found_file.h"
 #include "core/base/safe_text.h"
 #include "core/scene/geometry_check.h"
 #include "core/scene/scene_reader.h"

@@ -2,12 +2,12 @@
 #include "core/scene/outputs.h"
 
 #include <algorithm>
-#include <fstream>
 #include <iterator>
 #include <set>
 #include <sstream>
 
 #include "core/base/document_kind.h"
+#include "core/base/found_file.h"
 #include "core/base/number_text.h"
 #include "core/base/output_place.h"
 #include "core/base/safe_text.h"
@@ -20,15 +20,6 @@ namespace {
 
 constexpr const char* kSessionKey = "glint_session";
 constexpr const char* kWorkKey = "glint_tradeoff_work";  // beside another output, by that one's name
-
-/// The first bytes of a file; fewer where it is shorter.
-std::string headOf(const fs::path& file, std::size_t bytes) {
-  std::string head(bytes, '\0');
-  std::ifstream in(file, std::ios::binary);
-  in.read(head.data(), static_cast<std::streamsize>(bytes));
-  head.resize(static_cast<std::size_t>(std::max<std::streamsize>(0, in.gcount())));
-  return head;
-}
 
 /// MP4 ("ftyp" after its length), WebM and Matroska (EBML), AVI (RIFF ... AVI).
 bool isMovie(const std::string& head) {
@@ -69,9 +60,7 @@ bool OutputKind::mayBeNamed(const fs::path& file) const {
   static const std::set<std::string> promises{".bmp", ".csv",  ".exr", ".gif", ".glint", ".htm", ".html", ".jpeg",
                                               ".jpg", ".json", ".lp",  ".mp4", ".obj",   ".pdf", ".ply",  ".png",
                                               ".ppm", ".stl",  ".svg", ".tif", ".tiff",  ".webp"};
-  std::string ending = file.extension().string();
-  for (char& c : ending)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  const std::string ending = lowerEnding(file);
   return endings_.empty() || promises.count(ending) == 0 || std::count(endings_.begin(), endings_.end(), ending) > 0;
 }
 
@@ -79,7 +68,7 @@ bool OutputKind::holds(const fs::path& file) const {
   std::error_code ignored;  // what cannot be asked about is not empty
   if (fs::file_size(file, ignored) == 0) return true;
   constexpr std::size_t kHead = 400;  // the title of a page stands within it
-  const std::string head = headOf(file, std::max(kHead, key_.size()));
+  const std::string head = firstBytes(file, std::max(kHead, key_.size()));
   switch (form_) {
     case Form::Document: return documentKind(file) == key_;
     case Form::Table: return head.starts_with(key_);

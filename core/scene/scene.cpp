@@ -2,9 +2,9 @@
 #include "core/scene/scene.h"
 
 #include <algorithm>
-#include <fstream>
 
 #include "core/base/atomic_file.h"
+#include "core/base/found_file.h"
 #include "core/base/json_text.h"
 #include "core/base/limits.h"
 #include "core/base/permitted.h"
@@ -15,16 +15,6 @@
 
 namespace glint {
 namespace fs = std::filesystem;
-
-std::string firstBytes(const fs::path& file, std::size_t n) {
-  std::error_code error;
-  if (!fs::is_regular_file(file, error)) return "";
-  std::ifstream in(file, std::ios::binary);
-  std::string bytes(n, '\0');
-  in.read(bytes.data(), static_cast<std::streamsize>(n));
-  bytes.resize(static_cast<std::size_t>(std::max<std::streamsize>(0, in.gcount())));
-  return bytes;
-}
 
 const AnalyticSpec* Scene::formulaOf(const std::string& surface) const {
   const auto found = surfaces.find(surface);

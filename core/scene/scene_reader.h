@@ -46,7 +46,4 @@ CaptureOptions captureOptionsOf(const ReadOptions& options);
 /// The same of a scene that was read: for its sparse points.
 CaptureOptions captureOptionsOf(const Scene& scene);
 
-/// The first `n` bytes of a file; "" when it cannot be read. For recognising contents.
-std::string firstBytes(const std::filesystem::path& file, std::size_t n);
-
 }  // namespace glint

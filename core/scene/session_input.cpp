@@ -12,15 +12,14 @@ namespace fs = std::filesystem;
 
 namespace {
 constexpr std::size_t kMostFolders = 100;  // every frame is looked for in each; a user names one or two of a kind
+}  // namespace
 
-fs::path pathOf(const JsonNode& node, const fs::path& folder) {
+fs::path absolutePath(const JsonNode& node, const fs::path& folder) {
   const std::string text = node.text();
   if (text.empty()) node.fail("the path is empty");
   if (text.find('\0') != std::string::npos) node.fail("the path contains a zero byte");
   return (folder / fs::path(text)).lexically_normal();
 }
-
-}  // namespace
 
 int readSessionVersion(const JsonNode& root) {
   const auto node = root.find("glint_session");
@@ -40,10 +39,10 @@ int readSessionVersion(const JsonNode& root) {
 SessionInput readSessionInput(const JsonNode& root, const fs::path& folder) {
   const JsonNode input = root.at("input");
   SessionInput result;
-  result.scene = pathOf(input.at("path"), folder);
+  result.scene = absolutePath(input.at("path"), folder);
   if (const auto n = input.find("allow_outside")) n->boolean();  // what a session says about its own rights counts for nothing
   if (const auto n = input.find("photographs"); n && !n->isNull())
-    result.folders.push_back({FrameFile::Photograph, pathOf(*n, folder)});
+    result.folders.push_back({FrameFile::Photograph, absolutePath(*n, folder)});
   const auto all = input.find("folders");
   if (all && all->size() > kMostFolders)
     all->fail("names " + std::to_string(all->size()) + " folders; the limit is " + std::to_string(kMostFolders));
@@ -51,10 +50,10 @@ SessionInput readSessionInput(const JsonNode& root, const fs::path& folder) {
     const JsonNode of = all->at(i).at("of");
     const auto kind = std::find_if(kFrameFiles.begin(), kFrameFiles.end(), [&](FrameFile k) { return of.text() == nameOf(k); });
     if (kind == kFrameFiles.end()) of.fail("'" + of.text() + "' is not one of: photographs, depth, normals, masks");
-    result.folders.push_back({*kind, pathOf(all->at(i).at("folder"), folder)});
+    result.folders.push_back({*kind, absolutePath(all->at(i).at("folder"), folder)});
   }
   if (const auto meshes = input.find("meshes"); meshes && !meshes->isNull())
-    for (const std::string& named : meshes->keys()) result.meshes[named] = pathOf(meshes->at(named), folder);
+    for (const std::string& named : meshes->keys()) result.meshes[named] = absolutePath(meshes->at(named), folder);
   if (const auto reading = input.find("reading"); reading && !reading->isNull())
     result.choices = readInputChoices(*reading, folder);
   return result;

@@ -20,6 +20,9 @@ inline constexpr int kSessionVersion = 4;
 /// this program's, or of one that never existed.
 int readSessionVersion(const JsonNode& root);
 
+/// A path that a session writes, relative to its folder. InputError for an empty one and one with a zero byte.
+std::filesystem::path absolutePath(const JsonNode& node, const std::filesystem::path& folder);
+
 /// What the `input` of a session names, absolute. A session comes from others: `requirePermitted` before anything of it is looked at.
 struct SessionInput {
   std::filesystem::path scene;                          ///< a file, see requireSceneFile(); may lie anywhere

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/base/bounded_json.h"
+#include "core/base/found_file.h"
 #include "core/base/number_text.h"
 #include "core/base/plugin_hint.h"
 #include "core/geometry/pose_json.h"

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/evenly.h"
 #include "core/base/median.h"
 #include "core/base/number_text.h"
 #include "core/base/parallel.h"
@@ -61,8 +62,7 @@ std::vector<int> framesWithInView(const Scene& scene, const Eigen::Vector3d& poi
   }
   std::sort(having.begin(), having.end());
   std::vector<int> frames;
-  const std::size_t n = std::min(kMost, having.size());
-  for (std::size_t k = 0; k < n; ++k) frames.push_back(having[k * having.size() / n].second);
+  for (const auto& [distance, frame] : evenly(having, kMost)) frames.push_back(frame);
   return frames;
 }
 

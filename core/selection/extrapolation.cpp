@@ -8,6 +8,7 @@
 #include <set>
 
 #include "core/base/elapsed.h"
+#include "core/base/evenly.h"
 #include "core/base/parallel.h"
 #include "core/inspect/lobe_stage.h"
 #include "core/score/metrics.h"
@@ -94,9 +95,7 @@ std::vector<ViewToPredict> viewsToPredict(const Inspection& inspection, const st
       all.push_back(std::move(view));
     }
   }
-  const std::size_t count = std::min(all.size(), most);
-  for (std::size_t i = 0; i < count; ++i) {
-    ViewToPredict& view = all[i * all.size() / count];
+  for (ViewToPredict& view : evenly(all, most)) {
     const auto surface = surfaceFor(inspection, view.frame, view.light);
     if (!surface) continue;  // no prediction of any kind
     view.surface = *surface;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/base/elapsed.h"
+#include "core/base/evenly.h"
 #include "core/base/number_text.h"
 #include "core/base/parallel.h"
 #include "core/fit/training.h"
@@ -123,11 +124,9 @@ std::vector<Fold> foldsOf(const Inspection& inspection, LeaveOut together) {
   std::vector<int> usable;
   for (int i = 0; i < static_cast<int>(inspection.views.size()); ++i)
     if (inspection.views[i].seen) usable.push_back(i);
-  const int n = static_cast<int>(usable.size()), folds = std::min(n, kMostLeftOut);
   std::vector<Fold> all;
-  for (int f = 0; f < folds; ++f) {
+  for (const std::size_t left : evenly(usable, kMostLeftOut)) {
     Fold fold;
-    const auto left = static_cast<std::size_t>(usable[static_cast<std::size_t>(f) * n / folds]);
     fold.inspection = &inspection;
     fold.left = inspection.viewAsGiven(static_cast<int>(left));
     fold.leftSurface = fold.left.surface;

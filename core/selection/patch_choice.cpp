@@ -5,6 +5,7 @@
 #include <set>
 
 #include "core/base/elapsed.h"
+#include "core/base/evenly.h"
 #include "core/base/number_text.h"
 #include "core/fit/training.h"
 #include "core/model/star.h"
@@ -28,7 +29,7 @@ struct Other {
   const ModelFit* fit;
 };
 std::vector<Other> othersOf(const Inspection& inspection, const std::vector<Fold>& folds, const std::vector<Answer>& answers) {
-  std::vector<Other> all, some;
+  std::vector<Other> all;
   for (int f = 0; f < static_cast<int>(inspection.scene->frames.size()); ++f) {
     if (!inspection.isHeldOut(f) || inspection.isTraining(f)) continue;
     std::set<std::string> lights;
@@ -38,9 +39,7 @@ std::vector<Other> othersOf(const Inspection& inspection, const std::vector<Fold
       if (lights.insert(light).second) all.push_back({f, light, &*answers[i].fit});
     }
   }
-  const std::size_t n = all.size(), count = std::min<std::size_t>(n, kOthersLookedAt);
-  for (std::size_t i = 0; i < count; ++i) some.push_back(all[i * n / count]);
-  return some;
+  return evenly(all, kOthersLookedAt);
 }
 
 bool sameHighlights(const Prediction& exact, const Prediction& walked) {

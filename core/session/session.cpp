@@ -73,13 +73,6 @@ std::vector<std::string> texts(const JsonNode& node) {
   return all;
 }
 
-fs::path absolutePath(const JsonNode& node, const fs::path& folder) {
-  const std::string text = node.text();
-  if (text.empty()) node.fail("the path is empty");
-  if (text.find('\0') != std::string::npos) node.fail("the path contains a zero byte");
-  return (folder / fs::path(text)).lexically_normal();
-}
-
 InspectionRequest readRequest(const JsonNode& node, const fs::path& folder) {
   InspectionRequest request;
   request.models.clear();

@@ -12,6 +12,7 @@
 #include <numeric>
 #include <optional>
 
+#include "core/base/evenly.h"
 #include "core/base/median.h"
 #include "core/base/number_text.h"
 #include "core/base/parallel.h"
@@ -142,13 +143,6 @@ class NearestOnMesh {
   std::vector<int> first_, around_;  // triangles of a vertex: around_[first_[v]] to before around_[first_[v + 1]]
   std::vector<bool> ofBorder_;       // of a vertex
 };
-
-std::vector<SeenPoint> evenly(const std::vector<SeenPoint>& points, std::size_t most) {
-  if (points.size() <= most) return points;
-  std::vector<SeenPoint> few;
-  for (std::size_t i = 0; i < most; ++i) few.push_back(points[i * points.size() / most]);
-  return few;
-}
 
 /// One place of the mesh and how it explains the points.
 struct Solution {

@@ -15,6 +15,7 @@
 #include <span>
 #include <utility>
 
+#include "core/base/evenly.h"
 #include "core/base/median.h"
 #include "core/base/parallel.h"
 
@@ -107,13 +108,6 @@ struct Part {
   std::vector<Vector3d> points;
 };
 
-std::vector<Vector3d> thinned(const std::vector<Vector3d>& points, std::size_t most) {
-  std::vector<Vector3d> few;
-  for (std::size_t i = 0; i < std::min(most, points.size()); ++i)
-    few.push_back(points[i * points.size() / std::min(most, points.size())]);
-  return few;
-}
-
 /// What the cameras look at (the place nearest to all lines between points and mean eyes), and the middle of the points.
 std::vector<Vector3d> centresOf(const std::vector<SeenPoint>& points) {
   std::array<std::vector<double>, 3> values;
@@ -170,7 +164,7 @@ void addParts(const std::vector<SeenPoint>& points, const Vector3d& centre, std:
     for (const Vector3d& p : inside) part.mean += p / double(n);
     for (const Vector3d& p : inside) part.radius += (p - part.mean).squaredNorm() / double(n);
     part.radius = std::sqrt(part.radius);
-    part.points = thinned(inside, kPointsOfStart);
+    part.points = evenly(inside, kPointsOfStart);
     if (part.radius > 0) parts.push_back(std::move(part));
   }
 }
@@ -323,7 +317,7 @@ std::vector<Similarity> registrationStarts(const MeshSamples& mesh, const std::v
   const std::vector<Eigen::Matrix3d> rotations = turns();
   std::vector<Vector3d> cloud;
   for (const SeenPoint& p : points) cloud.push_back(p.point);
-  cloud = thinned(cloud, std::size_t(2 * kPointsOfStart));
+  cloud = evenly(cloud, std::size_t(2 * kPointsOfStart));
   std::vector<Start> starts(parts.size() * kSizes.size() * rotations.size());
   parallelFor(
       static_cast<int>(parts.size()),

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "core/base/elapsed.h"
+#include "core/base/evenly.h"
 #include "core/base/sha256.h"
 #include "core/fit/fit_engine.h"
 #include "core/inspect/summary.h"
@@ -25,15 +26,6 @@ constexpr double kLongFitUs = 300e3;  // fits that take longer are not repeated
 constexpr double kSamePx = 1e-5;      // contours nearer than this are the same
 
 double medianOf(std::vector<double> values) { return statisticOf(std::move(values)).median; }
-
-/// `count` of `all`, evenly spaced, the first among them.
-std::vector<int> spread(const std::vector<int>& all, int count) {
-  const int n = static_cast<int>(all.size());
-  if (n <= count) return all;
-  std::vector<int> some;
-  for (int i = 0; i < count; ++i) some.push_back(all[static_cast<std::size_t>(i) * n / count]);
-  return some;
-}
 
 std::string predictionsDigest(const Inspection& inspection, const std::string& model) {
   Sha256 hash;
@@ -71,7 +63,7 @@ std::vector<int> framesOfFewSurfaces(const Inspection& evidence, const std::vect
   }
   std::vector<int> numbers(keys.size()), chosen;
   std::iota(numbers.begin(), numbers.end(), 0);
-  for (const int i : spread(numbers, 3)) chosen.insert(chosen.end(), bySurface[keys[i]].begin(), bySurface[keys[i]].end());
+  for (const int i : evenly(numbers, 3)) chosen.insert(chosen.end(), bySurface[keys[i]].begin(), bySurface[keys[i]].end());
   return chosen;
 }
 
@@ -86,7 +78,7 @@ std::vector<int> trainingAndFewOthers(const Inspection& evidence, const std::vec
     else if (!evidence.evidence[f].scored().empty())
       heldOut.push_back(f);
   }
-  const std::vector<int> some = spread(heldOut, kFewHeldOut);
+  const std::vector<int> some = evenly(heldOut, kFewHeldOut);
   chosen.insert(chosen.end(), some.begin(), some.end());
   return chosen;
 }
@@ -181,7 +173,7 @@ std::vector<std::vector<double>> TradeoffBench::timesOf(const Inspection& inspec
       counted.push_back(i);
   }
   std::vector<std::vector<double>> times;
-  for (const int i : spread(counted, frames)) {
+  for (const int i : evenly(counted, static_cast<std::size_t>(frames))) {
     const FrameComparison& c = result.frames[i];
     std::vector<double>& of = times.emplace_back();
     const Outcome<std::shared_ptr<const Surface>> surface = surfaceFor(inspection, c.frame, c.light);
