@@ -111,97 +111,131 @@ DrawnParts drawnParts(const SceneView& view) {
           view.layerVisible("tangent-planes"), view.layerVisible("walk")};
 }
 
-std::optional<Framing> highlightFraming(const LayerInput& in, int highlight, HighlightLook look, const DrawnParts& drawn) {
-  const auto at = static_cast<std::size_t>(in.selection.frame);
-  if (!in.surface || at >= in.inspection->evidence.size() || in.inspection->evidence[at].highlights.empty()) return {};
-  const std::vector<Highlight>& highlights = in.inspection->evidence[at].highlights;
-  const std::size_t wanted =
-      highlight >= 0 && highlight < static_cast<int>(highlights.size()) ? static_cast<std::size_t>(highlight) : 0;
-  const Highlight& h = highlights[wanted];
-  const Camera& camera = in.frame(in.selection.frame).camera;
-  const Outcome<BrightestPoint> brightest = observedBrightestPoint(*in.surface, camera, h.peak);
-  if (!brightest) return {};
-  const SurfacePoint p = facing(brightest->point, camera.centreInWorld());
-  Framing place;
-  double radius = 0;
-  place.points.push_back(p.position);
-  for (const Points& chain : castContour(camera, *in.surface, h.contour, in.scale, 0))
-    place.points.insert(place.points.end(), chain.begin(), chain.end());
-  double reach = 0;  // of the walks on T
-  const auto addWalks = [&](const CanonicalContour& canonical) {
+namespace {
+
+/// The highlight that is looked at, on its surface.
+struct LookedAt {
+  const Highlight& highlight;
+  int index;  ///< in its frame's evidence
+  const Camera& camera;
+  SurfacePoint at;  ///< faces the camera
+};
+
+/// The ends on T of the walks that are drawn of it. @return how far they reach from it
+double addWalks(const LayerInput& in, const LookedAt& h, bool walk, std::vector<Eigen::Vector3d>& points) {
+  double reach = 0;
+  const auto add = [&](const CanonicalContour& canonical) {
     for (const DirectionResult& d : canonical.directions) {
       if (!d.limitAngle || d.failure) continue;
-      place.points.push_back(d.onTangentPlane);
-      reach = std::max(reach, (d.onTangentPlane - p.position).norm());
+      points.push_back(d.onTangentPlane);
+      reach = std::max(reach, (d.onTangentPlane - h.at.position).norm());
     }
   };
   for (const TrainingView* view : in.views())
-    if (view->frame == in.selection.frame && view->canonical && in.highlightOf(*view) == static_cast<int>(wanted))
-      addWalks(*view->canonical);
-  for (const TrainingView& view : drawn.walk || in.solo ? in.ownViews(true) : std::vector<TrainingView>{})  // where they are drawn
-    if (in.highlightOf(view) == static_cast<int>(wanted)) addWalks(*view.canonical);
-  if (drawn.walk || !in.inspection->isTraining(in.selection.frame)) {
-    for (const std::string& model : in.models)
-      for (const FrameComparison* comparison : in.comparisons(model))
-        for (const FrameComparison::Row& row : comparison->rows) {
-          if (row.observed != static_cast<int>(wanted) || row.predicted < 0) continue;
-          const auto& canonical = comparison->prediction.highlights()[static_cast<std::size_t>(row.predicted)].canonical;
-          if (canonical) addWalks(*canonical);
-        }
+    if (view->frame == in.selection.frame && view->canonical && in.highlightOf(*view) == h.index) add(*view->canonical);
+  if (walk || in.solo)  // where they are drawn
+    for (const TrainingView& view : in.ownViews(true))
+      if (in.highlightOf(view) == h.index) add(*view.canonical);
+  if (!walk && in.inspection->isTraining(in.selection.frame)) return reach;
+  for (const std::string& model : in.models)
+    for (const FrameComparison* comparison : in.comparisons(model))
+      for (const FrameComparison::Row& row : comparison->rows) {
+        if (row.observed != h.index || row.predicted < 0) continue;
+        const auto& canonical = comparison->prediction.highlights()[static_cast<std::size_t>(row.predicted)].canonical;
+        if (canonical) add(*canonical);
+      }
+  return reach;
+}
+
+/// A circle about the highlight on its tangent plane, `above` it.
+void addCircle(const LookedAt& h, double radius, double above, std::vector<Eigen::Vector3d>& points) {
+  const Eigen::Matrix<double, 3, 2> basis = tangentBasis(h.at.normal);
+  for (int i = 0; i < 16; ++i) {
+    const double t = i * std::numbers::pi / 8;
+    points.push_back(h.at.position + radius * (std::cos(t) * basis.col(0) + std::sin(t) * basis.col(1)) + above * h.at.normal);
   }
-  if (drawn.walk &&
-      look == HighlightLook::Section) {  // the disc that it goes on, and the arrows at its end, whatever its direction
-    const Eigen::Matrix<double, 3, 2> basis = tangentBasis(p.normal);
-    for (int i = 0; i < 16; ++i) {
-      const double t = i * std::numbers::pi / 8;
-      const Eigen::Vector3d along = std::cos(t) * basis.col(0) + std::sin(t) * basis.col(1);
-      place.points.push_back(p.position + kWalkDisc * reach * along);
-      place.points.push_back(p.position + reach * along + kWalkArrow * reach * p.normal);
-    }
+}
+
+/// What lies on the surface and on the tangent plane of it, as far as it is drawn.
+std::vector<Eigen::Vector3d> extentOn(const LayerInput& in, const LookedAt& h, HighlightLook look, const DrawnParts& drawn) {
+  std::vector<Eigen::Vector3d> points{h.at.position};
+  for (const Points& chain : castContour(h.camera, *in.surface, h.highlight.contour, in.scale, 0))
+    points.insert(points.end(), chain.begin(), chain.end());
+  const double reach = addWalks(in, h, drawn.walk, points);
+  if (look != HighlightLook::Section) return points;
+  if (drawn.walk) {  // the disc that it goes on, and the arrows at its end, whatever its direction
+    addCircle(h, kWalkDisc * reach, 0, points);
+    addCircle(h, reach, kWalkArrow * reach, points);
   }
-  if (drawn.tangentPlanes && look == HighlightLook::Section) {
-    const Eigen::Matrix<double, 3, 2> basis = tangentBasis(p.normal);
-    const double own = planeRadius(camera, Plane::through(p.position, p.normal), p.position, h.contour.points, in.scale);
-    const double disc = in.solo ? std::max(own, kAboutCanonical * reach) : own;  // as tangentPlanesLayer() draws it
-    for (int i = 0; i < 16; ++i) {
-      const double t = i * std::numbers::pi / 8;
-      place.points.push_back(p.position + disc * (std::cos(t) * basis.col(0) + std::sin(t) * basis.col(1)));
-    }
+  if (drawn.tangentPlanes) {
+    const Plane plane = Plane::through(h.at.position, h.at.normal);
+    const double own = planeRadius(h.camera, plane, h.at.position, h.highlight.contour.points, in.scale);
+    addCircle(h, in.solo ? std::max(own, kAboutCanonical * reach) : own, 0, points);  // as tangentPlanesLayer() draws it
   }
+  return points;
+}
+
+/// The pair of cameras, the light and the ellipsoids.
+std::vector<Eigen::Vector3d> extentOfMirror(const LayerInput& in, const LookedAt& h, const DrawnParts& drawn) {
+  const Eigen::Vector3d eye = h.camera.centreInWorld();
+  std::vector<Eigen::Vector3d> points{h.at.position, eye, eye - 2 * h.at.normal.dot(eye - h.at.position) * h.at.normal};
+  addFrustum(in, points, in.selection.frame);
+  addVirtualCameras(in, points, drawn.virtualCameras);
+  const LightEstimate* const light = in.inspection->lightFor(in.selection.frame, h.highlight.light);
+  if (light && !light->light.atInfinity() && (light->light.position() - h.at.position).norm() < 3 * in.scale.sceneSize)
+    points.push_back(light->light.position());
+  if (drawn.ellipsoids)
+    for (const Eigen::Vector3d& q : ellipsoidEnds(in, in.selection.model, false)) points.push_back(q);
+  return points;
+}
+
+/// From the highlight towards the eye.
+Eigen::Vector3d backOf(const LookedAt& h, HighlightLook look) {
+  const Eigen::Vector3d& n = h.at.normal;
+  const Eigen::Vector3d toCamera = (h.camera.centreInWorld() - h.at.position).normalized();
+  const Eigen::Vector3d right = h.camera.camFromWorld.linear().row(0).transpose();
+  if (look == HighlightLook::Camera)
+    return (toCamera + 0.25 * right - 0.15 * h.camera.camFromWorld.linear().row(1).transpose()).normalized();
+  const auto unitAlong = [&](const Eigen::Vector3d& side, const Eigen::Vector3d& unit) {  // seen along N, any side serves
+    return side.norm() > 0.05 ? unit : Eigen::Vector3d(tangentBasis(n).col(0));
+  };
+  if (look == HighlightLook::Mirror) {
+    const Eigen::Vector3d side = toCamera - toCamera.dot(n) * n;
+    return (unitAlong(side, n.cross(side).normalized()) + 0.22 * n).normalized();
+  }
+  // Half from the side, and not in line with the camera's own view.
+  Eigen::Vector3d side = right - right.dot(n) * n;
+  side = unitAlong(side, side.normalized());
+  Eigen::Vector3d across = side.cross(n);
+  if (across.dot(toCamera) < 0) across = -across;
+  return (0.42 * n + 0.75 * across + 0.5 * side).normalized();
+}
+
+}  // namespace
+
+std::optional<Framing> highlightFraming(const LayerInput& in, int highlight, HighlightLook look, const DrawnParts& drawn) {
+  const auto frame = static_cast<std::size_t>(in.selection.frame);
+  if (!in.surface || frame >= in.inspection->evidence.size() || in.inspection->evidence[frame].highlights.empty()) return {};
+  const std::vector<Highlight>& highlights = in.inspection->evidence[frame].highlights;
+  const int wanted = highlight >= 0 && highlight < static_cast<int>(highlights.size()) ? highlight : 0;
+  const Camera& camera = in.frame(in.selection.frame).camera;
+  const Highlight& seen = highlights[static_cast<std::size_t>(wanted)];
+  const Outcome<BrightestPoint> brightest = observedBrightestPoint(*in.surface, camera, seen.peak);
+  if (!brightest) return {};
+  const LookedAt h{seen, wanted, camera, facing(brightest->point, camera.centreInWorld())};
+  const SurfacePoint& p = h.at;
+  Framing place;
+  place.points = extentOn(in, h, look, drawn);
+  double radius = 0;
   for (const Eigen::Vector3d& q : place.points) radius = std::max(radius, (q - p.position).norm());
   if (!(radius > 0)) return {};
   place.points.push_back(p.position + 0.8 * radius * p.normal);
   // With the letter on its tip.
   if (drawn.normal) place.points.push_back(p.position + 1.7 * in.scale.arrow * p.normal);
-  const Eigen::Vector3d eye = camera.centreInWorld(), toCamera = (eye - p.position).normalized();
-  const Eigen::Vector3d right = camera.camFromWorld.linear().row(0).transpose();
+  if (look == HighlightLook::Mirror) place.points = extentOfMirror(in, h, drawn);
+  place.back = backOf(h, look);
   Eigen::Vector3d up = p.normal;
-  if (look == HighlightLook::Camera) {
-    up = -camera.camFromWorld.linear().row(1).transpose();
-    place.back = (toCamera + 0.25 * right + 0.15 * up).normalized();
-  } else if (look == HighlightLook::Mirror) {
-    const Eigen::Vector3d mirrored = eye - 2 * p.normal.dot(eye - p.position) * p.normal;
-    const Eigen::Vector3d side = toCamera - toCamera.dot(p.normal) * p.normal;
-    // Seen along N, any side shows the pair.
-    const Eigen::Vector3d square =
-        side.norm() > 0.05 ? Eigen::Vector3d(p.normal.cross(side).normalized()) : tangentBasis(p.normal).col(0);
-    place.points = {p.position, eye, mirrored};
-    addFrustum(in, place.points, in.selection.frame);
-    addVirtualCameras(in, place.points, drawn.virtualCameras);
-    const LightEstimate* const light = in.inspection->lightFor(in.selection.frame, h.light);
-    if (light && !light->light.atInfinity() && (light->light.position() - p.position).norm() < 3 * in.scale.sceneSize)
-      place.points.push_back(light->light.position());
-    if (drawn.ellipsoids)
-      for (const Eigen::Vector3d& q : ellipsoidEnds(in, in.selection.model, false)) place.points.push_back(q);
-    place.back = (square + 0.22 * p.normal).normalized();
-  } else {
-    // Half from the side, and not in line with the camera's own view.
-    Eigen::Vector3d side = right - right.dot(p.normal) * p.normal;
-    side = side.norm() > 0.05 ? Eigen::Vector3d(side.normalized()) : Eigen::Vector3d(tangentBasis(p.normal).col(0));
-    Eigen::Vector3d across = side.cross(p.normal);
-    if (across.dot(toCamera) < 0) across = -across;
-    place.back = (0.42 * p.normal + 0.75 * across + 0.5 * side).normalized();
-  }
+  if (look == HighlightLook::Camera) up = -camera.camFromWorld.linear().row(1).transpose();
   // A vase stands: with the highlight on its side, up is the world's up. All cameras together tell it, even if only one is shown.
   std::vector<int> cameras(in.inspection->scene->frames.size());
   std::iota(cameras.begin(), cameras.end(), 0);

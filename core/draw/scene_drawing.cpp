@@ -18,8 +18,10 @@
 namespace glint::draw {
 namespace {
 
-constexpr double kFarLamp = 4;  ///< in scene sizes: beyond, an arrow shows the direction
-constexpr int kGapPoints = 61;  ///< of a bridged gap: 20 dots with gaps of twice their length
+constexpr double kFarLamp = 4;         ///< in scene sizes: beyond, an arrow shows the direction
+constexpr double kVanishing = 1e-300;  ///< m: keeps a product of an empty ellipsoid finite
+constexpr double kSamePlace = 1e-9;    ///< of unit vectors: one is the copy of the other
+constexpr int kGapPoints = 61;         ///< of a bridged gap: 20 dots with gaps of twice their length
 
 /// Whose a thing is.
 SceneThing owned(SceneThing thing, int frame, int highlight, const std::string& light, const std::string& model, bool poor) {
@@ -140,14 +142,16 @@ SceneDrawing sceneThings(const Inspection& inspection, const DrawingOptions& opt
     things.push_back(estimateThing(key.light, estimate->light, options.scale));
     things.back().surface = key.surface;
   }
-  for (const std::string& model : modelsInOrder(inspection))
-    for (const ModelResult::Fit& fit : inspection.models.at(model).fits) {
-      if (!fit.fit) continue;
-      if (auto lamp = fittedLampThing(inspection, *fit.fit, options.scale)) things.push_back(std::move(*lamp));
-      if (auto ellipsoid = ellipsoidThing(*fit.fit, options.scale)) things.push_back(std::move(*ellipsoid));
-    }
+  const auto addFits = [&](const auto& thingOf) {
+    for (const std::string& model : modelsInOrder(inspection))
+      for (const ModelResult::Fit& fit : inspection.models.at(model).fits)
+        if (fit.fit)
+          if (std::optional<SceneThing> thing = thingOf(*fit.fit)) things.push_back(std::move(*thing));
+  };
+  addFits([&](const ModelFit& fit) { return fittedLampThing(inspection, fit, options.scale); });
   for (const TrueLight& light : inspection.scene->lights)
     things.push_back(trueLampThing(light, options.leastLamp, options.scale));
+  addFits([&](const ModelFit& fit) { return ellipsoidThing(fit, options.scale); });
   return things;
 }
 
@@ -210,7 +214,7 @@ std::vector<WorldChain> frustum(const Camera& camera, double depth) {
 }
 
 Eigen::Affine3d ballOf(const Ellipsoid& ellipsoid, double least) {
-  const double longest = std::max(ellipsoid.semiAxes().maxCoeff(), 1e-300);
+  const double longest = std::max(ellipsoid.semiAxes().maxCoeff(), kVanishing);
   return Eigen::Affine3d(ellipsoid.worldFromBody()) *
          Eigen::Scaling(Eigen::Vector3d(ellipsoid.semiAxes().cwiseMax(least * longest)));
 }
@@ -248,7 +252,8 @@ std::optional<SceneThing> fittedLampThing(const Inspection& inspection, const Mo
   SceneThing thing =
       ofFit(lampThing(SceneRole::FittedLamp, fit.lamp().value_or(*fit.lightEstimate), fit.model + " light", scale), fit);
   for (const auto& [key, estimate] : inspection.lights)
-    thing.shared = thing.shared || (estimate && (estimate->light.homogeneous() - fit.lightEstimate->homogeneous()).norm() < 1e-9);
+    thing.shared =
+        thing.shared || (estimate && (estimate->light.homogeneous() - fit.lightEstimate->homogeneous()).norm() < kSamePlace);
   return thing;
 }
 

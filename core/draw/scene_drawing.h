@@ -66,7 +66,7 @@ struct SceneThing {
 };
 using SceneDrawing = std::vector<SceneThing>;
 
-/// Of its model, paler where that is poor; else of its role.
+/// The colour of its model, paler where that is poor; else of its role.
 Colour colourOf(const SceneThing& thing);
 
 struct DrawingOptions {
@@ -76,7 +76,7 @@ struct DrawingOptions {
   std::size_t mostPoints = 0;    ///< of a contour on the surface; 0 = as many as a screen shows
   bool predictedMirrors = true;  ///< tangent planes, virtual cameras and canonical ellipses of predictions, too
 };
-/// What belongs to no frame: estimated lights, lamps and ellipsoids of all fits, true lamps.
+/// What belongs to no frame: estimated lights, lamps of all fits, true lamps, ellipsoids of all fits.
 SceneDrawing sceneThings(const Inspection& inspection, const DrawingOptions& options);
 /// What belongs to one frame: its surface and camera; of each observed highlight the contour on the surface, brightest point,
 /// tangent plane, virtual camera, canonical ellipse and rays; of each model the predicted contours.

@@ -11,6 +11,9 @@ namespace {
 
 bool isFiniteRegion(const Eigen::AlignedBox3d& box) { return !box.isEmpty() && box.min().allFinite() && box.max().allFinite(); }
 
+constexpr double kRoundOff = 1e-12;  ///< relative
+constexpr double kLift = 7e-4;       ///< of the surface: less than a line is wide on a screen
+
 /// Median distance from a camera to its nearest neighbour; infinity for one camera.
 double typicalSpacing(const Inspection& inspection, const std::vector<int>& frames) {
   std::vector<double> nearest;
@@ -44,13 +47,14 @@ SceneScale sceneScale(const Inspection& inspection, const Eigen::AlignedBox3d& s
   }
   if (!isFiniteRegion(scale.surfaceBox)) scale.surfaceBox = {Eigen::Vector3d::Constant(-0.5), Eigen::Vector3d::Constant(0.5)};
   scale.sceneBox.extend(scale.surfaceBox);
+  // Relative to where the scene lies, so that its size is never lost in round-off.
   const double tiny =
-      1e-12 * std::max(1e-12, scale.sceneBox.min().cwiseAbs().cwiseMax(scale.sceneBox.max().cwiseAbs()).maxCoeff());
+      kRoundOff * std::max(kRoundOff, scale.sceneBox.min().cwiseAbs().cwiseMax(scale.sceneBox.max().cwiseAbs()).maxCoeff());
   scale.surfaceSize = std::max(scale.surfaceBox.diagonal().norm(), tiny);
   scale.sceneSize = std::max(scale.sceneBox.diagonal().norm(), scale.surfaceSize);
   const double spacing = typicalSpacing(inspection, frames);
   scale.cameraDepth = glyphScale * std::clamp(0.8 * spacing, 0.03 * scale.sceneSize, 0.10 * scale.sceneSize);
-  scale.lift = 7e-4 * scale.surfaceSize;
+  scale.lift = kLift * scale.surfaceSize;
   scale.point = glyphScale * 0.006 * scale.surfaceSize;
   scale.arrow = glyphScale * 0.09 * scale.surfaceSize;
   return scale;

@@ -65,9 +65,8 @@ std::string dataJson(const Inspection& inspection, const ReportContext& context,
                      const ProgressFn& progress) {
   const std::vector<int> frames = framesOf(inspection, choice);
   const SharedSurfaces surfaces = surfacesOf(inspection, frames, progress);
-  Eigen::AlignedBox3d box = surfaces.box;
-  for (const int frame : frames) box.extend(inspection.scene->frames[static_cast<std::size_t>(frame)].camera.centreInWorld());
-  const Rounding rounding(box.isEmpty() ? 0 : box.diagonal().norm());
+  const draw::SceneScale scale = draw::sceneScale(inspection, surfaces.box, frames, 1);
+  const Rounding rounding(scale.sceneSize);
   const auto lesson = choice.view.options.find("explain/lesson");
   std::string photographs;
   for (const std::string& url : photographsOf(inspection, frames, progress))
@@ -77,10 +76,10 @@ std::string dataJson(const Inspection& inspection, const ReportContext& context,
          ",\"lesson\":" + lessonJson(lesson == choice.view.options.end() ? "" : lesson->second) +
          ",\"view\":" + viewJson(inspection, choice, frames) + ",\"models\":" + modelsJson(inspection) +
          ",\"canonical_colour\":" + quoted(modelHex(canonicalModel().id())) +
-         ",\"evaluation\":" + untimed(evaluationJson(inspection, context)) + ",\n\"lights\":" + lightsJson(inspection) +
-         ",\"true_lights\":" + trueLightsJson(inspection) + ",\n\"surfaces\":" + surfaces.json +
-         ",\n\"frames\":" + framesJson(inspection, frames, surfaces, rounding, progress) + ",\n\"photographs\":[" + photographs +
-         "]}";
+         ",\"evaluation\":" + untimed(evaluationJson(inspection, context)) + ",\n\"sizes\":" + sizesJson(scale, rounding) +
+         ",\"things\":" + sceneThingsJson(inspection, scale, rounding) + ",\n\"surfaces\":" + surfaces.json +
+         ",\n\"frames\":" + framesJson(inspection, frames, surfaces, scale, rounding, progress) + ",\n\"photographs\":[" +
+         photographs + "]}";
 }
 
 /// JSON that no HTML parser reads as mark-up, and no script as a line end.

@@ -4,9 +4,7 @@
 
 #include "core/base/number_text.h"
 #include "core/draw/frame_overlay.h"
-#include "core/draw/on_surface.h"
-#include "core/fit/training.h"
-#include "core/inspect/summary.h"
+#include "core/draw/scene_drawing.h"
 #include "core/report/share_parts.h"
 #include "core/surface/mesh_policy.h"
 
@@ -15,7 +13,9 @@ namespace {
 
 constexpr double kDiscTimes = 1.5;  // of the contour: a page shows the discs of all frames at once
 
-constexpr int kMostPoints = 180;  ///< of a contour in 3D: chords of 2 degrees are round on a screen
+constexpr int kMostPoints = 180;     ///< of a contour in 3D: chords of 2 degrees are round on a screen
+constexpr double kRing = 4.4;        ///< radius of a true lamp's ring, of that of a point, at least
+constexpr double kLeastAxis = 1e-5;  ///< of the longest: a flat ellipsoid has no inverse
 
 template <class List, class Text>
 std::string array(const List& list, const Text& text) {
@@ -90,61 +90,49 @@ std::string overlayJson(const Inspection& inspection, int frame) {
          ",\"captions\":" + array(overlay.captions, caption);
 }
 
-/// The views of a frame: those that train, else what was observed in it, with canonical contours where its light is known.
-std::vector<TrainingView> viewsIn(const Inspection& inspection, int frame, const std::shared_ptr<const Surface>& surface) {
-  std::vector<TrainingView> views;
-  for (const TrainingView& view : inspection.views)
-    if (view.frame == frame && view.seen) views.push_back(view);
-  if (!views.empty() || !surface) return views;
-  const FrameEvidence& evidence = inspection.evidence[static_cast<std::size_t>(frame)];
-  const Camera& camera = inspection.scene->frames[static_cast<std::size_t>(frame)].camera;
-  for (std::size_t i = 0; i < evidence.highlights.size(); ++i) {
-    TrainingView view = trainingView(evidence, static_cast<int>(i), camera, surface);
-    if (!view.seen) continue;
-    if (const LightEstimate* const light = inspection.lightFor(frame, view.highlight.light))
-      addCanonicalContour(view, light->light, inspection.request.settings);
-    views.push_back(std::move(view));
-  }
-  return views;
-}
-
-/// Tangent plane and canonical ellipse of a view; the page makes the virtual camera of them.
-std::string mirrorJson(const TrainingView& view, double surfaceSize, const Rounding& rounding) {
-  const Plane& plane = view.seen->tangentPlane;
-  const Eigen::Vector3d& at = view.seen->brightest.point.position;
-  const bool ellipse = view.canonical && view.canonical->ellipse;
-  return "{\"light\":" + quoted(view.highlight.light) + ",\"at\":" + rounding.world(at) + ",\"normal\":[" +
-         exactly(plane.normal.x()) + "," + exactly(plane.normal.y()) + "," + exactly(plane.normal.z()) +
-         "],\"offset\":" + exactly(plane.offset) + ",\"radius\":" +
-         rounding.world(draw::planeRadius(view.camera, plane, at, view.highlight.contour.points, surfaceSize, kDiscTimes)) +
-         ",\"ellipse\":" +
-         (ellipse ? chains(draw::ellipseOnPlane(view.camera, plane, *view.canonical->ellipse, 0), rounding) : "[]") + "}";
-}
-
-/// Contours on the surface: of the observation, then of each model.
-std::string onSurfaceJson(const Inspection& inspection, int frame, const Surface& surface, double surfaceSize,
-                          const Rounding& rounding) {
-  const Camera& camera = inspection.scene->frames[static_cast<std::size_t>(frame)].camera;
-  std::vector<std::string> all;
-  const auto add = [&](const std::string& model, Polyline contour, const draw::Colour& colour, bool dashed) {
-    contour.points = thinned(contour, kMostPoints);
-    all.push_back("{\"model\":" + quoted(model) + ",\"colour\":" + quoted(hexOf(colour)) + ",\"dashed\":" + truth(dashed) +
-                  ",\"chains\":" + chains(draw::castContour(camera, surface, contour, surfaceSize, 0), rounding) + "}");
+/// What is set of a thing; its frame is the one that holds it.
+std::string thingJson(const draw::SceneThing& t, const Rounding& rounding) {
+  std::string json = std::string("{\"role\":\"") + draw::nameOf(t.role) + "\",\"model\":" + quoted(t.model) +
+                     ",\"colour\":" + quoted(hexOf(draw::colourOf(t)));
+  const auto add = [&](const char* name, bool isSet, const auto& text) {
+    if (isSet) json += std::string(",\"") + name + "\":" + text();
   };
-  for (const Highlight& h : inspection.evidence[static_cast<std::size_t>(frame)].scored())
-    if (h.contour.points.size() > 1) add("", h.contour, draw::kObserved, false);
-  for (const std::string& name : modelsInOrder(inspection))
-    for (const FrameComparison& comparison : inspection.models.at(name).frames) {
-      if (comparison.frame != frame) continue;
-      const bool poor = !poorFit(inspection.models.at(name), comparison).empty();
-      const draw::Colour colour = draw::modelColour(name, poor);
-      for (const PredictedHighlight& h : comparison.prediction.highlights())
-        for (const draw::ContourRun& run : draw::contourRuns(h)) add(name, {run.points, run.closed}, colour, run.gap || poor);
-    }
-  return array(all, [](const std::string& text) { return text; });
+  const auto numbers = [](const auto& values) { return array(values.reshaped(), [](double value) { return exactly(value); }); };
+  add("light", !t.light.empty(), [&] { return quoted(t.light); });
+  add("surface", t.surface.has_value(), [&] { return quoted(*t.surface); });
+  for (const auto& [name, value] : {std::pair("poor", t.poor), {"shared", t.shared}, {"gap", t.gap}})
+    add(name, value, [] { return "true"; });
+  add("label", !t.label.empty(), [&] { return quoted(t.label); });
+  add("problem", !t.problem.empty(), [&] { return quoted(t.problem); });
+  add("place", t.place.has_value(), [&] { return numbers(*t.place); });
+  add("normal", !t.normal.isZero(), [&] { return numbers(t.normal); });
+  add("radius", t.radius > 0, [&] { return rounding.world(t.radius); });
+  add("chains", !t.chains.empty(), [&] { return chains(t.chains, rounding); });
+  add("arrow", t.arrow.has_value(), [&] { return rounding.world(draw::WorldChain{t.arrow->first, t.arrow->second}); });
+  add("ball", t.body.has_value(), [&] {
+    const Eigen::Matrix<double, 3, 4> ball = draw::ballOf(*t.body, kLeastAxis).matrix().topRows<3>();
+    return "[" + numbers(ball.row(0)) + "," + numbers(ball.row(1)) + "," + numbers(ball.row(2)) + "]";
+  });
+  return json + "}";
 }
 
-std::string frameJson(const Inspection& inspection, int frame, int surfaceIndex, double surfaceSize, const Rounding& rounding) {
+std::string thingsJson(draw::SceneDrawing things, const Rounding& rounding) {
+  std::erase_if(things, [](const draw::SceneThing& t) { return t.mesh != nullptr; });  // the page has its own triangles
+  return array(things, [&](const draw::SceneThing& t) { return thingJson(t, rounding); });
+}
+
+draw::DrawingOptions optionsFor(const draw::SceneScale& scale) {
+  draw::DrawingOptions options;
+  options.scale = scale;
+  options.planeTimes = kDiscTimes;
+  options.leastLamp = kRing * scale.point;
+  options.mostPoints = kMostPoints;
+  options.predictedMirrors = false;
+  return options;
+}
+
+std::string frameJson(const Inspection& inspection, int frame, int surfaceIndex, const draw::SceneScale& scale,
+                      const Rounding& rounding) {
   const Frame& f = inspection.scene->frames[static_cast<std::size_t>(frame)];
   const char* const role = inspection.isTraining(frame) ? "training" : inspection.isHeldOut(frame) ? "held out" : "excluded";
   // Per surface a frame both trains and is scored.
@@ -154,54 +142,30 @@ std::string frameJson(const Inspection& inspection, int frame, int surfaceIndex,
   std::shared_ptr<const Surface> surface;
   if (inspection.surfaces)
     if (const auto found = inspection.surfaces->surfaceOf(frame, meshPolicy(inspection.request.settings))) surface = *found;
-  json += ",\"mirrors\":" + array(viewsIn(inspection, frame, surface),
-                                  [&](const TrainingView& view) { return mirrorJson(view, surfaceSize, rounding); });
-  json += ",\"on_surface\":" + (surface ? onSurfaceJson(inspection, frame, *surface, surfaceSize, rounding) : "[]");
-  return json + "}";
-}
-
-std::string vectorJson(const Eigen::Vector3d& v) {
-  return "[" + exactly(v.x()) + "," + exactly(v.y()) + "," + exactly(v.z()) + "]";
+  const draw::SceneDrawing things = draw::frameThings(inspection, frame, surface, optionsFor(scale));
+  return json + ",\"things\":" + thingsJson(things, rounding) + "}";
 }
 
 }  // namespace
 
 std::string framesJson(const Inspection& inspection, const std::vector<int>& frames, const SharedSurfaces& surfaces,
-                       const Rounding& rounding, const ProgressFn& progress) {
+                       const draw::SceneScale& scale, const Rounding& rounding, const ProgressFn& progress) {
   std::string json;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     if (!report(progress, {"frame", static_cast<int>(i), static_cast<int>(frames.size())})) throw Stopped{};
-    const int surface = surfaces.ofFrame[i];
-    const double size = surface >= 0 ? surfaces.size[static_cast<std::size_t>(surface)] : 0;
-    json += (i ? ",\n" : "") + frameJson(inspection, frames[i], surface, size, rounding);
+    json += (i ? ",\n" : "") + frameJson(inspection, frames[i], surfaces.ofFrame[i], scale, rounding);
   }
   return "[" + json + "]";
 }
 
-std::string lightsJson(const Inspection& inspection) {
-  std::string json;
-  for (const auto& [key, outcome] : inspection.lights) {
-    if (!outcome) continue;
-    const Light& light = outcome->light;
-    json += (json.empty() ? "" : ",") + std::string("{\"id\":") + quoted(key.light) +
-            ",\"surface\":" + (key.surface ? quoted(*key.surface) : "null") + ",\"homogeneous\":[" +
-            exactly(light.homogeneous()[0]) + "," + exactly(light.homogeneous()[1]) + "," + exactly(light.homogeneous()[2]) +
-            "," + exactly(light.homogeneous()[3]) + "]}";
-  }
-  return "[" + json + "]";
+std::string sceneThingsJson(const Inspection& inspection, const draw::SceneScale& scale, const Rounding& rounding) {
+  return thingsJson(draw::sceneThings(inspection, optionsFor(scale)), rounding);
 }
 
-std::string trueLightsJson(const Inspection& inspection) {
-  return array(inspection.scene->lights, [](const TrueLight& light) {
-    std::string json = "{\"id\":" + quoted(light.id) + ",\"radius\":" + exactly(radiusOf(light.lamp));
-    for (const LampField& f : fieldsOf(light.lamp)) {
-      if (f.value.size() == 1) continue;
-      std::string points;
-      for (const auto& point : f.value.rowwise()) points += (points.empty() ? "" : ",") + vectorJson(point.transpose());
-      json += ",\"" + f.name + "\":" + (f.value.rows() == 1 ? points : "[" + points + "]");
-    }
-    return json + "}";
-  });
+std::string sizesJson(const draw::SceneScale& scale, const Rounding& rounding) {
+  return "{\"centre\":" + rounding.world(Eigen::Vector3d(scale.surfaceBox.center())) +
+         ",\"surface\":" + exactly(scale.surfaceSize) + ",\"scene\":" + exactly(scale.sceneSize) +
+         ",\"point\":" + exactly(scale.point) + ",\"depth\":" + exactly(scale.cameraDepth) + "}";
 }
 
 }  // namespace glint::share

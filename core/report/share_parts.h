@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/base/progress.h"
+#include "core/draw/scene_scale.h"
 #include "core/inspect/inspection.h"
 #include "core/surface/surface.h"
 
@@ -46,19 +47,18 @@ struct SharedSurfaces {
   std::string json;          ///< an array
   std::vector<int> ofFrame;  ///< by place in `frames`
   Eigen::AlignedBox3d box;   ///< of all of them; empty without any
-  std::vector<double> size;  ///< diagonal of each
 };
 SharedSurfaces surfacesOf(const Inspection& inspection, const std::vector<int>& frames, const ProgressFn& progress);
 
 /// The photographs as JPEG in a data URL, made smaller until all of them together stay within a page's share. "" without one.
 std::vector<std::string> photographsOf(const Inspection& inspection, const std::vector<int>& frames, const ProgressFn& progress);
 
-/// Cameras, evidence and predictions of the frames: an array.
+/// Cameras of the frames, what is drawn over their photographs, and what belongs to them in 3D: an array.
 std::string framesJson(const Inspection& inspection, const std::vector<int>& frames, const SharedSurfaces& surfaces,
-                       const Rounding& rounding, const ProgressFn& progress);
-/// Estimated lights with whose they are, and true ones.
-std::string lightsJson(const Inspection& inspection);
-std::string trueLightsJson(const Inspection& inspection);
+                       const draw::SceneScale& scale, const Rounding& rounding, const ProgressFn& progress);
+/// What else is drawn in 3D: lights, lamps, ellipsoids.
+std::string sceneThingsJson(const Inspection& inspection, const draw::SceneScale& scale, const Rounding& rounding);
+std::string sizesJson(const draw::SceneScale& scale, const Rounding& rounding);
 /// Title, what there is to see, steps with their texts and layers, questions with answers, the typeset equations of all these
 /// (SVG), and the names of their symbols: "null" where there is no such lesson.
 std::string lessonJson(const std::string& id);

@@ -167,7 +167,6 @@ SharedSurfaces surfacesOf(const Inspection& inspection, const std::vector<int>& 
     if (!report(progress, {"surface", static_cast<int>(i), static_cast<int>(first.size())})) throw Stopped{};
     Eigen::AlignedBox3d box;
     out.json += (i ? "," : "") + surfaceJson(inspection, first[i].first, first[i].second, frames, most, box);
-    out.size.push_back(box.isEmpty() ? 0 : box.diagonal().norm());
     if (!box.isEmpty()) out.box.extend(box);
   }
   out.json = "[" + out.json + "]";

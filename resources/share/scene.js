@@ -23,20 +23,10 @@ function glintScene(data, canvas, labelBox, select) {
       up: new THREE.Vector3(-m[1][0], -m[1][1], -m[1][2]), key: JSON.stringify(m) };
   }
   const surfaces = data.surfaces.map(surfaceOf);
-  const surfaceBox = new THREE.Box3(), sceneBox = new THREE.Box3();
+  const surfaceBox = new THREE.Box3();
   for (const surface of surfaces) if (surface.geometry) surfaceBox.union(surface.geometry.boundingBox);
-  for (const pose of poses) sceneBox.expandByPoint(pose.centre);
-  if (surfaceBox.isEmpty()) surfaceBox.copy(sceneBox).expandByScalar(1e-3);
-  sceneBox.union(surfaceBox);
-  const sizeOf = (box) => Math.max(box.getSize(new THREE.Vector3()).length(), 1e-12);
-  const surfaceSize = sizeOf(surfaceBox), sceneSize = sizeOf(sceneBox), point = 0.006 * surfaceSize;
-  const centre = surfaceBox.getCenter(new THREE.Vector3());
-  const depth = cameraDepth();
-  function cameraDepth() {
-    const nearest = poses.map((a) => Math.min(...poses.map((b) => { const d = a.centre.distanceTo(b.centre); return d > 0 ? d : Infinity; }))).sort((a, b) => a - b);
-    const middle = nearest[nearest.length >> 1];
-    return Math.max(0.03 * sceneSize, Math.min(0.10 * sceneSize, 0.8 * middle));
-  }
+  const { surface: surfaceSize, scene: sceneSize, point, depth } = data.sizes, centre = V(data.sizes.centre);
+  if (surfaceBox.isEmpty()) surfaceBox.setFromCenterAndSize(centre, new THREE.Vector3().setScalar(surfaceSize / Math.sqrt(3)));
 
   // Geometry from the page's data.
   function bytesOf(text) {
@@ -109,11 +99,6 @@ function glintScene(data, canvas, labelBox, select) {
     group.add(mesh);
   }
   const ballGeometry = new THREE.SphereBufferGeometry(1, 24, 16);
-  function circle(middle, u, v) {
-    const chain = [];
-    for (let i = 0; i <= 72; ++i) chain.push(middle.clone().addScaledVector(u, Math.cos(i * Math.PI / 36)).addScaledVector(v, Math.sin(i * Math.PI / 36)));
-    return chain;
-  }
   function dashes(a, b, length) {
     const n = Math.min(100, Math.max(3, Math.round(a.distanceTo(b) / (2 * length)))), all = [];
     for (let i = 0; i < n; ++i) all.push([a.clone().lerp(b, i / n), a.clone().lerp(b, (i + 0.5) / n)]);
@@ -133,19 +118,9 @@ function glintScene(data, canvas, labelBox, select) {
   }
 
   // Cameras and photographs.
-  /// Corners of the drawn image plane, from top left clockwise, and the centre.
-  function corners(place) {
-    const c = data.frames[place].camera, right = c.width - 0.5, bottom = c.height - 0.5;
-    return [[-0.5, -0.5], [right, -0.5], [right, bottom], [-0.5, bottom]].map(([u, v]) => {
-      const y = (v - c.cy) / c.fy;
-      return new THREE.Vector3((u - c.cx - c.skew * y) / c.fx, y, 1).multiplyScalar(depth).applyMatrix4(poses[place].worldFromCam);
-    });
-  }
-  function frustum(c, middle) {
-    const up = c[0].clone().sub(c[3]).multiplyScalar(0.16), top = c[0].clone().add(c[1]).multiplyScalar(0.5), across = c[0].clone().sub(c[1]).multiplyScalar(0.18);
-    return [[c[0], c[1], c[2], c[3], c[0]], [middle, c[0]], [middle, c[1]], [middle, c[2]], [middle, c[3]],
-      [top.clone().add(across), top.clone().add(up), top.clone().sub(across)]];
-  }
+  /// Of a frame: the image plane's edge from top left, the edges from the centre, the tick.
+  const cameraLines = (place) => data.frames[place].things.find((t) => t.role === 'camera').chains.map(flat);
+  const corners = (place) => cameraLines(place)[0].slice(0, 4);
   /// One camera for each pose: the selected one, else one that sees the surface that is shown.
   function camerasToDraw() {
     const surface = data.frames[state.frame].surface, chosen = new Map();
@@ -199,7 +174,7 @@ function glintScene(data, canvas, labelBox, select) {
       if (chosen && state.through) return;
       if (state.layers.photographs && !state.through && (chosen || order % step === 0)) photographAt(group, place, 192);
       if (!state.layers.cameras) return;
-      const chains = frustum(corners(place), poses[place].centre);
+      const chains = cameraLines(place);
       if (chosen) {
         lines(group, chains, kInk[theme], 2.6);
         label(chains[5][1], 'frame ' + data.frames[place].id, kInk[theme]);
@@ -211,154 +186,121 @@ function glintScene(data, canvas, labelBox, select) {
     lines(group, others.rest, kOther[theme], 1.1);
   }
 
-  // What is derived from highlights.
-  const planeOf = (mirror) => new THREE.Plane(V(mirror.normal), mirror.offset);
-  const reflected = (plane, p) => p.clone().addScaledVector(plane.normal, -2 * plane.distanceToPoint(p));
-  function addVirtualCamera(group, place, mirror, chosen) {
-    const plane = planeOf(mirror), middle = reflected(plane, poses[place].centre);
-    lines(group, frustum(corners(place).map((p) => reflected(plane, p)), middle), kVirtual[theme], chosen ? 2.4 : 1.1);
-    if (!chosen) return;
-    if (!state.through) lines(group, dashes(poses[place].centre, middle, 0.012 * sceneSize), kVirtual[theme], 1.1);
-    label(middle, 'virtual camera ' + data.frames[place].id, kVirtual[theme]);
+  // Everything else: each thing of the drawing (core/draw/scene_drawing.h) by its role.
+  const kLayers = { 'virtual-camera': 'virtual-cameras', 'brightest-point': 'peaks', 'tangent-plane': 'tangent-planes', 'canonical-ellipse': 'canonical-ellipses',
+    'view-ray': 'rays', 'reflected-ray': 'rays', 'observed-contour': 'observed-contours', 'predicted-contour': 'predicted-contours', ellipsoid: 'ellipsoids',
+    light: 'light', 'fitted-lamp': 'light', 'true-lamp': 'true-light' };
+  const kContours = ['observed-contour', 'predicted-contour'];
+  const ofTheme = () => ({ 'virtual-camera': kVirtual, 'view-ray': kLight, 'reflected-ray': kLight, light: kLight, 'true-lamp': kTruth });
+  const colourOf = (thing) => (thing.role === 'tangent-plane' ? data.canonical_colour : ofTheme()[thing.role] ? ofTheme()[thing.role][theme] : thing.colour);
+  const placeOfThing = (thing) => V(thing.place).divideScalar(thing.place[3]);
+  /// Pieces of chains: `on` of every `of` segments.
+  const pieces = (chains, on, of) => [].concat(...chains.map((c) => c.slice(1).map((p, i) => [c[i], p]).filter((s, i) => i % of < on)));
+  /// With its frame: those of the selected frame, those of frames that train on the surface that is shown, and those of the whole scene.
+  function thingsToDraw() {
+    const shown = data.frames[state.frame].surface, key = data.surfaces[shown] && data.surfaces[shown].key, all = [];
+    data.frames.forEach((frame, place) => {
+      const trains = frame.role === 'training' && frame.surface === shown && !state.through;
+      for (const thing of frame.things) if (place === state.frame || (trains && !kContours.includes(thing.role))) all.push([place, thing]);
+    });
+    for (const thing of data.things) if (thing.surface === undefined || thing.surface === key) all.push([-1, thing]);
+    return all.filter(([, thing]) => state.layers[kLayers[thing.role]] && !state.hiddenModels.has(thing.model));
   }
-  function addDisc(group, mirror, chosen) {
-    const mesh = new THREE.Mesh(new THREE.CircleBufferGeometry(mirror.radius, 64), new THREE.MeshBasicMaterial({ color: data.canonical_colour, transparent: true,
+  function addDisc(group, thing, chosen) {
+    const mesh = new THREE.Mesh(new THREE.CircleBufferGeometry(thing.radius, 64), new THREE.MeshBasicMaterial({ color: colourOf(thing), transparent: true,
       opacity: chosen ? 0.34 : 0.16, side: THREE.DoubleSide, depthWrite: false, polygonOffset: true, polygonOffsetFactor: -2, polygonOffsetUnits: -8 }));
-    mesh.quaternion.setFromUnitVectors(new THREE.Vector3(0, 0, 1), V(mirror.normal));
-    mesh.position.copy(V(mirror.at));
+    mesh.quaternion.setFromUnitVectors(new THREE.Vector3(0, 0, 1), V(thing.normal));
+    mesh.position.copy(placeOfThing(thing));
     mesh.renderOrder = 3;
     group.add(mesh);
-    const u = perpendicular(V(mirror.normal)).multiplyScalar(mirror.radius), v = V(mirror.normal).cross(u);
-    lines(group, [circle(V(mirror.at), u, v)], data.canonical_colour, chosen ? 1.4 : 0.8, { nearer: 0.002, order: 3 });
   }
-  function addMirror(group, place, mirror, chosen) {
-    const on = state.layers, normal = V(mirror.normal), at = V(mirror.at), eyeAt = poses[place].centre;
-    if (!mirror.at) return;
-    if (on['virtual-cameras']) addVirtualCamera(group, place, mirror, chosen);
-    const whole = chosen || on['all-planes'];
-    if (on['tangent-planes'] && mirror.radius && whole) addDisc(group, mirror, chosen);
-    if (on['canonical-ellipses'] && whole) lines(group, mirror.ellipse.map(flat), data.canonical_colour, chosen ? 2.6 : 1.4, { nearer: 0.004, order: 5 });
-    if (on.peaks) {
-      ball(group, at, (chosen ? 1.2 : 0.7) * point, theme === 'dark' ? '#ffffff' : '#303030');
-      if (chosen) arrow(group, at, at.clone().addScaledVector(normal, 0.16 * surfaceSize), kInk[theme], 2);
-    }
-    if (on.rays) {
-      const to = eyeAt.clone().sub(at).normalize(), out = normal.clone().multiplyScalar(2 * to.dot(normal)).sub(to);
-      const lamp = lightsOf(place).find((l) => l.id === mirror.light && l.homogeneous[3] !== 0);
-      const far = lamp ? V(lamp.homogeneous).divideScalar(lamp.homogeneous[3]).distanceTo(at) : sceneSize;
-      const end = at.clone().addScaledVector(out, Math.min(far, 2 * sceneSize));
-      extent.push(end);
-      lines(group, [[eyeAt, at], [at, end]], kLight[theme], chosen ? 2 : 1);
-    }
-  }
-  /// Of the selected frame and of those that train on the surface that is shown.
-  function mirrorsToDraw() {
-    const all = [];
-    data.frames.forEach((frame, place) => {
-      if (place === state.frame || (frame.role === 'training' && frame.surface === data.frames[state.frame].surface && !state.through))
-        for (const mirror of frame.mirrors) all.push([place, mirror]);
-    });
-    return all;
-  }
-  function addContours(group) {
-    const frame = data.frames[state.frame];
-    frame.on_surface.forEach((contour, order) => {
-      const observed = contour.model === '';
-      if (observed ? !state.layers['observed-contours'] : !state.layers['predicted-contours'] || state.hiddenModels.has(contour.model)) return;
-      const chains = contour.chains.map(flat), colour = contour.colour;
-      if (observed) lines(group, chains, '#1f2126', 4.6, { nearer: 0.0050, order: 6 });
-      lines(group, contour.dashed ? chains.map((c) => c.filter((p, i) => i % 3 === 0)) : chains, colour, observed ? 2.8 : 2.2, { nearer: 0.0052 + 0.0001 * order, order: 6 });
-    });
-  }
-
-  // Lights and ellipsoids, whose numbers are those of the evaluation.
-  const lightsOf = (place) => { const s = data.surfaces[data.frames[place].surface]; return data.lights.filter((l) => l.surface === null || (s && s.key === l.surface)); };
-  const kFar = 4;
-  function addDirection(group, direction, colour, text) {
-    const from = centre.clone().addScaledVector(direction, 0.6 * surfaceSize), to = from.clone().addScaledVector(direction, 0.5 * surfaceSize);
-    arrow(group, from, to, colour, 2.4);
-    label(to, text, colour);
-    extent.push(to);
-  }
-  function addLight(group, place, size, colour, text) {
-    const away = place.distanceTo(centre);
-    if (away > kFar * sceneSize) return addDirection(group, place.clone().sub(centre).normalize(), colour, text + ', ' + away.toPrecision(3) + ' m away');
+  function addStar(group, thing, size, colour) {
+    const place = placeOfThing(thing), star = [];
     ball(group, place, size, colour);
-    const star = [];
     for (let i = 0; i < 27; ++i) {
       const d = new THREE.Vector3(i % 3 - 1, Math.floor(i / 3) % 3 - 1, Math.floor(i / 9) - 1).normalize();
       if (i !== 13) star.push([place.clone().addScaledVector(d, 1.4 * size), place.clone().addScaledVector(d, 2.4 * size)]);
     }
     lines(group, star, colour, 1.4);
-    label(place, text, colour);
+    label(place, thing.label, colour);
     extent.push(place);
   }
-  function addEstimate(group, homogeneous, size, colour, text) {
-    if (!homogeneous || homogeneous.some((v) => v === null)) return;
-    if (homogeneous[3] === 0) addDirection(group, V(homogeneous).normalize(), colour, text + ', at infinity');
-    else addLight(group, V(homogeneous).divideScalar(homogeneous[3]), size, colour, text);
+  function addOutline(group, chains, colour, width) {
+    const closed = (c) => c[0].equals(c[c.length - 1]);
+    lines(group, chains.filter((c) => !closed(c)), colour, 4);
+    lines(group, chains.filter(closed), colour, width);
   }
-  const same = (a, b) => a && b && V(a).multiplyScalar(b[3]).distanceTo(V(b).multiplyScalar(a[3])) < 1e-9 * (1 + V(a).length() * Math.abs(b[3]));
-  // As core/base/light_name.h: an id that says that it is a light is not told twice.
-  const lightName = (id) => (/^light(?![a-z])/i.test(id) ? id : 'light ' + id);
-  function addLights(group) {
-    const common = lightsOf(state.frame);
-    for (const l of common) addEstimate(group, l.homogeneous, 1.7 * point, kLight[theme], lightName(l.id) + ' (estimate)');
-    for (const fit of fits())
-      if (fit.light_position && !common.some((l) => same(l.homogeneous, fit.light_position)))
-        addEstimate(group, fit.light_position, 1.2 * point, fit.colour, fit.model + ' light');
-  }
-  function addTrueLights(group) {
-    for (const l of data.true_lights) {
-      const text = 'truth: light ' + l.id, at = l.position ? V(l.position) : l.segment ? V(l.segment[0]).lerp(V(l.segment[1]), 0.5) : null;
-      if (!at) {
-        if (l.direction) addDirection(group, V(l.direction).normalize(), kTruth[theme], text + ', at infinity');
-        continue;
-      }
-      if (at.distanceTo(centre) > kFar * sceneSize) {
-        addDirection(group, at.clone().sub(centre).normalize(), kTruth[theme], text + ', ' + at.distanceTo(centre).toPrecision(3) + ' m away');
-        continue;
-      }
-      if (l.segment) lines(group, [[V(l.segment[0]), V(l.segment[1])]], kTruth[theme], 4);
-      const r = Math.max(l.radius || 0, 4.4 * point), axis = [new THREE.Vector3(r, 0, 0), new THREE.Vector3(0, r, 0), new THREE.Vector3(0, 0, r)];
-      lines(group, [circle(at, axis[0], axis[1]), circle(at, axis[1], axis[2]), circle(at, axis[2], axis[0])], kTruth[theme], 2);
-      label(at.clone().add(axis[2]), text, kTruth[theme]);
-      extent.push(at);
+  function addBody(group, thing, chains) {
+    const m = thing.ball, matrix = new THREE.Matrix4().set(...m[0], ...m[1], ...m[2], 0, 0, 0, 1), middle = placeOfThing(thing);
+    for (const order of [0, 5]) {  // behind the surface, and before it
+      const mesh = new THREE.Mesh(ballGeometry, new THREE.MeshBasicMaterial({ color: thing.colour, transparent: true, opacity: thing.poor ? 0.07 : 0.13, depthWrite: false }));
+      mesh.matrixAutoUpdate = false;
+      mesh.matrix.copy(matrix);
+      mesh.renderOrder = order;
+      group.add(mesh);
     }
+    lines(group, thing.poor ? pieces(chains, 2, 4) : chains, thing.colour, 1.6);
+    const axes = [0, 1, 2].map((i) => new THREE.Vector3().setFromMatrixColumn(matrix, i));
+    if (2 * Math.max(...axes.map((a) => a.length())) <= sceneSize) for (const axis of axes) extent.push(middle.clone().add(axis), middle.clone().sub(axis));
+    label(middle.clone().add(axes[0]), thing.label, thing.colour);
   }
-  /// Those of the models that are shown and of the surface of the selected frame.
-  function fits() {
-    const surface = data.surfaces[data.frames[state.frame].surface], all = [];
-    for (const model of data.models)
-      for (const fit of state.hiddenModels.has(model.id) || !data.evaluation.models[model.id] ? [] : data.evaluation.models[model.id].fits)
-        if (fit.status === 'ok' && (fit.surface === null || (surface && surface.key === fit.surface))) all.push({ ...fit, model: model.id, colour: model.colour });
-    return all;
-  }
-  function addEllipsoids(group) {
-    for (const fit of fits()) {
-      const e = fit.ellipsoid;
-      if (!e) {
-        if (fit.q_dual.length) remarks.push(fit.model + ': Q* is not an ellipsoid, so none is drawn.');
-        continue;
+  const kPaint = {
+    'virtual-camera'(group, thing, chains, chosen, place) {
+      lines(group, chains, colourOf(thing), chosen ? 2.4 : 1.1);
+      if (!chosen) return;
+      if (!state.through) lines(group, dashes(poses[place].centre, placeOfThing(thing), 0.012 * sceneSize), colourOf(thing), 1.1);
+      label(placeOfThing(thing), thing.label, colourOf(thing));
+    },
+    'tangent-plane'(group, thing, chains, chosen) {
+      if (!thing.radius || !(chosen || state.layers['all-planes'])) return;
+      addDisc(group, thing, chosen);
+      lines(group, chains, colourOf(thing), chosen ? 1.4 : 0.8, { nearer: 0.002, order: 3 });
+    },
+    'canonical-ellipse'(group, thing, chains, chosen) {
+      if (chosen || state.layers['all-planes']) lines(group, chains, thing.colour, chosen ? 2.6 : 1.4, { nearer: 0.004, order: 5 });
+    },
+    'brightest-point'(group, thing, chains, chosen) {
+      const at = placeOfThing(thing);
+      ball(group, at, (chosen ? 1.2 : 0.7) * point, theme === 'dark' ? '#ffffff' : '#303030');
+      if (chosen) arrow(group, at, at.clone().addScaledVector(V(thing.normal), 0.16 * surfaceSize), kInk[theme], 2);
+    },
+    'view-ray'(group, thing, chains, chosen) { lines(group, chains, colourOf(thing), chosen ? 2 : 1); },
+    'reflected-ray'(group, thing, chains, chosen) {
+      lines(group, chains, colourOf(thing), chosen ? 2 : 1);
+      extent.push(chains[0][1]);
+    },
+    'observed-contour'(group, thing, chains) {
+      lines(group, chains, '#1f2126', 4.6, { nearer: 0.0050, order: 6 });
+      lines(group, chains, thing.colour, 2.8, { nearer: 0.0052, order: 6 });
+    },
+    'predicted-contour'(group, thing, chains) {
+      lines(group, thing.gap ? pieces(chains, 1, 3) : thing.poor ? pieces(chains, 2, 4) : chains, thing.colour, 2.2, { nearer: 0.0053 + 0.0001 * data.models.findIndex((m) => m.id === thing.model), order: 6 });
+    },
+    ellipsoid(group, thing, chains) { addBody(group, thing, chains); },
+    light(group, thing) { addStar(group, thing, 1.7 * point, colourOf(thing)); },
+    'fitted-lamp'(group, thing, chains) {
+      addOutline(group, chains, thing.colour, 1.4);
+      addStar(group, thing, 1.2 * point, thing.colour);
+    },
+    'true-lamp'(group, thing, chains) {
+      addOutline(group, chains, colourOf(thing), 2);
+      label(chains[chains.length - 1][0], thing.label, colourOf(thing));
+      extent.push(placeOfThing(thing));
+    },
+  };
+  function addThings(group) {
+    for (const [place, thing] of thingsToDraw()) {
+      if (thing.shared) continue;  // the estimate is drawn there
+      if (thing.problem) {
+        remarks.push(thing.model + ': ' + thing.problem + '.');
+      } else if (thing.arrow) {
+        const [from, to] = flat(thing.arrow);
+        arrow(group, from, to, colourOf(thing), 2.4);
+        label(to, thing.label, colourOf(thing));
+        extent.push(to);
+      } else {
+        kPaint[thing.role](group, thing, (thing.chains || []).map(flat), place === state.frame, place);
       }
-      const middle = V(e.centre), largest = Math.max(...e.semi_axes);
-      if (largest > 20 * sceneSize || middle.distanceTo(centre) > 50 * sceneSize) {
-        remarks.push(fit.model + ': the ellipsoid is far larger or farther away than the scene and is not drawn.');
-        continue;
-      }
-      const m = e.world_from_ellipsoid, turn = new THREE.Matrix4().set(...m[0], ...m[1], ...m[2], ...m[3]);
-      const axes = e.semi_axes.map((a) => Math.max(a, 1e-5 * largest));
-      for (const order of [0, 5]) {  // behind the surface, and before it
-        const mesh = new THREE.Mesh(ballGeometry, new THREE.MeshBasicMaterial({ color: fit.colour, transparent: true, opacity: 0.13, depthWrite: false }));
-        mesh.matrixAutoUpdate = false;
-        mesh.matrix.copy(turn).scale(new THREE.Vector3(...axes));
-        mesh.renderOrder = order;
-        group.add(mesh);
-      }
-      const u = [0, 1, 2].map((i) => new THREE.Vector3().setFromMatrixColumn(turn, i).multiplyScalar(axes[i]));
-      lines(group, [circle(middle, u[0], u[1]), circle(middle, u[1], u[2]), circle(middle, u[2], u[0])], fit.colour, 1.6);
-      if (2 * largest <= sceneSize) for (const axis of u) extent.push(middle.clone().add(axis), middle.clone().sub(axis));
-      label(middle.clone().add(u[0]), fit.model, fit.colour);
     }
   }
 
@@ -385,12 +327,7 @@ function glintScene(data, canvas, labelBox, select) {
       });
     if (state.through) photographAt(content, state.frame, 2048, { transparent: true, opacity: 0.5, depthTest: false, depthWrite: false });
     addCameras(content);
-    if (state.layers['virtual-cameras'] || state.layers['tangent-planes'] || state.layers['canonical-ellipses'] || state.layers.peaks || state.layers.rays)
-      for (const [place, mirror] of mirrorsToDraw()) addMirror(content, place, mirror, place === state.frame);
-    addContours(content);
-    if (state.layers.light) addLights(content);
-    if (state.layers['true-light']) addTrueLights(content);
-    if (state.layers.ellipsoids) addEllipsoids(content);
+    addThings(content);
     scene.add(content);
     stale = false;
     request();
@@ -441,8 +378,7 @@ function glintScene(data, canvas, labelBox, select) {
     const points = [...extent];
     for (const box of [surfaceBox]) for (let i = 0; i < 8; ++i) points.push(new THREE.Vector3(i & 1 ? box.max.x : box.min.x, i & 2 ? box.max.y : box.min.y, i & 4 ? box.max.z : box.min.z));
     if (state.layers.cameras || state.layers.rays) for (const place of camerasToDraw()) points.push(poses[place].centre, ...corners(place));
-    if (state.layers['virtual-cameras'])
-      for (const [place, mirror] of mirrorsToDraw()) for (const p of [poses[place].centre, ...corners(place)]) points.push(reflected(planeOf(mirror), p));
+    for (const [, thing] of thingsToDraw()) if (thing.role === 'virtual-camera') points.push(placeOfThing(thing), ...flat(thing.chains[0]));
     const high = Math.tan(eye.fov * Math.PI / 360), wide = high * aspect(), kMargin = 1.1;
     // The middle of what is seen, found by a few steps, because far points count less.
     const middle = new THREE.Box3().setFromPoints(points).getCenter(new THREE.Vector3());

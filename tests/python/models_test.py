@@ -130,6 +130,40 @@ def test_a_scene_from_memory_is_inspected():
     assert np.allclose(inspection.lights()["lamp"].light.position, scenes.LIGHT, atol=1e-5)
 
 
+def test_a_drawing_has_what_the_definitions_say():
+    views = scenes.plane_views(8)
+    frames = [glint.Frame(f"{i:04d}", glint.Camera(**k, camera_from_world=pose), surface="table", lights_on=["lamp"],
+                          highlights=[glint.Highlight(contour, peak, "lamp")]) for i, (k, pose, _, contour, peak) in enumerate(views)]
+    inspection = glint.inspect(glint.scene(frames, {"table": {"type": "plane"}}), ["dual", "limit-angle"], train="first:6")
+    for frame in 2, "0007":  # one that trains, and one that does not
+        k, pose, centre, contour, _ = views[int(frame)]
+        drawing = inspection.drawing(frame)
+        role = lambda name, model="": [t for t in drawing if t["role"] == name and t["model"] == model]
+        (point,), (plane,), (virtual,) = role("brightest-point"), role("tangent-plane"), role("virtual-camera")
+        at = scenes.mirror_point_on_plane(centre, scenes.LIGHT)
+        assert np.allclose(point["place"], [*at, 1], atol=1e-9) and np.allclose(point["normal"], [0, 0, 1])
+        assert np.allclose(plane["place"], [*at, 1], atol=1e-9) and np.allclose(plane["chains"][0][:, 2], 0, atol=1e-9)
+        assert np.allclose(virtual["place"], [*(centre * [1, 1, -1]), 1])
+        (ray,) = role("reflected-ray")
+        along = ray["chains"][0][1] - ray["chains"][0][0]
+        assert np.allclose(along / np.linalg.norm(along), (scenes.LIGHT - at) / np.linalg.norm(scenes.LIGHT - at), atol=1e-6)
+        (seen,) = role("observed-contour")
+        drawn = scenes.to_pixels(k, pose, seen["chains"][0])  # it may run the other way round
+        assert len(drawn) == len(contour) + 1 and np.abs(drawn[:, None] - contour).sum(axis=2).min(axis=1).max() < 1e-6
+        assert role("predicted-contour", "dual") and role("tangent-plane", "dual") and role("surface")[0]["mesh"] is not None
+        assert all(chain.shape[1] == 3 for thing in drawing for chain in thing["chains"])
+    scene = inspection.drawing()
+    assert {t["role"] for t in scene} == {"light", "fitted-lamp", "ellipsoid"}
+    light = next(t for t in scene if t["role"] == "light")
+    assert np.allclose(light["place"][:3] / light["place"][3], scenes.LIGHT, atol=1e-5) and light["arrow"] is None
+    body, fit = next(t for t in scene if t["role"] == "ellipsoid"), inspection.models["dual"].fits[0].fit
+    if fit.ellipsoid is not None:
+        unit = np.linalg.inv(fit.ellipsoid.world_from_ellipsoid) @ body["world_from_ball"] @ [0.6, 0, 0.8, 1]
+        assert np.allclose(unit[:3], fit.ellipsoid.semi_axes * [0.6, 0, 0.8])
+    with pytest.raises(glint.InputError):
+        inspection.drawing("none")
+
+
 def test_live_poses():
     views = scenes.plane_views(8)
     frames = [glint.Frame(f"{i:04d}", glint.Camera(**k, camera_from_world=pose), surface="table", lights_on=["lamp"],

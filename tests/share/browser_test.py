@@ -107,7 +107,7 @@ def check_through(page, data, model):
     camera = data["frames"][frame]["camera"]
     scale = min(width / camera["width"], height / camera["height"])
     to_page = lambda u, v: (x + width / 2 + (u + 0.5 - camera["width"] / 2) * scale, y + height / 2 + (v + 0.5 - camera["height"] / 2) * scale)
-    chain = next(p["chains"][0] for p in data["frames"][frame]["on_surface"] if p["model"] == model)
+    chain = next(t["chains"][0] for t in data["frames"][frame]["things"] if t["role"] == "predicted-contour" and t["model"] == model)
     points = [to_page(*project(camera, chain[i:i + 3])) for i in range(0, len(chain), 3)]
     for point, i in list(zip(points, range(0, len(chain), 3)))[:5]:
         said = page.evaluate(f"glintPage.place({chain[i:i + 3]})")

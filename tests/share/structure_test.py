@@ -106,6 +106,10 @@ def farthest(points, line):
     return worst
 
 
+def of_role(holder, role):
+    return [thing for thing in holder["things"] if thing["role"] == role]
+
+
 def check_drawing(data):
     """What lies on the surface projects onto what lies over the photograph."""
     checked = 0
@@ -114,7 +118,7 @@ def check_drawing(data):
             continue
         for model in [""] + [m["id"] for m in data["models"]]:
             over = [l["points"] for l in frame["lines"] if l["model"] == model]
-            on = [c for part in frame["on_surface"] if part["model"] == model for c in part["chains"]]
+            on = [c for part in of_role(frame, "predicted-contour" if model else "observed-contour") if part["model"] == model for c in part["chains"]]
             if len(over) != 1 or len(on) != 1:
                 continue  # of several, which belongs to which is not said
             line = list(zip(over[0][0::2], over[0][1::2]))
@@ -124,19 +128,48 @@ def check_drawing(data):
 
 
 def check_roles(data):
-    """Which frames train, as `evaluate --json` says it; tangent planes that hold their point; lights where the fits have them."""
+    """Which frames train, as `evaluate --json` says it; virtual cameras that are mirrored in the tangent planes; lights where the fits have them."""
     training = {row["index"] for row in data["evaluation"]["training"]}
     assert {f["index"] for f in data["frames"] if f["role"] == "training"} == training, training
-    mirrors = [m for frame in data["frames"] for m in frame["mirrors"]]
-    assert any(abs(m["offset"]) > 0.01 for m in mirrors)
-    for m in mirrors:
-        assert abs(sum(n * x for n, x in zip(m["normal"], m["at"])) + m["offset"]) < 1e-4, m  # m: places are rounded
+    for frame in data["frames"]:
+        (camera,) = of_role(frame, "camera")
+        planes, mirrored = of_role(frame, "tangent-plane"), of_role(frame, "virtual-camera")
+        assert len(planes) == len(mirrored) == len(of_role(frame, "brightest-point")) > 0, frame["id"]
+        for plane, virtual in zip(planes, mirrored):
+            eye, other, at, normal = camera["place"], virtual["place"], plane["place"], plane["normal"]
+            across = [a - b for a, b in zip(eye[:3], other[:3])]  # from the mirror image to the camera: along the normal, and the plane halves it
+            long = math.hypot(*across)
+            assert math.dist([v / long for v in across], normal) < 1e-9, frame["id"]
+            assert abs(sum(n * ((a + b) / 2 - p) for n, a, b, p in zip(normal, eye, other, at))) < 1e-9, frame["id"]
+            assert abs(max(math.dist(plane["chains"][0][i:i + 3], at[:3]) for i in range(0, 96, 3)) - plane["radius"]) < 1e-4, frame["id"]  # rounded
     places = {fit["light"]: fit["light_position"] for model in data["evaluation"]["models"].values() for fit in model["fits"]
               if fit.get("light_position")}
     assert places and all(place[3] == 1 for place in places.values()), places
-    for light in data["lights"]:
-        x, y, z, w = light["homogeneous"]
-        assert math.dist([x / w, y / w, z / w], places[light["id"]][:3]) < 1e-9, light
+    lights = of_role(data, "light")
+    assert lights
+    for light in lights:
+        x, y, z, w = light["place"]
+        assert math.dist([x / w, y / w, z / w], places[light["light"]][:3]) < 1e-9, light
+    check_bodies(data)
+
+
+def check_bodies(data):
+    """Ellipsoids are those of the evaluation: the drawn curves fulfil their equations, and what is poor is drawn so."""
+    fits = [(name, fit) for name, model in data["evaluation"]["models"].items() for fit in model["fits"]]
+    for name, fit in fits:
+        drawn = [t for t in of_role(data, "ellipsoid") if (t["model"], t["light"], t.get("surface")) == (name, fit["light"], fit["surface"])]
+        assert len(drawn) == bool(fit["q_dual"]), (name, fit["light"])
+        for thing in drawn:
+            assert thing.get("poor", False) == (fit["status"] == "poor"), (name, fit["status"])
+            assert ("problem" in thing) or fit["ellipsoid"], name
+            if "chains" not in thing:
+                continue
+            pose, axes = fit["ellipsoid"]["world_from_ellipsoid"], fit["ellipsoid"]["semi_axes"]
+            for chain in thing["chains"]:
+                for i in range(0, len(chain), 3):
+                    away = [p - c for p, c in zip(chain[i:i + 3], fit["ellipsoid"]["centre"])]
+                    own = [sum(pose[r][k] * away[r] for r in range(3)) for k in range(3)]
+                    assert min(axes) < 1e-4 or abs(sum((v / a) ** 2 for v, a in zip(own, axes)) - 1) < 1e-2, (name, own, axes)
 
 
 def check_surfaces(data):

@@ -278,7 +278,7 @@ TEST(Layers, ASurfaceThatIsOnItsWayIsNoFailure) {
   EXPECT_THAT(surfaceLayer(input).notes.at(0), HasSubstr("no such file"));
 }
 
-/// Of what a layer draws for a model: its colour, and of how many lines the first thing consists.
+/// The first thing that a layer draws for a model: its colour, and of how many lines it consists.
 std::pair<Colour, int> lookOf(const LayerContent& content, const std::string& model) {
   for (const Drawn& drawn : content.drawn) {
     auto* const actor = vtkActor::SafeDownCast(drawn.prop);

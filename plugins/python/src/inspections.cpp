@@ -210,6 +210,12 @@ void declareInspections(py::module_& module) {
            "What `glint evaluate` says of a model over held-out frames: counts, and statistics (mean, median, p95, max, count) "
            "of\n"
            "contour_error_pct, contour_error_px (px), iou, coverage, time_us and others; NaN where nothing was measured.")
+      .def("drawing", &drawingOf, py::arg("frame") = py::none(),
+           "What a 3D picture shows: a list of dictionaries, one for each thing, in world coordinates (m). Without a frame those "
+           "of the\n"
+           "whole scene: lights, lamps and ellipsoids of fits, true lamps. With one (number or id) also its surface and camera, "
+           "what lies\n"
+           "at its highlights, and contours on its surface. docs/python.md lists the keys.")
       .def(
           "to_json", [](const InspectionHandle& i) { return evaluationJson(*i.inspection, i.context); },
           "The text that `glint evaluate --json` writes.")

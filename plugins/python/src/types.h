@@ -53,6 +53,10 @@ py::object partOrNone(const T* part, py::handle owner) {
   return part ? py::cast(part, py::return_value_policy::reference_internal, owner) : py::none();
 }
 
+/// What a 3D picture shows of a frame, and of the scene on its surface; of the scene alone where the frame is None: one
+/// dictionary for each draw::SceneThing. InputError for a frame that does not exist.
+py::list drawingOf(const InspectionHandle& handle, const py::object& frame);
+
 void declareGeometry(py::module_& module);
 void declareCameras(py::module_& module);
 void declareSurfaces(py::module_& module);

@@ -117,6 +117,10 @@ def the_true_lamp_and_the_surface_are_the_scene_s():
     body = points(block(data, "Surface")) / [0.6, 0.35, 0.25]  # sessions/ellipsoid/spec.json
     check(np.abs((body ** 2).sum(axis=1) - 1).max() < 1e-9, "the surface is the ellipsoid of the scene")
     check(same(points(block(data, "Lights/True"))[0], [1.2, -1.0, 2.2]), "the true lamp")  # the same file
+    reader = GlintReader(FileName=str(SESSIONS / "plane/scene.json"))  # its lamp is a sphere
+    reader.UpdatePipeline(0.0)
+    outline = points(block(fetched(reader), "Lights/LongLamps"))
+    check(len(outline) > 100 and np.abs(np.linalg.norm(outline - [0.05, 0.03, 1.3], axis=1) - 0.01).max() < EXACT, "the outline of a sphere")
 
 
 def the_filter_on_the_scene_s_own_mesh(name="vase"):
