@@ -108,9 +108,8 @@ Outcome<PixelPatch> pixelPatch(const LinearPixels& pixels, const Camera& camera,
       if (!ideal.allFinite()) continue;
       const Outcome<SurfacePoint> hit = surface.firstHit(camera.ray(ideal));
       if (!hit || !hit->position.allFinite() || !hit->normal.allFinite()) continue;
-      const SurfacePoint p = facing(*hit, eye);
       patch.onSurface[i] = 1;
-      patch.seen[i] = {p.position, p.normal, (eye - p.position).normalized()};
+      patch.seen[i] = lobe::seenFrom(eye, surface, facing(*hit, eye));
       const int x0 = left + column * patch.cellPx, y0 = top + row * patch.cellPx;
       if (x0 < 0 || y0 < 0 || x0 + patch.cellPx > width || y0 + patch.cellPx > height) continue;
       double sum = 0;
@@ -158,8 +157,7 @@ PixelPatch onSurface(PixelPatch patch, const Surface& surface) {
         patch.onSurface[i] = patch.used[i] = 0;
         continue;
       }
-      const SurfacePoint p = facing(*hit, eye);
-      patch.seen[i] = {p.position, p.normal, (eye - p.position).normalized()};
+      patch.seen[i] = lobe::seenFrom(eye, surface, facing(*hit, eye));
     }
   return patch;
 }
