@@ -38,7 +38,7 @@ std::string fitText(const ModelResult::Fit& entry, const std::string& model) {
     for (const LampFact& fact : f.lamp() ? factsOf(*f.lamp()) : std::vector<LampFact>())
       out += formatted("  light %-11s ", fact.name.c_str()) +
              (fact.value.size() == 1 ? formatted("%.6g", fact.value(0)) : vectorText(fact.value)) + " m\n";
-    out += formatted("  lobe              %s, m = %.6g\n", nameOf(lobe->lobe), lobe->roughness);
+    out += formatted("  lobe              %s, m = %.6g\n", nameOf(lobe->lobe), lobe->roughness.mean);
   }
   if (fitted && !fitted->singularValues.empty()) {
     out += formatted("  gap ratio         %.3g, condition %.3g\n", fitted->gapRatio, f.condition);

@@ -280,7 +280,8 @@ void ellipsoidStep(const Case& c, ExplainStep& step) {
     step.numbers.push_back(point("a, b, c", "semi-axes", f.ellipsoid()->semiAxes()));
   }
   if (f.limitAngle()) step.numbers.push_back(one("α_lim", "limit angle", degrees(*f.limitAngle()), "deg"));
-  if (const ReflectanceFit* const lobe = f.as<ReflectanceFit>()) step.numbers.push_back(one("m", "roughness", lobe->roughness));
+  if (const ReflectanceFit* const lobe = f.as<ReflectanceFit>())
+    step.numbers.push_back(one("m", "roughness", lobe->roughness.mean));
   if (quadric && quadric->gapRatio > 0) {
     step.numbers.push_back(one("", "last over second-last singular value", quadric->gapRatio));
     if (quadric->gapRatio > kWeakGap) step.broken.push_back({"weak-gap", {one("", "ratio", quadric->gapRatio)}});

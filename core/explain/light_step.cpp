@@ -102,7 +102,7 @@ void lightStep(const Case& c, ExplainStep& step) {
   if (std::isfinite(sigma)) step.numbers.push_back(one("σ", "of L, largest axis: noise only", sigma, "m"));
   if (widest < radians(kNarrowDeg)) step.broken.push_back({"rays-parallel", {one("", "widest angle", degrees(widest), "deg")}});
   for (const TrueLight& truth : c.inspection.scene->lights) {
-    if (truth.id != c.out.light || truth.lamp.atInfinity() || endsOf(truth.lamp) || light.atInfinity()) continue;
+    if (truth.id != c.out.light || truth.lamp.atInfinity() || !extremesOf(truth.lamp).empty() || light.atInfinity()) continue;
     const double away = (light.position() - truth.lamp.position()).norm();
     step.numbers.push_back(one("", "distance from the true light", away, "m"));
     if (away > kManySigma * sigma && away > kRounding * workingDistance(*c.inspection.scene))

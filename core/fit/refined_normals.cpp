@@ -77,7 +77,7 @@ class LobeAngles {
 
  private:
   struct View {
-    View(const TrainingView& v, Lobe lobe, double roughness, const Lamp& lamp)
+    View(const TrainingView& v, Lobe lobe, const Roughness& roughness, const Lamp& lamp)
         : surface(v.surface), camera(v.camera), field(*surface, camera, lobe, roughness, lamp) {}
     std::shared_ptr<const Surface> surface;
     Camera camera;

@@ -53,7 +53,7 @@ Outcome<FittedLobe> fittedLobe(const Inspection& in, int frame) {
   const ModelResult::Fit* reflectance = reflectanceFit(in, frame);
   if (reflectance && reflectance->fit)
     if (const ReflectanceFit* const fit = reflectance->fit->as<ReflectanceFit>())
-      return FittedLobe{fit->lobe, fit->roughness, "reflectance, " + lightName(reflectance->light)};
+      return FittedLobe{fit->lobe, fit->roughness.mean, "reflectance, " + lightName(reflectance->light)};
   if (const std::optional<FittedLobe> lobe = lobeOfLimitAngle(in, frame)) return *lobe;
   if (reflectance && reflectance->failure()) return *reflectance->failure();
   return Failure{Reason::NotSupported, "no computed model gives the lobe (reflectance does, or a model that needs the light)"};

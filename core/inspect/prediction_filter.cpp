@@ -22,7 +22,7 @@ std::optional<double> logBrightness(const ModelFit& fit, const PredictedHighligh
   const Eigen::Vector3d toLight = fit.lightEstimate->directionFrom(at.position), toCamera = (eye - at.position).normalized();
   if (!toLight.allFinite() || !toCamera.allFinite()) return std::nullopt;
   if (const ReflectanceFit* const lobe = fit.as<ReflectanceFit>()) {
-    const std::optional<LogRadiance> radiance = logRadiance(lobe->lobe, lobe->roughness, at.normal, toLight, toCamera);
+    const std::optional<LogRadiance> radiance = logRadiance(lobe->lobe, lobe->roughness.mean, at.normal, toLight, toCamera);
     return radiance ? std::optional(radiance->total()) : std::nullopt;
   }
   const std::optional<double> limit = fit.limitAngle();

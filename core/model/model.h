@@ -118,7 +118,7 @@ struct LimitAngleFit {
 /// A reflectance lobe and the shape of the lamp about ModelFit::lightEstimate.
 struct ReflectanceFit {
   Lobe lobe = Lobe::TorranceSparrow;
-  double roughness = 0;            ///< m of the lobe
+  Roughness roughness;             ///< m of the lobe
   double level = 0;                ///< fraction q of the peak at which the contour lies
   LampShape shape{};               ///< of the lamp about ModelFit::lightEstimate
   std::string evidence{};          ///< what the fit saw, "contours", "levels" or "pixels"
@@ -220,7 +220,7 @@ namespace parameters {
 inline constexpr ParameterBlock kLight{0, 4}, kLimitAngle{4, 1}, kExtent{5, 6};
 // primal, dual, canonical: centre; S, xx yy zz xy xz yz; of canonical, whose light moves its predictions, L too.
 inline constexpr ParameterBlock kCentre{0, 3}, kShape{3, 6}, kLampOfEllipsoid{9, 4};
-// reflectance: after L the logarithm of the roughness, then the unknowns of the lamp's shape.
+// reflectance: after L the logarithm of the roughness, then the unknowns of the lamp's shape, then the logarithm of two widths' ratio.
 inline constexpr ParameterBlock kLogRoughness{4, 1};
 inline constexpr int kLampShape = 5;
 }  // namespace parameters

@@ -46,7 +46,8 @@ std::optional<PixelFit> withExtent(const std::vector<TrainingView>& views, const
       contours.push_back({v.frame, v.camera, v.surface.get(), v.highlight.contour.points, v.highlight.peak, v.highlight.level});
   const std::vector<Lobe> lobes = lobesOf(settings);
   std::optional<PixelFit> best;
-  const auto consider = [&](const std::vector<Lobe>& order, const Lamp& lamp, double roughness, PixelFitOptions options = {}) {
+  const auto consider = [&](const std::vector<Lobe>& order, const Lamp& lamp, const Roughness& roughness,
+                            PixelFitOptions options = {}) {
     options.progress = progress;
     const Outcome<PixelFit> fit = fitPixels(order, patches, lamp, roughness, options);
     const PixelFit& before = best ? *best : point;
@@ -79,10 +80,10 @@ std::optional<PixelFit> withExtent(const std::vector<TrainingView>& views, const
     const double width = point.model.roughness * (reach > 0 ? reach : distance);
     PixelFitOptions same;
     same.background = point.background;
-    const auto sphere = [&](double radius, double roughness) {
+    const auto sphere = [&](double radius, const Roughness& roughness) {
       consider({point.model.lobe}, sphereLamp(centre, radius), roughness, same);
     };
-    if (point.patterned) sphere(1.5 * width, 0.7 * point.model.roughness);
+    if (point.patterned) sphere(1.5 * width, {0.7 * point.model.roughness.mean, point.model.roughness.ratio});
     if (!best) sphere(0.5 * width, point.model.roughness);
   }
   return best;

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "core/model/star_level_set.h"
-#include "core/reflectance/radiance_bound.h"
+#include "core/reflectance/lobe_terms.h"
 
 namespace glint {
 namespace {

@@ -190,12 +190,11 @@ class Reflectance final : public HighlightModel {
       std::span<double> own = unknownsOf(other.shape);
       for (std::size_t k = 0; k < own.size() && by.size() > parameters::kLampShape; ++k)
         own[k] += by(parameters::kLampShape + static_cast<Eigen::Index>(k));
-      if (auto* const sphere = std::get_if<SphereShape<>>(&other.shape))
-        sphere->squaredRadius = std::max(0.0, sphere->squaredRadius);
+      const double ratio = hasTwoWidths(fitted->lobe) ? fitted->roughness.ratio * std::exp(by(by.size() - 1)) : 1;
+      const Roughness roughness{fitted->roughness.mean * std::exp(by(parameters::kLogRoughness.first)), ratio};
       const auto log = [&](const SurfacePoint& p) {
-        const double roughness = fitted->roughness * std::exp(by(parameters::kLogRoughness.first));
-        return lobe::logOfLamp<double>(fitted->lobe, roughness, p.position, p.normal, (eye - p.position).normalized(), other,
-                                       radiance.rule());
+        return lobe::logOfLamp<double>(fitted->lobe, roughness, p.position, axesAt(fitted->lobe, *surface, p),
+                                       (eye - p.position).normalized(), other, radiance.rule());
       };
       const auto here = log(at), top = log(peaks.front().point);
       return here && top ? *top - *here : std::nan("");

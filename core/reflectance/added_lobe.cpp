@@ -2,6 +2,7 @@
 #include "core/reflectance/added_lobe.h"
 
 #include <algorithm>
+#include <array>
 #include <deque>
 
 #include "core/base/added_choice.h"
@@ -11,8 +12,6 @@
 
 namespace glint {
 namespace {
-
-constexpr int kOwnLobes = 4;  // of enum Lobe
 
 struct AddedLobe {
   std::unique_ptr<const LobeProfile> profile;
@@ -24,8 +23,11 @@ std::deque<AddedLobe>& added() {  // a deque: pointers to its names stay valid
   return profiles;
 }
 
+constexpr std::array kOwn{Lobe::TorranceSparrow, Lobe::Ggx, Lobe::BlinnPhong, Lobe::Phong};
+constexpr int kOwnLobes = static_cast<int>(kOwn.size());
+
 std::vector<Lobe>& known() {
-  static std::vector<Lobe> lobes{Lobe::TorranceSparrow, Lobe::Ggx, Lobe::BlinnPhong, Lobe::Phong};
+  static std::vector<Lobe> lobes(kOwn.begin(), kOwn.end());
   return lobes;
 }
 
@@ -101,9 +103,5 @@ const char* addedLobeName(Lobe lobe) {
 }
 
 const std::vector<Lobe>& allLobes() { return known(); }
-
-bool isMicrofacet(Lobe lobe) {
-  return lobe::withLobe(lobe, [](const auto& l) { return l.isMicrofacet(); });
-}
 
 }  // namespace glint

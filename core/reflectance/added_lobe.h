@@ -28,6 +28,9 @@ class LobeProfile {
   /// depend on m or t may be left out.
   virtual ProfileValue logDistribution(double roughness, double tanSquared) const = 0;
   virtual bool isMicrofacet() const { return true; }
+  /// Its roughness depends on the direction: t is then stretched by the two widths (lobe.h), of log D and of Lambda, and log D leaves out the
+  /// factor 1 / cos^4 theta_h, which goes with the angle as it is.
+  virtual bool hasTwoWidths() const { return false; }
   virtual ProfileValue lambda(double, double) const { return {}; }  ///< Smith's Lambda, >= 0
 };
 
@@ -42,8 +45,6 @@ const LobeProfile* profileOf(Lobe lobe);
 const char* addedLobeName(Lobe lobe);  ///< "" for the four of lobe.h
 /// All lobes in the order in which `fit.lobe=auto` tries them.
 const std::vector<Lobe>& allLobes();
-/// It has masking and cosines; false for the cosine powers.
-bool isMicrofacet(Lobe lobe);
 
 namespace lobe {
 

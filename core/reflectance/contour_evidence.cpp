@@ -18,8 +18,9 @@ std::optional<Stencil> look(const RadianceView& view, const Pixel& p, const Eige
   const auto seen = [&](const Pixel& q) -> std::optional<Seen> {
     const Outcome<SurfacePoint> hit = view.surface->firstHit(view.camera.ray(q));
     if (!hit || !hit->position.allFinite() || !hit->normal.allFinite()) return std::nullopt;
-    const SurfacePoint s = facing(*hit, eye);
-    return Seen{(s.position - origin) / scale, s.normal, (eye - s.position).normalized()};
+    Seen s = seenFrom(eye, *view.surface, facing(*hit, eye));
+    s.position = (s.position - origin) / scale;
+    return s;
   };
   const std::optional<Seen> at = seen(p), left = seen(p - Pixel(stepPx, 0)), right = seen(p + Pixel(stepPx, 0)),
                             up = seen(p - Pixel(0, stepPx)), down = seen(p + Pixel(0, stepPx));

@@ -10,15 +10,10 @@
 /// What the fit of a lobe sees of the contours; internal to core/reflectance.
 namespace glint::lobe {
 
-/// A surface point seen by a camera; positions in normalised world coordinates.
-struct Seen {
-  Eigen::Vector3d position, normal, toCamera;
-};
-
 /// Largest step of the finite differences that turn log I into pixels, and the largest as a share of the highlight's radius.
 inline constexpr double kStencilStepPx = 0.5, kStencilShare = 0.1;
 
-/// A pixel's surface point and those of the pixels stepPx away.
+/// In normalised world coordinates: a pixel's surface point and those of the pixels stepPx away.
 struct Stencil {
   Seen at, left, right, up, down;
   double stepPx = kStencilStepPx;

@@ -136,10 +136,10 @@ Outcome<RadianceFit> fitRadiance(Lobe lobe, const std::vector<RadianceView>& vie
   return described(problem, best, views.size(), iterations);
 }
 
-Outcome<RadianceFit> fitLamp(Lobe lobe, const std::vector<RadianceView>& views, const Lamp& lamp, double roughness,
+Outcome<RadianceFit> fitLamp(Lobe lobe, const std::vector<RadianceView>& views, const Lamp& lamp, const Roughness& roughness,
                              const RadianceFitOptions& options) {
   require(options.pointsPerView >= 3 && options.robustPx > 0 && options.maxIterations >= 1, "fitLamp: options");
-  require(roughness > 0 && std::isfinite(roughness), "fitLamp: roughness must be positive");
+  require(roughness > 0 && std::isfinite(roughness.mean), "fitLamp: roughness must be positive");
   Outcome<ContourEvidence> gathered = lobe::gatherEvidence(views, options.pointsPerView);
   if (!gathered) return gathered.failure();
   RadianceProblem problem(lobe, views, *std::move(gathered), options);

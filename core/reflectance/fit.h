@@ -55,9 +55,10 @@ std::vector<RadianceStart> screenStarts(Lobe lobe, const std::vector<RadianceVie
 
 struct RadianceFit {
   Lobe lobe = Lobe::TorranceSparrow;
-  double roughness = 0;  ///< m
-  Lamp lamp;             ///< a point where the contours show no size
-  /// Of (L homogeneous with |L| = 1 (4), log m (1)), then of the unknowns of the lamp's shape (m, or m^2); none where a direction is free.
+  Roughness roughness;  ///< m
+  Lamp lamp;            ///< a point where the contours show no size
+  /// Of (L homogeneous with |L| = 1 (4), log m (1)), then of the unknowns of the lamp's shape (m, or m^2), then the logarithm
+  /// of the ratio of two widths, where the lobe has them; none where a direction is free.
   std::optional<ParameterUncertainty> uncertainty;
   Eigen::Matrix3d positionCovariance;  ///< m^2; not finite for a light at infinity
   double rmsPx = 0;
@@ -85,7 +86,7 @@ Outcome<RadianceFit> fitRadiance(Lobe lobe, const std::vector<RadianceView>& vie
 /// The minimum that one start leads to, with everything free that the lamp's shape has: a point stays a point, a segment a segment.
 /// `lightSize` and `otherStarts` do not matter. Failures as fitRadiance; NotConverged also where a lamp grows beyond what its
 /// quadrature serves (2.5 lobe widths for a sphere, 12 for a segment).
-Outcome<RadianceFit> fitLamp(Lobe lobe, const std::vector<RadianceView>& views, const Lamp& lamp, double roughness,
+Outcome<RadianceFit> fitLamp(Lobe lobe, const std::vector<RadianceView>& views, const Lamp& lamp, const Roughness& roughness,
                              const RadianceFitOptions& options = {});
 
 /// RMS residual of every view under a fit, px, whether it was fitted to the view or not. Not finite where a frame shows no maximum.

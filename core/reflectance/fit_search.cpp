@@ -8,8 +8,7 @@
 #include <set>
 
 #include "core/reflectance/added_lobe.h"
-#include "core/reflectance/lobe_width.h"
-#include "core/reflectance/segment_fit.h"
+#include "core/reflectance/extended_fit.h"
 
 namespace glint {
 namespace {
@@ -156,9 +155,10 @@ Outcome<RadianceFit> searchRadiance(const std::vector<Lobe>& lobes, const std::v
     }
   }
   if (best && !best->poor && admits<SphereShape<>>(lamps)) best = withSphere(lobes, views, *best, options);
-  if (admits<SegmentShape<>>(lamps))
-    if (const std::optional<RadianceFit> segment = fitSegment(lobes, views, best ? &*best : nullptr, light, widthRad, options))
-      best = *segment;
+  for (const LampShape& kind : allLampShapes())
+    if (lamps[kind.index()] && isSearched(kind))
+      if (const auto extended = fitExtended(kind, lobes, views, best ? &*best : nullptr, light, widthRad, options))
+        best = *extended;
   return best;
 }
 
@@ -169,8 +169,8 @@ Outcome<RadianceFit> fitNear(const std::vector<Lobe>& lobes, const std::vector<R
   std::map<Lobe, RadianceFit> found;
   Failure failure{Reason::NotConverged, ""};
   for (const Lobe lobe : lobes) {
-    Outcome<RadianceFit> f =
-        fitLamp(lobe, views, near.lamp, lobe == near.lobe ? near.roughness : clampedRoughness(lobe, width, level), options);
+    Outcome<RadianceFit> f = fitLamp(
+        lobe, views, near.lamp, lobe == near.lobe ? near.roughness : Roughness(clampedRoughness(lobe, width, level)), options);
     if (f)
       found.insert_or_assign(lobe, *std::move(f));
     else

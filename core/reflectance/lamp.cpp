@@ -5,17 +5,11 @@
 #include <array>
 
 #include "core/base/outcome.h"
+#include "core/base/overload.h"
 #include "core/base/quadrature.h"
 
 namespace glint {
 namespace {
-
-template <class... F>
-struct Each : F... {
-  using F::operator()...;
-};
-template <class... F>
-Each(F...) -> Each<F...>;  // clang 14 does not find it
 
 /// @param f  takes every shape
 template <class F>
@@ -40,6 +34,25 @@ static_assert(mostUnknowns(std::make_index_sequence<std::variant_size_v<LampShap
 template <std::size_t... I>
 std::vector<LampShape> shapesOf(std::index_sequence<I...>) {
   return {LampShape(std::in_place_index<I + 1>)..., PointShape<>{}};
+}
+
+/// Of a shape that no search looks for.
+template <class Shape>
+std::vector<LampShape> startsLike(const Shape&, const ExtentGuess&) {
+  return {};
+}
+
+/// Five axes across the direction to the lamp and towards it, and the one that is promised.
+std::vector<LampShape> startsLike(const SegmentShape<>&, const ExtentGuess& guess) {
+  constexpr double kStartLength = 0.1;  // half the lamp's length over its distance
+  const Eigen::Vector3d &towards = guess.towards, u = towards.unitOrthogonal(), v = towards.cross(u);
+  std::vector<LampShape> starts;
+  if (guess.halfAxes) starts.emplace_back(SegmentShape<>{guess.halfAxes->col(0), 0});
+  for (int k = 0; k < 4; ++k)
+    starts.emplace_back(
+        SegmentShape<>{kStartLength * guess.distance * (std::cos(k * M_PI / 4) * u + std::sin(k * M_PI / 4) * v), 0});
+  starts.emplace_back(SegmentShape<>{kStartLength * guess.distance * (towards + u).normalized(), 0});
+  return starts;
 }
 
 Eigen::RowVector3d row(const Eigen::Vector3d& v) { return v.transpose(); }
@@ -92,8 +105,8 @@ Lamp withRadius(Lamp lamp, double radius) {
 }
 
 double radiusOf(const Lamp& lamp) {
-  return of(lamp.shape, Each{[](const PointShape<>&) { return 0.0; }, [](const SphereShape<>& s) { return s.reach(); },
-                             [](const SegmentShape<>& s) { return s.radius; }});
+  return of(lamp.shape, Overload{[](const PointShape<>&) { return 0.0; }, [](const SphereShape<>& s) { return s.reach(); },
+                                 [](const SegmentShape<>& s) { return s.radius; }});
 }
 
 std::optional<std::pair<Eigen::Vector3d, Eigen::Vector3d>> endsOf(const Lamp& lamp) {
@@ -123,8 +136,7 @@ Lamp moved(const Lamp& lamp, const Eigen::Vector3d& by) {
 
 Lamp transformed(const Lamp& lamp, double scale, const Eigen::Matrix3d& rotation, const Eigen::Vector3d& shift) {
   Lamp there = lamp;
-  there.shape = of(lamp.shape, [&](const auto& s) { return LampShape(s.times(scale)); });
-  if (auto* const segment = std::get_if<SegmentShape<>>(&there.shape)) segment->halfAxis = rotation * segment->halfAxis;
+  there.shape = of(lamp.shape, [&](const auto& s) { return LampShape(s.times(scale).rotated(rotation)); });
   there.centre.head<3>() = rotation * lamp.centre.head<3>();
   if (!lamp.atInfinity()) there.centre.head<3>() = scale * there.centre.head<3>() + lamp.centre.w() * shift;
   return there;
@@ -153,6 +165,21 @@ int unknownCount(const LampShape& shape) {
 
 const char* nameOf(const LampShape& shape) {
   return of(shape, [](const auto& s) { return s.kName; });
+}
+
+std::vector<LampShape> startsOf(const LampShape& kind, const ExtentGuess& guess) {
+  return of(kind, [&](const auto& s) { return startsLike(s, guess); });
+}
+
+bool isSearched(const LampShape& kind) {
+  return of(kind, [](const auto& s) { return s.kSearched; });
+}
+
+std::vector<LampShape> aliasesOf(const LampShape& shape) {
+  return of(shape, [](const auto& s) {
+    const auto aliases = s.aliases();
+    return std::vector<LampShape>(aliases.begin(), aliases.end());
+  });
 }
 
 std::vector<LampShape> allLampShapes() { return shapesOf(std::make_index_sequence<std::variant_size_v<LampShape> - 1>()); }
@@ -241,7 +268,7 @@ const std::vector<DiscRule::Node>& alongRuleFor(double ratio) {
 
 bool State::isFinite() const {
   LampShape shape = lamp.shape;
-  bool finite = lamp.centre.allFinite() && std::isfinite(logRoughness);
+  bool finite = lamp.centre.allFinite() && std::isfinite(logRoughness) && std::isfinite(logRatio);
   for (const double x : unknownsOf(shape)) finite = finite && std::isfinite(x);
   return finite;
 }
@@ -256,9 +283,9 @@ Eigen::VectorXd State::place() const {
 }
 
 LampRule lampRuleFor(const LampShape& shape, double ratio) {
-  return of(shape, Each{[](const PointShape<>&) { return LampRule{}; },
-                        [&](const SphereShape<>&) { return LampRule{&discRuleFor(ratio).nodes}; },
-                        [&](const SegmentShape<>&) { return LampRule{&alongRuleFor(ratio)}; }});
+  return of(shape, Overload{[](const PointShape<>&) { return LampRule{}; },
+                            [&](const SphereShape<>&) { return LampRule{&discRuleFor(ratio).nodes}; },
+                            [&](const SegmentShape<>&) { return LampRule{&alongRuleFor(ratio)}; }});
 }
 
 double lampRatio(double roughness, const Eigen::Vector3d& position, const Eigen::Vector3d& toCamera, const Lamp& lamp) {

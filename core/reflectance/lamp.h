@@ -15,12 +15,12 @@
 
 #include "core/geometry/light.h"
 #include "core/reflectance/disc_rule.h"
+#include "core/reflectance/lobe.h"
 
 namespace glint {
 
-// The shapes of a lamp. A new one is a struct here, an entry of ShapeOf, its part of lamp.cpp (files, words, drawing, quadrature), its radiance in
-// light_radiance.h, its samples in core/synth/light_source.cpp, and a search for it (as segment_fit.cpp). T is double, or a dual number with derivatives. Each
-// says:
+// The shapes of a lamp. A new one is a struct here, an entry of ShapeOf, its part of lamp.cpp (files, words, drawing, quadrature, where a search starts), its
+// radiance in light_radiance.h, and its samples in core/synth/light_source.cpp. T is double, or a dual number with derivatives. Each says:
 //   kName, kWords  as fit.light_size takes it, and for people
 //   kUnknowns      numbers that a fit finds beside centre and lobe; unknowns() points to them
 //   kLength        power of a length that the unknowns are
@@ -29,18 +29,23 @@ namespace glint {
 //   kLargestRatio  reach in lobe widths up to which contours are fitted: beyond it they show the lamp and hardly the lobe
 //   kRatioReserve  what it may grow by while a quadrature stays
 //   kMostSteps     iterations of a fit to contours, after which it creeps along a valley
+//   kSearched      whether fitExtended looks for it, from the shapes of startsOf()
 //   times, over    the shape with all lengths times f, or divided by f
+//   rotated        by a rotation about its centre
+//   aliases        other unknowns of the same lamp
 //   reach          largest distance from the centre
 
 template <class T = double>
 struct PointShape {
   static constexpr const char *kName = "point", *kWords = "a lamp without a size";
   static constexpr int kUnknowns = 0, kLength = 1, kMostSteps = std::numeric_limits<int>::max();
-  static constexpr bool kMayVanish = true;
+  static constexpr bool kMayVanish = true, kSearched = false;
   static constexpr double kLeast = 0, kLeastStep = 0, kRatioReserve = 1, kLargestRatio = std::numeric_limits<double>::infinity();
   T* unknowns() { return nullptr; }
   PointShape times(double) const { return {}; }
   PointShape over(double) const { return {}; }
+  PointShape rotated(const Eigen::Matrix3d&) const { return {}; }
+  std::vector<PointShape> aliases() const { return {}; }
   double reach() const { return 0; }
   bool operator==(const PointShape&) const = default;
 };
@@ -50,7 +55,7 @@ template <class T = double>
 struct SphereShape {
   static constexpr const char *kName = "sphere", *kWords = "a lamp with a size";
   static constexpr int kUnknowns = 1, kLength = 2, kMostSteps = 25;
-  static constexpr bool kMayVanish = true;
+  static constexpr bool kMayVanish = true, kSearched = false;
   static constexpr double kLeast = 1e-10;                          // keeps the derivative of a square root finite
   static constexpr double kLeastStep = 1e-12;                      // keeps differences finite
   static constexpr double kRatioReserve = 1, kLargestRatio = 2.5;  // sums over a larger disc take minutes
@@ -59,6 +64,8 @@ struct SphereShape {
   T* unknowns() { return &squaredRadius; }
   SphereShape times(double f) const { return of(f * reach()); }
   SphereShape over(double f) const { return {squaredRadius / (f * f)}; }
+  SphereShape rotated(const Eigen::Matrix3d&) const { return *this; }
+  std::vector<SphereShape> aliases() const { return {}; }
   double reach() const { return std::sqrt(std::max(0.0, squaredRadius)); }
   bool operator==(const SphereShape&) const = default;
 };
@@ -68,7 +75,7 @@ template <class T = double>
 struct SegmentShape {
   static constexpr const char *kName = "segment", *kWords = "a lamp with a length";
   static constexpr int kUnknowns = 3, kLength = 1, kMostSteps = 60;
-  static constexpr bool kMayVanish = false;
+  static constexpr bool kMayVanish = false, kSearched = true;
   static constexpr double kLeast = 0, kRatioReserve = 1.3, kLargestRatio = 12;
   static constexpr double kLeastStep = 1e-7;                // of the distance: beyond round-off
   Eigen::Matrix<T, 3, 1> halfAxis{T(0.0), T(0.0), T(0.0)};  ///< from the centre to one end
@@ -76,6 +83,8 @@ struct SegmentShape {
   T* unknowns() { return halfAxis.data(); }
   SegmentShape times(double f) const { return {f * halfAxis, f * radius}; }
   SegmentShape over(double f) const { return {halfAxis / f, radius / f}; }
+  SegmentShape rotated(const Eigen::Matrix3d& r) const { return {r * halfAxis, radius}; }
+  std::vector<SegmentShape> aliases() const { return {{-halfAxis, radius}}; }
   double reach() const { return halfAxis.norm(); }
   bool operator==(const SegmentShape&) const = default;
 };
@@ -142,6 +151,17 @@ inline constexpr int kMostShapeUnknowns = 3;
 const char* nameOf(const LampShape& shape);
 /// One of each, from those with an extent to the point: what a search may try in turn.
 std::vector<LampShape> allLampShapes();
+/// What is known of a lamp's extent before it is fitted, in the units of its unknowns.
+struct ExtentGuess {
+  Eigen::Vector3d towards{0, 0, 1};                     ///< unit, from the scene to the lamp
+  double distance = 1;                                  ///< along it
+  std::optional<Eigen::Matrix<double, 3, 2>> halfAxes;  ///< across it, the longer one first: what residuals of a point promise
+};
+/// Shapes of this kind from which a search starts; empty unless its shape is kSearched.
+std::vector<LampShape> startsOf(const LampShape& kind, const ExtentGuess& guess);
+bool isSearched(const LampShape& kind);
+/// Other unknowns of the same lamp, such as a segment's with its ends exchanged.
+std::vector<LampShape> aliasesOf(const LampShape& shape);
 /// Shapes beside a point that a search may take where the contours show them, by their place in LampShape.
 using LampChoices = std::bitset<std::variant_size_v<LampShape>>;
 /// `auto` is all of them. None for "point" and for a name that is no shape's.
@@ -182,13 +202,14 @@ namespace lobe {
 struct State {
   Lamp lamp;
   double logRoughness = 0;
+  double logRatio = 0;  ///< of a lobe with two widths; 0 for others
 
-  double roughness() const { return std::exp(logRoughness); }
+  Roughness roughness() const { return {std::exp(logRoughness), logRatio == 0 ? 1 : std::exp(logRatio)}; }
   bool atInfinity() const { return lamp.atInfinity(); }
   bool isFinite() const;
   /// Length at the lamp that makes `share` of a lobe's width, normalised. Not finite at infinity.
-  double lengthOf(double share) const { return share * roughness() * lamp.centre.head<3>().norm() / lamp.centre.w(); }
-  /// L (4), log m (1), then the shape's own: places are compared by it.
+  double lengthOf(double share) const { return share * roughness().mean * lamp.centre.head<3>().norm() / lamp.centre.w(); }
+  /// L (4), log m (1), then the shape's own: places are compared by it (the ratio of two widths hardly moves the lamp).
   Eigen::VectorXd place() const;
   bool operator==(const State&) const = default;
 };

@@ -29,6 +29,14 @@ T tanSquared(const Eigen::MatrixBase<U>& a, const Eigen::MatrixBase<V>& b) {
   return (x * x + (y * y + z * z)) / (cosine * cosine);
 }
 
+/// tan^2 of a direction's angle to the normal, with its part along the tangent times `ratio` and that across it over `ratio`.
+template <class T>
+T stretchedTanSquared(const LobeAxes& axes, const Eigen::Matrix<T, 3, 1>& direction, double ratio) {
+  const Eigen::Vector3d aside = axes.normal.cross(axes.tangent);
+  const T x = axes.tangent.cast<T>().dot(direction), y = aside.cast<T>().dot(direction), z = axes.normal.cast<T>().dot(direction);
+  return (T(ratio) * (x * x) + y * y / T(ratio)) / (z * z);
+}
+
 /// Smith's Lambda for Beckmann slopes of width m.
 template <class T>
 T beckmannLambda(const T& roughness, const T& tan2) {
@@ -56,14 +64,16 @@ struct Factors {
   T over, under, exponent;
 };
 
-// The lobes. A new one is a struct here, a value of Lobe, and its case in withLobe(). t = tan^2 of the angle that the lobe falls with. Each says:
+// The lobes. A new one is a struct here, a value of Lobe, its case in withLobe(), and its place in allLobes(). t = tan^2 of the angle that the
+// lobe falls with; s is t as the two widths stretch it, and t itself for a lobe with one. Each says:
 //   isMicrofacet     it has masking and cosines
+//   hasTwoWidths     its roughness depends on the direction; for lobes that fall with the angle between N and H
 //   reaches          whether light from there is mirrored to the camera's side at all
 //   tanSquared       t for unit vectors N, L, V
-//   logDistribution  log D(m, t), or the log of the cosine power
+//   logDistribution  log D(m, t, s), or the log of the cosine power
 //   lambda           Smith's Lambda for tan^2 of a direction's angle to N
 //   constant         what of log I does not depend on the light; inverse = 1 / m^2, cosView = N.V
-//   factors          the rest, with masking = 1 + Lambda(V) + Lambda(L) for a microfacet lobe
+//   factors          the rest (m, 1 / m^2, t, s), with masking = 1 + Lambda(V) + Lambda(L) for a microfacet lobe
 //   fall             log of the value in the mirror direction over that at theta_h, rad
 //   roughnessOf      m of a lobe that has fallen by `depth` at theta_h
 //   largest          of log D over parts of a surface, in single precision
@@ -74,6 +84,7 @@ inline double logCosine(double theta) { return std::log(std::cos(theta)); }
 
 /// What the lobes that fall with the angle between N and H share.
 struct HalfVectorLobe {
+  static constexpr bool hasTwoWidths() { return false; }
   template <class T>
   static bool reaches(const Eigen::Matrix<T, 3, 1>&, const Eigen::Matrix<T, 3, 1>&, const Eigen::Matrix<T, 3, 1>&) {
     return true;
@@ -101,6 +112,7 @@ struct CosinePower {
 
 struct PhongLobe : CosinePower {
   static constexpr const char* kName = "phong";
+  static constexpr bool hasTwoWidths() { return false; }
   template <class T>
   static bool reaches(const Eigen::Matrix<T, 3, 1>& n, const Eigen::Matrix<T, 3, 1>& toLight,
                       const Eigen::Matrix<T, 3, 1>& toCamera) {
@@ -113,12 +125,12 @@ struct PhongLobe : CosinePower {
   }
   // log cos through tan keeps the digits near the peak, where cos is 1 to round-off.
   template <class T>
-  static T logDistribution(const T& m, const T& t) {
+  static T logDistribution(const T& m, const T& t, const T&) {
     using std::log1p;
     return T(-0.25) / (m * m) * log1p(t);
   }
   template <class T>
-  static Factors<T> factors(const T&, const T& inverse, const T& t, const T&) {
+  static Factors<T> factors(const T&, const T& inverse, const T& t, const T&, const T&) {
     using std::log1p;
     return {T(1.0), T(1.0), T(-0.25) * inverse * log1p(t)};
   }
@@ -141,12 +153,12 @@ struct PhongLobe : CosinePower {
 struct BlinnPhongLobe : HalfVectorLobe, CosinePower {
   static constexpr const char* kName = "blinn-phong";
   template <class T>
-  static T logDistribution(const T& m, const T& t) {
+  static T logDistribution(const T& m, const T& t, const T&) {
     using std::log1p;
     return T(2.0) / (m * m) * (T(-0.5) * log1p(t));
   }
   template <class T>
-  static Factors<T> factors(const T&, const T& inverse, const T& t, const T&) {
+  static Factors<T> factors(const T&, const T& inverse, const T& t, const T&, const T&) {
     using std::log1p;
     return {T(1.0), T(1.0), -inverse * log1p(t)};
   }
@@ -158,30 +170,38 @@ struct BlinnPhongLobe : HalfVectorLobe, CosinePower {
 /// log(1 + x). Unlike log1p it is computed eight at a time; what it loses (6e-8, absolute) is below the margin for round-off.
 inline Eight ofOneAnd(const Eight& x) { return (1 + x).log(); }
 
-/// Beckmann's distribution.
-struct TorranceSparrowLobe : HalfVectorLobe {
-  static constexpr const char* kName = "torrance-sparrow";
+/// What the lobes of slopes share: D = slopes / (pi m^2 cos^4 theta).
+struct MicrofacetLobe : HalfVectorLobe {
   static constexpr bool isMicrofacet() { return true; }
   template <class T>
-  static T logDistribution(const T& m, const T& t) {
+  static T logOverSlopes(const T& logSlopes, const T& m2, const T& t) {
     using std::log;
     using std::log1p;
-    const T m2 = m * m;
-    return -t / m2 - log(T(M_PI) * m2) - T(4.0) * (T(-0.5) * log1p(t));
-  }
-  template <class T>
-  static T lambda(const T& m, const T& tan2) {
-    return beckmannLambda<T>(m, tan2);
+    return logSlopes - log(T(M_PI) * m2) - T(4.0) * (T(-0.5) * log1p(t));
   }
   template <class T>
   static T constant(const T& inverse, const T& cosView) {
     using std::log;
     return log(inverse) - log(T(4 * M_PI) * cosView);
   }
+};
+
+/// Beckmann's distribution.
+struct TorranceSparrowLobe : MicrofacetLobe {
+  static constexpr const char* kName = "torrance-sparrow";
   template <class T>
-  static Factors<T> factors(const T&, const T& inverse, const T& t, const T& masking) {
+  static T logDistribution(const T& m, const T& t, const T& stretched) {
+    const T m2 = m * m;
+    return logOverSlopes<T>(-stretched / m2, m2, t);
+  }
+  template <class T>
+  static T lambda(const T& m, const T& tan2) {
+    return beckmannLambda<T>(m, tan2);
+  }
+  template <class T>
+  static Factors<T> factors(const T&, const T& inverse, const T& t, const T& stretched, const T& masking) {
     const T secant = T(1.0) + t;
-    return {secant * secant, masking, -t * inverse};
+    return {secant * secant, masking, -stretched * inverse};
   }
   static double fall(double m, double theta) { return squaredTangent(theta) / (m * m) + 4 * logCosine(theta); }
   static double roughnessOf(double theta, double depth) {
@@ -197,27 +217,21 @@ struct TorranceSparrowLobe : HalfVectorLobe {
   static Eight leastShadowed(float m, const Eight& cosView) { return cosView.max(0.27f * std::min(1.f, m)); }
 };
 
-struct GgxLobe : HalfVectorLobe {
+struct GgxLobe : MicrofacetLobe {
   static constexpr const char* kName = "ggx";
-  static constexpr bool isMicrofacet() { return true; }
   template <class T>
-  static T logDistribution(const T& m, const T& t) {
-    using std::log;
+  static T logDistribution(const T& m, const T& t, const T& stretched) {
     using std::log1p;
     const T m2 = m * m;
-    return T(-2.0) * log1p(t / m2) - log(T(M_PI) * m2) - T(4.0) * (T(-0.5) * log1p(t));
+    return logOverSlopes<T>(T(-2.0) * log1p(stretched / m2), m2, t);
   }
   template <class T>
   static T lambda(const T& m, const T& tan2) {
     return ggxLambda<T>(m, tan2);
   }
   template <class T>
-  static T constant(const T& inverse, const T& cosView) {
-    return TorranceSparrowLobe::constant<T>(inverse, cosView);
-  }
-  template <class T>
-  static Factors<T> factors(const T&, const T& inverse, const T& t, const T& masking) {
-    const T secant = T(1.0) + t, tail = T(1.0) + t * inverse;
+  static Factors<T> factors(const T&, const T& inverse, const T& t, const T& stretched, const T& masking) {
+    const T secant = T(1.0) + t, tail = T(1.0) + stretched * inverse;
     return {secant * secant, tail * tail * masking, T(0.0)};
   }
   static double fall(double m, double theta) { return 2 * std::log1p(squaredTangent(theta) / (m * m)) + 4 * logCosine(theta); }
@@ -240,12 +254,16 @@ struct GgxLobe : HalfVectorLobe {
 
 /// One that a plugin brought.
 struct ProfileLobe : HalfVectorLobe {
+  static constexpr const char* kName = "";  ///< addedLobeName() tells it
   const LobeProfile& profile;
   explicit ProfileLobe(const LobeProfile& p) : profile(p) {}
   bool isMicrofacet() const { return profile.isMicrofacet(); }
+  bool hasTwoWidths() const { return profile.hasTwoWidths(); }
   template <class T>
-  T logDistribution(const T& m, const T& t) const {
-    return addedDistribution<T>(profile, m, t);
+  T logDistribution(const T& m, const T& t, const T& stretched) const {
+    using std::log1p;
+    const T log = addedDistribution<T>(profile, m, stretched);
+    return hasTwoWidths() ? T(log + T(2.0) * log1p(t)) : log;
   }
   template <class T>
   T lambda(const T& m, const T& tan2) const {
@@ -257,11 +275,12 @@ struct ProfileLobe : HalfVectorLobe {
     return isMicrofacet() ? T(-log(T(4.0) * cosView)) : T(0.0);
   }
   template <class T>
-  Factors<T> factors(const T& m, const T&, const T& t, const T& masking) const {
-    return {T(1.0), masking, logDistribution<T>(m, t)};
+  Factors<T> factors(const T& m, const T&, const T& t, const T& stretched, const T& masking) const {
+    return {T(1.0), masking, logDistribution<T>(m, t, stretched)};
   }
   double fall(double m, double theta) const {
-    return profile.logDistribution(m, 0).value - profile.logDistribution(m, squaredTangent(theta)).value;
+    const double t = squaredTangent(theta);
+    return logDistribution<double>(m, 0, 0) - logDistribution<double>(m, t, t);
   }
   /// A wider lobe falls less at one angle: bisection in log m.
   double roughnessOf(double theta, double depth) const {
@@ -273,7 +292,7 @@ struct ProfileLobe : HalfVectorLobe {
     return std::exp(0.5 * (low + high));
   }
   Eight largest(double m, const PartBounds& parts) const {
-    if (m > kCheckedRoughness) return Eight::Constant(1e30f);  // no part is ruled out
+    if (m > kCheckedRoughness || hasTwoWidths()) return Eight::Constant(1e30f);  // no part is ruled out
     Eight log;
     for (Eigen::Index i = 0; i < log.size(); ++i)
       log[i] = float(profile.logDistribution(m, std::max(0.f, parts.tanSquared[i])).value);
@@ -296,17 +315,23 @@ decltype(auto) withLobe(Lobe lobe, F&& f) {
 
 /// The terms for unit vectors on the lit and visible side (N.L > 0, N.V > 0; the lobe reaches the camera), which the caller has checked.
 template <class T>
-Terms<T> terms(Lobe lobe, const T& m, const Eigen::Vector3d& n, const Eigen::Matrix<T, 3, 1>& toLight,
+Terms<T> terms(Lobe lobe, const RoughnessOf<T>& roughness, const LobeAxes& axes, const Eigen::Matrix<T, 3, 1>& toLight,
                const Eigen::Vector3d& toCamera) {
   using std::log;
   using std::log1p;
-  const Eigen::Matrix<T, 3, 1> normal = n.cast<T>(), view = toCamera.cast<T>();
+  const T& m = roughness.mean;
+  const double ratio = roughness.ratio;
+  const Eigen::Matrix<T, 3, 1> normal = axes.normal.cast<T>(), view = toCamera.cast<T>();
   return withLobe(lobe, [&](const auto& l) {
+    const bool two = l.hasTwoWidths() && ratio != 1;
+    const auto masked = [&](const Eigen::Matrix<T, 3, 1>& v) {
+      return l.template lambda<T>(m, two ? stretchedTanSquared<T>(axes, v, 1 / ratio) : tanSquared<T>(normal, v));
+    };
     Terms<T> out;
-    out.lobe = l.template logDistribution<T>(m, l.template tanSquared<T>(normal, toLight, view));
+    const T t = l.template tanSquared<T>(normal, toLight, view);
+    out.lobe = l.template logDistribution<T>(m, t, two ? stretchedTanSquared<T>(axes, toLight + view, ratio) : t);
     if (!l.isMicrofacet()) return out;
-    out.masking =
-        -log1p(l.template lambda<T>(m, tanSquared<T>(normal, toLight)) + l.template lambda<T>(m, tanSquared<T>(normal, view)));
+    out.masking = -log1p(masked(toLight) + masked(view));
     out.cosines = -log(T(4.0) * normal.dot(view));
     return out;
   });
@@ -319,14 +344,19 @@ template <class T>
 class LobeAt {
  public:
   using Value = Factors<T>;
-  LobeAt(Lobe lobe, const T& roughness, const Eigen::Vector3d& normal, const Eigen::Vector3d& toCamera)
+  LobeAt(Lobe lobe, const RoughnessOf<T>& roughness, const LobeAxes& axes, const Eigen::Vector3d& toCamera)
       : lobe_(lobe),
-        roughness_(roughness),
-        inverse_(T(1.0) / (roughness * roughness)),
-        normal_(normal.cast<T>()),
+        ratio_(roughness.ratio),
+        axes_(axes),
+        roughness_(roughness.mean),
+        inverse_(T(1.0) / (roughness_ * roughness_)),
+        normal_(axes.normal.cast<T>()),
         view_(toCamera.cast<T>()) {
     withLobe(lobe_, [&](const auto& l) {
-      if (l.isMicrofacet()) masking_ = T(1.0) + l.template lambda<T>(roughness_, tanSquared<T>(normal_, view_));
+      if (l.isMicrofacet())
+        masking_ = T(1.0) + l.template lambda<T>(roughness_, l.hasTwoWidths() && ratio_ != 1
+                                                                 ? stretchedTanSquared<T>(axes_, view_, 1 / ratio_)
+                                                                 : tanSquared<T>(normal_, view_));
       constant_ = l.template constant<T>(inverse_, normal_.dot(view_));
     });
   }
@@ -342,17 +372,37 @@ class LobeAt {
   Value towards(const Eigen::Matrix<T, 3, 1>& toLight) const {
     return withLobe(lobe_, [&](const auto& l) -> Value {
       const T t = l.template tanSquared<T>(normal_, toLight, view_);
-      if (!l.isMicrofacet()) return l.template factors<T>(roughness_, inverse_, t, T(1.0));
-      return l.template factors<T>(roughness_, inverse_, t,
+      if (l.hasTwoWidths() && ratio_ != 1) return withTwoWidths(l, t, toLight);
+      if (!l.isMicrofacet()) return l.template factors<T>(roughness_, inverse_, t, t, T(1.0));
+      return l.template factors<T>(roughness_, inverse_, t, t,
                                    T(masking_ + l.template lambda<T>(roughness_, tanSquared<T>(normal_, toLight))));
     });
   }
 
  private:
+  template <class Shape>
+  Value withTwoWidths(const Shape& l, const T& t, const Eigen::Matrix<T, 3, 1>& toLight) const {
+    const T stretched = stretchedTanSquared<T>(axes_, toLight + view_, ratio_);
+    const T lambda =
+        l.isMicrofacet() ? l.template lambda<T>(roughness_, stretchedTanSquared<T>(axes_, toLight, 1 / ratio_)) : T(0.0);
+    return l.template factors<T>(roughness_, inverse_, t, stretched, T(masking_ + lambda));
+  }
+
   Lobe lobe_;
+  double ratio_;
+  LobeAxes axes_;
   T roughness_, inverse_;  ///< m, 1 / m^2
   Eigen::Matrix<T, 3, 1> normal_, view_;
   T masking_{1.0}, constant_{0.0};
 };
 
 }  // namespace glint::lobe
+
+namespace glint {
+
+/// An upper bound of log I of one lobe under one light (method.md section 7, up to the light's constant) over eight parts of a
+/// surface. It holds for an extended light as well when the bounds allow for its points: its radiance is a mean of theirs.
+/// @param roughness  m > 0.
+Eight largestLogRadiance(Lobe lobe, const Roughness& roughness, const PartBounds& parts);
+
+}  // namespace glint

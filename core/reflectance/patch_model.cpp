@@ -65,7 +65,7 @@ int fillBasis(const PixelPatch& p, const FramePatches& frame, std::size_t i, Bac
       const Eigen::Vector3d towards = at.lamp.centre.head<3>() - at.lamp.centre.w() * p.seen[i].position;
       const double distance = towards.norm();
       // Up to the lamp's strength N.L / r^2, which is |w|^2 / distance^3 here; at infinity the distance is one.
-      const double lit = distance > 0 ? std::max(0.0, p.seen[i].normal.dot(towards)) / (distance * distance * distance) : 0;
+      const double lit = distance > 0 ? std::max(0.0, p.seen[i].axes.normal.dot(towards)) / (distance * distance * distance) : 0;
       row[0] = frame.top * lit;
       if (kind == BackgroundKind::Cosine) return 1;
       row[1] = u * row[0];
@@ -152,11 +152,13 @@ PixelPatch coarsened(const PixelPatch& fine) {
         p.used[i] = p.used[i] && fine.used[j];
         p.onSurface[i] = p.onSurface[i] && fine.onSurface[j];
         mean.position += fine.seen[j].position / 4;
-        mean.normal += fine.seen[j].normal;
+        mean.axes.normal += fine.seen[j].axes.normal;
+        mean.axes.tangent += fine.seen[j].axes.tangent;
         mean.toCamera += fine.seen[j].toCamera;
       }
       if (!p.onSurface[i]) continue;
-      p.seen[i] = {mean.position, mean.normal.normalized(), mean.toCamera.normalized()};
+      const Eigen::Vector3d normal = mean.axes.normal.normalized(), &tangent = mean.axes.tangent;
+      p.seen[i] = {mean.position, {normal, (tangent - tangent.dot(normal) * normal).normalized()}, mean.toCamera.normalized()};
       if (p.used[i]) p.top = std::max<double>(p.top, p.value[i]);
     }
   return p;
@@ -165,13 +167,13 @@ PixelPatch coarsened(const PixelPatch& fine) {
 LobeImage sharpImage(Lobe lobe, const FramePatches& frame, const State& at, const lobe::LampRule& rule) {
   LobeImage image;
   image.logTop = -std::numeric_limits<double>::infinity();
-  const double roughness = at.roughness();
+  const Roughness roughness = at.roughness();
   for (const PixelPatch& p : frame.patches) {
     std::vector<double>& values = image.value.emplace_back(p.size(), -std::numeric_limits<double>::infinity());
     for (std::size_t i = 0; i < p.size(); ++i) {
       if (!p.onSurface[i]) continue;
       const PixelPatch::Seen& s = p.seen[i];
-      const std::optional<double> log = lobe::logOfLamp<double>(lobe, roughness, s.position, s.normal, s.toCamera, at.lamp, rule);
+      const std::optional<double> log = lobe::logOfLamp<double>(lobe, roughness, s.position, s.axes, s.toCamera, at.lamp, rule);
       if (!log || !std::isfinite(*log)) continue;
       values[i] = *log;
       if (!p.used[i]) continue;

@@ -66,7 +66,8 @@ double criterion(const patch::Attempt& a, const patch::Normalised& evidence, Bac
 Lamp inWorld(const patch::State& at, const patch::Normalised& n) { return fromNormalised(at.lamp, n.origin, n.scale); }
 
 patch::State stateOf(const LobeModel& model, const patch::Normalised& n) {
-  return {{normalised(model.lamp, n.origin, n.scale), std::log(model.roughness)}, model.blurVariance};
+  const double logRatio = hasTwoWidths(model.lobe) ? std::log(model.roughness.ratio) : 0;
+  return {{normalised(model.lamp, n.origin, n.scale), std::log(model.roughness.mean), logRatio}, model.blurVariance};
 }
 
 /// Of the lobe in one look at all cells.
@@ -171,7 +172,7 @@ Outcome<std::vector<PatchSolution>> solvePatches(const std::vector<const PixelPa
     s.strength = solved.coefficients(0);
     const patch::LobeImage& image = pixels.images()[0];
     const PixelPatch::Seen& top = patches[image.topPatch]->seen[image.topCell];
-    s.topPoint = SurfacePoint{top.position, top.normal};
+    s.topPoint = SurfacePoint{top.position, top.axes.normal};
     s.background = patch::backgroundOf(n.frames[0].patches[k], n.frames[0], background, at,
                                        solved.coefficients.segment(1 + each * static_cast<Eigen::Index>(k), each));
     s.lobe = image.value[k];
@@ -248,8 +249,8 @@ bool describeAllPixels(const std::vector<const PixelPatch*>& patches, PixelFit& 
 }  // namespace
 
 Outcome<PixelFit> fitPixels(const std::vector<Lobe>& lobes, const std::vector<const PixelPatch*>& patches, const Lamp& lamp,
-                            double roughness, const PixelFitOptions& options) {
-  require(!lobes.empty() && roughness > 0 && std::isfinite(roughness), "fitPixels: lobes and roughness");
+                            const Roughness& roughness, const PixelFitOptions& options) {
+  require(!lobes.empty() && roughness > 0 && std::isfinite(roughness.mean), "fitPixels: lobes and roughness");
   Cells full(patches), coarse(patches);
   if (full.all().cells < 30)
     return Failure{Reason::TooFewPoints, "only " + std::to_string(full.all().cells) + " pixels can be used"};

@@ -23,7 +23,7 @@ const char* nameOf(BackgroundKind kind);
 /// A lobe and its lamp: all that the shape of a highlight follows from.
 struct LobeModel {
   Lobe lobe = Lobe::TorranceSparrow;
-  double roughness = 0.1;  ///< m
+  Roughness roughness = 0.1;  ///< m
   Lamp lamp;
   /// Of the images' blur beside the square that a pixel averages over, px^2. -1/12 where a pixel is the radiance at its centre alone.
   double blurVariance = 0;
@@ -78,11 +78,11 @@ struct PixelFit {
 /// background is chosen by the Bayesian information criterion, the lobe by the cost. The lamp keeps the shape of the start: a point,
 /// a sphere or a segment.
 /// @param lobes  tried in turn; the one with the least cost wins, a microfacet lobe where the costs do not tell
-/// @param lamp,roughness  start: what the contours say, which need not be close (clipped highlights)
+/// @param lamp,roughness  start (two widths keep their ratio, which contours find): what the contours say, which need not be close (clipped highlights)
 /// TooFewPoints; NotConverged; NoBrightestPoint where no lobe reaches the patches. Stopped.
 /// @see Golub, Pereyra, Separable nonlinear least squares, Inverse Problems 2003.
 Outcome<PixelFit> fitPixels(const std::vector<Lobe>& lobes, const std::vector<const PixelPatch*>& patches, const Lamp& lamp,
-                            double roughness, const PixelFitOptions& options = {});
+                            const Roughness& roughness, const PixelFitOptions& options = {});
 
 /// Whether a lamp with an extent is worth a trial beside this point: to first order it would take a tenth off the cost, or more than the
 /// noise of the independent cells explains; or what the point leaves has a pattern, as far too large a lamp makes it, where first order tells

@@ -60,9 +60,8 @@ bool joinWithSurface(PixelPatch& patch, std::size_t cell, const Pixel& ideal, co
   const Outcome<SurfacePoint> hit = surface.firstHit(patch.camera.ray(ideal));
   if (!hit || !hit->position.allFinite() || !hit->normal.allFinite()) return false;
   const Eigen::Vector3d eye = patch.camera.centreInWorld();
-  const SurfacePoint p = facing(*hit, eye);
   patch.onSurface[cell] = 1;
-  patch.seen[cell] = {p.position, p.normal, (eye - p.position).normalized()};
+  patch.seen[cell] = lobe::seenFrom(eye, surface, facing(*hit, eye));
   return true;
 }
 

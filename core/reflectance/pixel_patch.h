@@ -9,6 +9,7 @@
 #include "core/base/outcome.h"
 #include "core/geometry/camera.h"
 #include "core/highlight/highlight.h"
+#include "core/reflectance/lobe.h"
 #include "core/surface/surface.h"
 
 namespace glint {
@@ -26,12 +27,9 @@ LinearPixels linearPixels(const Image& linear, const Image* mask, double clipVal
 /// The pixels around one highlight as evidence of the radiance, averaged over square cells and joined with the surface that they
 /// show (method.md section 15, "Pixels").
 struct PixelPatch {
-  /// What a cell's centre shows. Positions in world, m; unit vectors away from the surface, the normal on the camera's side.
-  struct Seen {
-    Eigen::Vector3d position, normal, toCamera;
-  };
-  std::string light;  ///< whose highlight it is
-  int frame = 0;      ///< patches of one frame share the light's strength
+  using Seen = lobe::Seen;  ///< what a cell's centre shows
+  std::string light;        ///< whose highlight it is
+  int frame = 0;            ///< patches of one frame share the light's strength
   Camera camera;
   Pixel firstCell{0, 0};  ///< measured pixel of the centre of cell (0, 0)
   int cellPx = 1;         ///< side of a cell, px

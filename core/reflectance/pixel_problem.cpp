@@ -42,9 +42,10 @@ State alongShape(const State& at, int k, double step) {
   return moved;
 }
 
-State stateOf(double const* const* parameters, const LampShape& shape) {
-  State s;
-  s.lamp = {Eigen::Map<const Eigen::Vector4d>(parameters[0]).normalized(), shape};
+/// @param like  of the same shape and ratio of widths, which no block holds
+State stateOf(double const* const* parameters, const State& like) {
+  State s = like;
+  s.lamp.centre = Eigen::Map<const Eigen::Vector4d>(parameters[0]).normalized();
   s.logRoughness = *parameters[1];
   s.blurVariance = *parameters[2];
   const std::span<double> own = unknownsOf(s.lamp.shape);
@@ -61,14 +62,14 @@ State alongLight(const State& at, const Eigen::Vector4d& direction) {
 /// Robust residuals of all cells over blocksOf().
 class PixelCost final : public ceres::CostFunction {
  public:
-  PixelCost(PixelProblem& problem, const LampShape& shape, const ProgressFn& progress)
-      : problem_(problem), shape_(shape), progress_(progress) {
+  PixelCost(PixelProblem& problem, const State& start, const ProgressFn& progress)
+      : problem_(problem), start_(start), progress_(progress) {
     set_num_residuals(problem.residuals());
     *mutable_parameter_block_sizes() = {4, 1, 1};
-    if (const int own = unknownCount(shape); own > 0) mutable_parameter_block_sizes()->push_back(own);
+    if (const int own = unknownCount(start.lamp.shape); own > 0) mutable_parameter_block_sizes()->push_back(own);
   }
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
-    const State at = stateOf(parameters, shape_);
+    const State at = stateOf(parameters, start_);
     if (!(at.logRoughness < std::log(kNoHighlightRoughness)) || !(at.logRoughness > std::log(kMirrorRoughness))) return false;
     if (!std::visit([](const auto& s) { return s.kMayVanish || s.reach() > 0; }, at.lamp.shape)) return false;
     if (!goesOn()) return nothingLeft(residuals, jacobians);
@@ -110,14 +111,14 @@ class PixelCost final : public ceres::CostFunction {
   }
 
   PixelProblem& problem_;
-  LampShape shape_;
+  State start_;
   const ProgressFn& progress_;
   mutable bool stopped_ = false;  // the solver knows functions without a state only
 };
 
 /// One run of the solver with the quadrature of the moment.
 bool run(PixelProblem& problem, Attempt& a, const SolveOptions& options, bool atInfinity) {
-  PixelCost cost(problem, a.at.lamp.shape, options.progress);
+  PixelCost cost(problem, a.at, options.progress);
   ceres::Problem::Options ownership;
   ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   ceres::Problem ceres(ownership);

@@ -38,13 +38,14 @@ Eigen::AlignedBox2d centresSeen(const Camera& camera) {
 
 }  // namespace
 
-RadianceField::RadianceField(const Surface& surface, const Camera& camera, Lobe lobe, double roughness, const Lamp& lamp)
+RadianceField::RadianceField(const Surface& surface, const Camera& camera, Lobe lobe, const Roughness& roughness,
+                             const Lamp& lamp)
     : RadianceField(surface, camera, lobe, roughness, lamp, lobe::LampRule{}) {
   rule_ = lobe::lampRuleFor(lamp_.shape, lamp.isPoint() ? 0 : largestSizeRatio());
 }
 
-RadianceField::RadianceField(const Surface& surface, const Camera& camera, Lobe lobe, double roughness, const Lamp& lamp,
-                             const lobe::LampRule& rule)
+RadianceField::RadianceField(const Surface& surface, const Camera& camera, Lobe lobe, const Roughness& roughness,
+                             const Lamp& lamp, const lobe::LampRule& rule)
     : surface_(surface),
       camera_(camera),
       image_(centresSeen(camera)),
@@ -53,7 +54,7 @@ RadianceField::RadianceField(const Surface& surface, const Camera& camera, Lobe 
       roughness_(roughness),
       lamp_(lamp),
       rule_(rule) {
-  require(roughness > 0 && std::isfinite(roughness), "RadianceField: roughness must be positive");
+  require(roughness > 0 && std::isfinite(roughness.mean), "RadianceField: roughness must be positive");
 }
 
 /// Of the visible points where the lobe may show, on a coarse grid; where none of them is near the mirror direction, of the
@@ -79,8 +80,8 @@ double RadianceField::largestSizeRatio() const {
 std::optional<double> RadianceField::at(const SurfacePoint& p, double floor) const {
   const double seen = (eye_ - p.position).norm();
   if (!(seen > 0)) return std::nullopt;
-  const std::optional<double> log =
-      lobe::logOfLamp<double>(lobe_, roughness_, p.position, p.normal, (eye_ - p.position) / seen, lamp_, rule_);
+  const std::optional<double> log = lobe::logOfLamp<double>(lobe_, roughness_, p.position, axesAt(lobe_, surface_, p),
+                                                            (eye_ - p.position) / seen, lamp_, rule_);
   if (!log || !std::isfinite(*log)) return std::nullopt;
   const double total = *log;
   if (total < floor) return total;
@@ -227,7 +228,7 @@ double RadianceField::fallOfLobe(const SurfacePoint& p) const {
   // The light's point nearest to the mirror direction.
   const Eigen::Vector3d turn = offset.cross(mirrored).normalized();
   const Eigen::Vector3d toLight = Eigen::AngleAxisd(extent, turn) * offset.normalized();
-  const std::optional<LogRadiance> here = logRadiance(lobe_, roughness_, p.normal, toLight, toCamera);
+  const std::optional<LogRadiance> here = logRadiance(lobe_, roughness_, axesAt(lobe_, surface_, p), toLight, toCamera);
   const std::optional<LogRadiance> top = logRadiance(lobe_, roughness_, p.normal, p.normal, p.normal);
   return here && top ? top->lobe - here->lobe : std::numeric_limits<double>::infinity();
 }

@@ -35,9 +35,9 @@ class RadianceField {
  public:
   /// @param roughness  m > 0. The surface must outlive the field.
   /// @param lamp       a Light is a point. Shadows: where the lamp's centre is hidden, and both ends of a segment.
-  RadianceField(const Surface& surface, const Camera& camera, Lobe lobe, double roughness, const Lamp& lamp);
+  RadianceField(const Surface& surface, const Camera& camera, Lobe lobe, const Roughness& roughness, const Lamp& lamp);
   /// The same with a quadrature that the caller chose for the lamp's shape and size.
-  RadianceField(const Surface& surface, const Camera& camera, Lobe lobe, double roughness, const Lamp& lamp,
+  RadianceField(const Surface& surface, const Camera& camera, Lobe lobe, const Roughness& roughness, const Lamp& lamp,
                 const lobe::LampRule& rule);
 
   /// @param visible  a visible point, normal towards the camera.
@@ -75,7 +75,7 @@ class RadianceField {
   Eigen::AlignedBox2d image_;  ///< seenWindow, up to the centres of its outermost pixels
   Eigen::Vector3d eye_;
   Lobe lobe_;
-  double roughness_;
+  Roughness roughness_;
   Lamp lamp_;
   lobe::LampRule rule_;
 };

@@ -59,8 +59,8 @@ RadianceProblem::RadianceProblem(Lobe lobe, const std::vector<RadianceView>& vie
       radiusPx_(evidence.radiusPx),
       options_(options) {}
 
-State RadianceProblem::start(const Lamp& lamp, double roughness) const {
-  return {normalised(lamp, origin_, scale_), std::log(roughness)};
+State RadianceProblem::start(const Lamp& lamp, const Roughness& roughness) const {
+  return {normalised(lamp, origin_, scale_), std::log(roughness.mean), hasTwoWidths(lobe_) ? std::log(roughness.ratio) : 0};
 }
 
 Lamp RadianceProblem::inWorld(const State& state) const { return fromNormalised(state.lamp, origin_, scale_); }
@@ -93,8 +93,8 @@ void RadianceProblem::updateLogs(const State& state) {
 }
 
 void RadianceProblem::updatePeaks(const State& state, bool scan) {
-  const double roughness = state.roughness();
-  if (!std::isfinite(roughness) || !(roughness > 0) || !state.isFinite()) return;
+  const Roughness roughness = state.roughness();
+  if (!std::isfinite(roughness.mean) || !(roughness > 0) || !state.isFinite()) return;
   const Lamp lamp = inWorld(state);
   for (FramePeak& f : frames_) {
     const RadianceField field(*f.surface, f.camera, lobe_, roughness, lamp, rule_);
@@ -109,7 +109,8 @@ void RadianceProblem::updatePeaks(const State& state, bool scan) {
       continue;
     }
     const SurfacePoint& p = peaks.front().point;
-    f.at = Seen{(p.position - origin_) / scale_, p.normal, (f.camera.centreInWorld() - p.position).normalized()};
+    f.at = seenFrom(f.camera.centreInWorld(), *f.surface, p);
+    f.at->position = (p.position - origin_) / scale_;
     // Climb from the places of these maxima next time: cheaper, and a second one may become the strongest.
     if (scan) {
       f.starts.clear();
@@ -124,7 +125,7 @@ void RadianceProblem::updatePeaks(const State& state, bool scan) {
 /// g at a point, under the state of the last updatePeaks(); NaN where it is undefined.
 double RadianceProblem::root(const Evidence& e, const Seen& s, const State& state) const {
   const std::optional<LogAndSlopes>& peak = frame(e.frame).log;
-  const auto here = logOfLamp<double>(lobe_, state.roughness(), s.position, s.normal, s.toCamera, state.lamp, rule_);
+  const auto here = logOfLamp<double>(lobe_, state.roughness(), s.position, s.axes, s.toCamera, state.lamp, rule_);
   return here && peak ? rootOf(peak->value - *here, e.level) : std::numeric_limits<double>::quiet_NaN();
 }
 
@@ -280,8 +281,7 @@ Attempt RadianceProblem::solveFrom(const State& start) {
     DenseSolution solution;
     {
       ceres::Problem problem(ownership);
-      const Blocks all(a.state);
-      const std::vector<double*> blocks(all.at, all.at + (unknownCount(shape) > 0 ? 3 : 2));
+      const std::vector<double*> blocks = Blocks(a.state, lobe_).used();
       for (const Evidence& e : points_)
         problem.AddResidualBlock(costs.emplace_back(rootCost(shape, *this, e)).get(), &loss, blocks);
       if (a.state.atInfinity())
@@ -329,7 +329,7 @@ RadianceProblem::Probe RadianceProblem::probe(State state, const std::vector<Pro
   Eigen::VectorXd residuals(n);
   const auto values = [&](State s) {
     updateLogs(s);
-    const Blocks blocks(s);
+    const Blocks blocks(s, lobe_);
     Eigen::VectorXd v(n);
     for (Eigen::Index i = 0; i < n; ++i) (void)rootCost(s.lamp.shape, *this, points_[i])->Evaluate(blocks.at, &v(i), nullptr);
     return v;
@@ -339,7 +339,7 @@ RadianceProblem::Probe RadianceProblem::probe(State state, const std::vector<Pro
     jacobian.col(4 + k) = values(columns[k].grown) - values(columns[k].plain);
   }
   updateLogs(state);
-  const Blocks blocks(state);
+  const Blocks blocks(state, lobe_);
   for (Eigen::Index i = 0; i < n; ++i) {
     double byRoughness = 0;
     Eigen::RowVector4d byLight;

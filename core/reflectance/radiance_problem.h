@@ -34,7 +34,7 @@ class RadianceProblem {
   RadianceProblem(Lobe lobe, const std::vector<RadianceView>& views, ContourEvidence evidence, const RadianceFitOptions& options);
 
   /// Normalised from world coordinates and back.
-  State start(const Lamp& lamp, double roughness) const;
+  State start(const Lamp& lamp, const Roughness& roughness) const;
   Lamp inWorld(const State& state) const;
 
   /// The minimum that is reached from a state, with all unknowns of its shape free. A light at infinity stays there.

@@ -28,7 +28,7 @@ RadianceFit RadianceProblem::describe(const Attempt& a, std::size_t views) {
 
 /// Residuals, and what the Jacobian at the solution makes of their spread.
 void RadianceProblem::setUncertainty(State state, RadianceFit& fit) const {
-  const Eigen::Index own = unknownCount(state.lamp.shape), parameters = 4 + own;
+  const Eigen::Index own = unknownCount(state.lamp.shape), ratio = hasTwoWidths(lobe_) ? 1 : 0, parameters = 4 + own + ratio;
   Eigen::Matrix<double, 4, 3, Eigen::RowMajor> chart;  // ambient from tangent coordinates of L
   ceres::SphereManifold<4>().PlusJacobian(state.lamp.centre.data(), chart.data());
   Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(std::max<Eigen::Index>(points(), parameters), parameters);
@@ -38,13 +38,14 @@ void RadianceProblem::setUncertainty(State state, RadianceFit& fit) const {
   double sum = 0;
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const Evidence& e = points_[i];
-    double residual = 0, byRoughness = 0;
+    double residual = 0, byRoughness = 0, byRatio = 0;
     Eigen::RowVector4d byLight;
     Eigen::Matrix<double, 1, kMostShapeUnknowns> byShape = Eigen::Matrix<double, 1, kMostShapeUnknowns>::Zero();
-    double* slopes[] = {byLight.data(), &byRoughness, byShape.data()};
-    (void)rootCost(state.lamp.shape, *this, e)->Evaluate(Blocks(state).at, &residual, slopes);
+    double* slopes[] = {byLight.data(), &byRoughness, own > 0 ? byShape.data() : &byRatio, &byRatio};
+    (void)rootCost(state.lamp.shape, *this, e)->Evaluate(Blocks(state, lobe_).at, &residual, slopes);
     jacobian.row(i).head<4>() << byLight * chart, byRoughness;
-    jacobian.row(i).tail(own) = byShape.head(own);
+    jacobian.row(i).segment(4, own) = byShape.head(own);
+    if (ratio > 0) jacobian(i, parameters - 1) = byRatio;
     residuals.push_back(residual);
     views.push_back(e.view);
     sum += residual * residual;
@@ -75,9 +76,9 @@ void RadianceProblem::setUncertainty(State state, RadianceFit& fit) const {
   toWorld.topRightCorner<3, 1>() = origin_;
   const Eigen::Vector4d y = toWorld * state.lamp.centre;
   const Eigen::MatrixXd dy = toWorld * chart * root.topRows<3>();
-  Eigen::MatrixXd others = root.bottomRows(1 + own);
+  Eigen::MatrixXd others = root.bottomRows(1 + own + ratio);
   const int length = std::visit([](const auto& shape) { return shape.kLength; }, state.lamp.shape);
-  others.bottomRows(own) *= length == 2 ? scale_ * scale_ : scale_;
+  others.middleRows(1, own) *= length == 2 ? scale_ * scale_ : scale_;
   if (auto known = uncertaintyOfUnit(y, dy, others, spread.noisePx, spread.degreesOfFreedom)) fit.uncertainty = std::move(known);
 }
 

@@ -125,7 +125,8 @@ Json fitJson(const Inspection& inspection, const ModelResult::Fit& entry) {
     j["light_position"] = nullptr;
   }
   j["limit_angle_deg"] = f.limitAngle() ? numberOrNull(*f.limitAngle() * 180 / M_PI) : Json(nullptr);
-  j["roughness"] = lobe ? numberOrNull(lobe->roughness) : Json(nullptr);
+  j["roughness"] = lobe ? numberOrNull(lobe->roughness.mean) : Json(nullptr);
+  if (lobe && hasTwoWidths(lobe->lobe)) j["roughness_ratio"] = numberOrNull(lobe->roughness.ratio);
   if (contours && contours->extent) j["light_extent"] = rows(*contours->extent);
   if (lobe) {
     j["lobe"] = nameOf(lobe->lobe);

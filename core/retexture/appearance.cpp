@@ -234,7 +234,7 @@ double logPeakOf(const RadianceField& field, const std::vector<PixelPatch>& patc
   for (const PixelPatch& patch : patches)
     for (std::size_t i = 0; i < patch.size(); ++i) {
       if (!patch.onSurface[i]) continue;
-      const std::optional<double> log = field.at(SurfacePoint{patch.seen[i].position, patch.seen[i].normal});
+      const std::optional<double> log = field.at(SurfacePoint{patch.seen[i].position, patch.seen[i].axes.normal});
       if (log && *log > least) least = *log;
     }
   return least;

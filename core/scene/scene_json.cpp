@@ -47,7 +47,11 @@ void keep(Json& target, const std::string& key, Json value) {
 }
 
 const std::set<std::string> kCameraKeys = {"width", "height", "fx", "fy", "cx", "cy", "skew", "distortion", "model", "response"};
-const std::set<std::string> kLightKeys = {"id", "position", "direction", "segment", "radius"};
+std::set<std::string> lightKeys() {
+  std::set<std::string> keys{"id", "position", "direction", "radius"};
+  for (const PlacedShape& shape : placedShapes()) keys.insert(shape.name);
+  return keys;
+}
 
 // As the keys of cameras and frames (core/geometry/camera_json.cpp): they would move a surface, or all of the scene.
 const std::set<std::string> kSurfaceGeometry = {"world_from_surface",
@@ -306,7 +310,7 @@ Scene readSceneJson(const std::string& text, const fs::path& file, const ReadOpt
       scene.lights.push_back(readLightJson(node));
       const std::string& id = scene.lights.back().id;
       if (!lightIds.insert(id).second) node.at("id").fail("duplicate id '" + id + "'");
-      keep(lightRests, id, unknown.of(node, kLightKeys));
+      keep(lightRests, id, unknown.of(node, lightKeys()));
     }
   }
   keep(unknown.kept, "lights", lightRests);

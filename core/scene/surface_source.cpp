@@ -7,6 +7,7 @@
 #include "core/base/bounded_json.h"
 #include "core/base/found_file.h"
 #include "core/base/number_text.h"
+#include "core/base/overload.h"
 #include "core/base/plugin_hint.h"
 #include "core/geometry/pose_json.h"
 #include "core/scene/input_choices.h"
@@ -23,14 +24,6 @@ namespace fs = std::filesystem;
 using json_dom::Json;
 
 namespace {
-
-/// One function for the formula, one for files: an alternative that has none does not compile.
-template <class... F>
-struct Of : F... {
-  using F::operator()...;
-};
-template <class... F>
-Of(F...) -> Of<F...>;
 
 TriangleMesh meshOf(MeshContent content) {
   return {std::move(content.vertices), std::move(content.normals), std::move(content.triangles)};
@@ -71,14 +64,15 @@ SurfaceTriangles CapturePoints::triangles() const { return surfaceOf(*points, me
 
 const SurfaceFile* SurfaceSource::file() const {
   return std::visit(
-      Of{[](const SurfaceFile& f) { return &f; }, [](const AnalyticSpec&) -> const SurfaceFile* { return nullptr; }}, *this);
+      Overload{[](const SurfaceFile& f) { return &f; }, [](const AnalyticSpec&) -> const SurfaceFile* { return nullptr; }},
+      *this);
 }
 
 SurfaceTriangles SurfaceSource::triangles() const {
-  return std::visit(Of{[](const AnalyticSpec&) {
-                         return SurfaceTriangles{{}, "", Failure{Reason::NotSupported, "a formula has no triangles"}};
-                       },
-                       [](const auto& file) { return file.triangles(); }},
+  return std::visit(Overload{[](const AnalyticSpec&) {
+                               return SurfaceTriangles{{}, "", Failure{Reason::NotSupported, "a formula has no triangles"}};
+                             },
+                             [](const auto& file) { return file.triangles(); }},
                     *this);
 }
 
@@ -102,9 +96,9 @@ bool SurfaceSource::hasTrianglesOf(const SurfaceSource& other) const {
 }
 
 std::string SurfaceSource::kind() const {
-  return std::visit(
-      Of{[](const AnalyticSpec& s) { return "analytic " + s.type; }, [](const auto& file) { return std::string(file.kKind); }},
-      *this);
+  return std::visit(Overload{[](const AnalyticSpec& s) { return "analytic " + s.type; },
+                             [](const auto& file) { return std::string(file.kKind); }},
+                    *this);
 }
 
 namespace {

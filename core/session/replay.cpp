@@ -122,7 +122,7 @@ KeyResults keyResultsOf(const Inspection& inspection) {
         for (int i = 0; i < 3; ++i) results.emplace_back(fit + ".semi_axis_" + std::to_string(i), axes[i]);
       }
       if (f.fit->limitAngle()) results.emplace_back(fit + ".limit_angle_rad", *f.fit->limitAngle());
-      if (const auto* const lobe = f.fit->as<ReflectanceFit>()) results.emplace_back(fit + ".roughness", lobe->roughness);
+      if (const auto* const lobe = f.fit->as<ReflectanceFit>()) results.emplace_back(fit + ".roughness", lobe->roughness.mean);
     }
     const ModelSummary s = summarise(inspection, result);
     for (const auto& [what, count] : {std::pair<const char*, int>{"frames", s.frames},
@@ -165,7 +165,7 @@ std::string digestOf(const Inspection& inspection) {
       if (!f.fit) continue;
       if (const EllipsoidFit* const e = f.fit->as<EllipsoidFit>()) d.add(e->quadric.matrix);
       if (f.fit->limitAngle()) d.add(*f.fit->limitAngle());
-      if (const ReflectanceFit* const lobe = f.fit->as<ReflectanceFit>()) d.add(lobe->roughness);
+      if (const ReflectanceFit* const lobe = f.fit->as<ReflectanceFit>()) d.add(lobe->roughness.mean);
       for (const double r : f.fit->residualPx) d.add(r);
     }
     for (const FrameComparison& c : result.frames) {

@@ -21,6 +21,11 @@ std::vector<std::optional<SurfacePoint>> Surface::approximateHits(const std::vec
   return hits;
 }
 
+Eigen::Vector3d Surface::tangentAt(const SurfacePoint& p) const {
+  const Eigen::Vector3d around = Eigen::Vector3d::UnitY().cross(p.normal);
+  return around.norm() > 1e-6 ? around.normalized() : Eigen::Vector3d::UnitX();
+}
+
 namespace {
 
 class AnalyticSurface : public Surface {
@@ -65,6 +70,10 @@ class AnalyticSurface : public Surface {
     }
     if (!std::isfinite(best)) return Failure{Reason::SurfaceEnded, "the line misses the " + shape_->describe()};
     return pointAt(foot);
+  }
+
+  Vector3d tangentAt(const SurfacePoint& p) const override {
+    return worldFromLocal_.linear() * Surface::tangentAt({p.position, localFromWorld_.linear() * p.normal});
   }
 
   Outcome<Curvature> curvatureAt(const SurfacePoint& p) const override {

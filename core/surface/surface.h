@@ -79,6 +79,10 @@ class Surface {
   /// Principal curvatures at a point of this surface. NotSupported on facets.
   virtual Outcome<Curvature> curvatureAt(const SurfacePoint& p) const = 0;
 
+  /// Tangent that turns with the surface, unit, sign free: what brushed metal is rough along. The first direction of an analytic surface
+  /// (around its y axis), else y x N; where N is within 1e-6 of y, the x axis, both of the world.
+  virtual Eigen::Vector3d tangentAt(const SurfacePoint& p) const;
+
   /// True when the open segment between a surface point and another world point meets the surface.
   /// A neighbourhood of 1e-6 of the scene's size (or of the segment's length, if smaller) around `from` is ignored.
   virtual bool occluded(const SurfacePoint& from, const Eigen::Vector3d& to) const = 0;

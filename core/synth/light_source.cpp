@@ -101,6 +101,7 @@ std::vector<Sampled> reaching(const Surface& surface, const SurfacePoint& p, con
                               const Material& material) {
   const double distance = (eye - p.position).norm();
   const Eigen::Vector3d toCamera = (eye - p.position) / distance;
+  const LobeAxes axes = axesAt(material.lobe, surface, p);
   std::vector<Sampled> result;
   // H turns by half of what L turns, and across the plane of incidence by more at slanted incidence.
   double lobeWidth = 2 * material.roughness;
@@ -111,7 +112,7 @@ std::vector<Sampled> reaching(const Surface& surface, const SurfacePoint& p, con
     if (!(cosine > 0)) continue;
     if (surface.occluded(p, sample.target.value_or(beyondSurface(surface, p.position, sample.direction, distance)))) continue;
     result.push_back(
-        {std::log(sample.weight), cosine, logRadiance(material.lobe, material.roughness, p.normal, sample.direction, toCamera)});
+        {std::log(sample.weight), cosine, logRadiance(material.lobe, material.roughness, axes, sample.direction, toCamera)});
   }
   return result;
 }

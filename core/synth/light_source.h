@@ -14,7 +14,7 @@ namespace glint {
 /// What the surface is made of.
 struct Material {
   Lobe lobe = Lobe::TorranceSparrow;
-  double roughness = 0.1;            ///< m
+  Roughness roughness = 0.1;         ///< m
   double specular = 1;               ///< factor of the lobe (F, constant)
   Eigen::Vector3d diffuse{0, 0, 0};  ///< Lambert albedo per channel
 };

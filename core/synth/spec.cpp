@@ -110,7 +110,8 @@ Material readMaterial(const JsonNode& render) {
     if (!lobe) n->fail("'" + n->text() + "' is not one of: " + all);
     material.lobe = *lobe;
   }
-  if (const auto n = render.find("roughness")) material.roughness = inRange(*n, 1e-4, 10);
+  if (const auto n = render.find("roughness")) material.roughness.mean = inRange(*n, 1e-4, 10);
+  if (const auto n = render.find("roughness_ratio")) material.roughness.ratio = inRange(*n, 1e-2, 100);
   if (const auto n = render.find("specular")) material.specular = inRange(*n, 1e-12, 1e12);
   if (const auto n = render.find("diffuse")) {
     material.diffuse =

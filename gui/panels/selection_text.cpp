@@ -124,7 +124,7 @@ NumberGroup fitGroup(const std::string& model, const ModelResult::Fit& f, int fr
     if (f.fit->limitAngle()) lines.add(QObject::tr("limit angle"), *f.fit->limitAngle() * kDegPerRad, "deg");
     if (const ReflectanceFit* const lobe = f.fit->as<ReflectanceFit>()) {
       lines.add(QObject::tr("lobe"), QLatin1String(nameOf(lobe->lobe)));
-      lines.add(QObject::tr("roughness m"), lobe->roughness);
+      lines.add(QObject::tr("roughness m"), lobe->roughness.mean);
     }
     if (fitted && !fitted->singularValues.empty()) {
       lines.add(QObject::tr("gap ratio"), fitted->gapRatio);

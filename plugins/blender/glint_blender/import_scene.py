@@ -157,12 +157,13 @@ class Importer:
             for key in ("position", "direction"):
                 if light.get(key) is not None:
                     row[key] = scene_file.vector(light[key], 3, self.path, f"{place}.{key}")
-            if light.get("segment") is not None:
-                if not isinstance(light["segment"], list) or len(light["segment"]) != 2:
-                    raise InputError(self.path, f"{place}.segment", "must be two points")
-                row["segment"] = [scene_file.vector(p, 3, self.path, f"{place}.segment") for p in light["segment"]]
-            if len([k for k in ("position", "direction", "segment") if k in row]) != 1:
-                raise InputError(self.path, place, "must have a position, a direction or a segment")
+            for key, value in light.items():  # a shape that has its place by points: two ends, corners
+                if isinstance(value, list) and value and isinstance(value[0], list):
+                    if len(value) < 2:
+                        raise InputError(self.path, f"{place}.{key}", "must be two points or more")
+                    row["points"] = [scene_file.vector(p, 3, self.path, f"{place}.{key}") for p in value]
+            if len([k for k in ("position", "direction", "points") if k in row]) != 1:
+                raise InputError(self.path, place, "must have a position, a direction or the points of its shape")
             rows.append(row)
         return rows
 

@@ -77,30 +77,37 @@ def sun(name, direction, world):
     return object_
 
 
-def tube(name, ends, radius, world, towards):
-    """An area light as long and as wide as the tube, turned to the point `towards`. ends, towards: Glint's world. Blender has no tubes."""
-    a, b = (world.to_blender(end) for end in ends)
+def tube(name, points, radius, world, towards):
+    """An area light through the points that say a lamp's place: as long and as wide as a tube between two ends (Blender has no tubes), turned to the
+    point `towards`, or over the corners of a panel, in order around it. points, towards: Glint's world."""
+    points = [world.to_blender(point) for point in points]
+    a, b = points[:2]
     axis = linear.unit(linear.difference(b, a))
-    middle = [(x + y) / 2 for x, y in zip(a, b)]
+    middle = [sum(values) / len(points) for values in zip(*points)]
     back = linear.difference(middle, world.to_blender(towards))  # an area light shines along its -z
+    width = 2 * radius / world.scale
+    if len(points) > 2:
+        side = linear.difference(points[2], b)
+        normal, width = linear.cross(axis, linear.unit(side)), linear.length(side)
+        back = normal if linear.dot(normal, back) > 0 else linear.scaled(normal, -1)
     back = linear.difference(back, linear.scaled(axis, linear.dot(axis, back)))
     back = linear.unit(back) if linear.length(back) > 1e-9 else linear.frame_around(axis)[0]
     data = bpy.data.lights.new(name, "AREA")
     data.shape = "RECTANGLE"
     data.size = linear.length(linear.difference(b, a))
-    data.size_y = max(2 * radius / world.scale, 1e-4)  # Blender draws nothing narrower
+    data.size_y = max(width, 1e-4)  # Blender draws nothing narrower
     object_ = bpy.data.objects.new(name, data)
     object_.matrix_world = Matrix(linear.with_translation(linear.transposed([axis, linear.cross(back, axis), back]), middle))
     return object_
 
 
 def blender_light(name, light, world, towards):
-    """A Blender light for an entry of `lights`: keys position, direction or segment, and radius. towards: the middle of the scene."""
+    """A Blender light for an entry of `lights`: position, direction or the points of its shape, and radius. towards: the middle of the scene."""
     radius = light.get("radius") or 0.0
     if light.get("direction") is not None:
         object_ = sun(name, light["direction"], world)
-    elif light.get("segment") is not None:
-        object_ = tube(name, light["segment"], radius, world, towards)
+    elif light.get("points") is not None:
+        object_ = tube(name, light["points"], radius, world, towards)
     else:
         object_ = point_light(name, light["position"], radius, world)
     return object_

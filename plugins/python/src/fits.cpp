@@ -23,9 +23,33 @@ void declareLobe(py::class_<ModelFit>& fit) {
           "roughness",
           [](const ModelFit& f) {
             const ReflectanceFit* const lobe = f.as<ReflectanceFit>();
-            return lobe ? std::optional(lobe->roughness) : std::nullopt;
+            return lobe ? std::optional(lobe->roughness.mean) : std::nullopt;
           },
           "m of the lobe, or None.")
+      .def_property_readonly(
+          "roughness_ratio",
+          [](const ModelFit& f) {
+            const ReflectanceFit* const lobe = f.as<ReflectanceFit>();
+            return lobe && hasTwoWidths(lobe->lobe) ? std::optional(lobe->roughness.ratio) : std::nullopt;
+          },
+          "Width across the surface's tangent over that along it, of a lobe with two widths; else None.")
+      .def_property_readonly(
+          "lamp",
+          [](const ModelFit& f) -> py::object {
+            if (!f.lamp()) return py::none();
+            py::dict out;
+            out["shape"] = nameOf(f.lamp()->shape);
+            addLamp(*f.lamp(), out);
+            py::list outline;
+            for (const std::vector<Eigen::Vector3d>& chain : outlineOf(*f.lamp()))
+              outline.append(copyOf(Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>>(
+                  chain.front().data(), static_cast<Eigen::Index>(chain.size()), 3)));
+            out["outline"] = outline;
+            return std::move(out);
+          },
+          "The lamp of a model with a lobe, or None: dict of `shape`, its place (`position`, `direction`, or the points of its "
+          "shape, "
+          "world), `radius` and `outline`, a list of (n, 3) chains to draw.")
       .def_property_readonly(
           "light_radius", [](const ModelFit& f) { return f.lamp() ? std::optional(radiusOf(*f.lamp())) : std::nullopt; },
           "Radius of a spherical lamp, world units; 0 for a point or a tube; None for models without a lobe.")
@@ -132,6 +156,17 @@ void declarePrediction(py::module_& module) {
 }
 
 }  // namespace
+
+void addLamp(const Lamp& lamp, py::dict& out) {
+  for (const LampField& f : fieldsOf(lamp)) {
+    if (f.value.size() == 1) continue;
+    if (f.value.rows() == 1)
+      out[f.name.c_str()] = copyOf(Eigen::Vector3d(f.value.row(0)));
+    else
+      out[f.name.c_str()] = copyOf(f.value);
+  }
+  out["radius"] = radiusOf(lamp);
+}
 
 void declareFits(py::module_& module) {
   declareFit(module);

@@ -85,14 +85,7 @@ SurfaceHandle surfaceOf(const SceneHandle& s, const FrameName& frame, py::handle
 py::dict lightOf(const TrueLight& light) {
   py::dict out;
   out["id"] = light.id;
-  for (const LampField& f : fieldsOf(light.lamp)) {
-    if (f.value.size() == 1) continue;
-    if (f.value.rows() == 1)
-      out[f.name.c_str()] = copyOf(Eigen::Vector3d(f.value.row(0)));
-    else
-      out[f.name.c_str()] = copyOf(f.value);
-  }
-  out["radius"] = radiusOf(light.lamp);
+  addLamp(light.lamp, out);
   return out;
 }
 

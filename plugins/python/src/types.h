@@ -9,6 +9,7 @@
 
 #include "core/geometry/conic.h"
 #include "core/inspect/inspection.h"
+#include "core/reflectance/lamp.h"
 #include "core/report/report.h"
 #include "core/scene/scene.h"
 #include "core/surface/surface.h"
@@ -71,6 +72,9 @@ void declareLamps(py::module_& module);
 void declareRetexture(py::module_& module);
 void declareTradeoff(py::module_& module);
 void declareSynth(py::module_& module);
+
+/// What fieldsOf() says of a lamp, as keys of a dict; "radius" always.
+void addLamp(const Lamp& lamp, py::dict& out);
 
 }  // namespace glint::python
 

@@ -9,7 +9,7 @@
 
 #include "core/model/models.h"
 #include "core/model/radiance_star.h"
-#include "core/reflectance/radiance_bound.h"
+#include "core/reflectance/lobe_terms.h"
 #include "core/score/metrics.h"
 #include "core/surface/mesh.h"
 #include "tests/core/model/exact_views.h"

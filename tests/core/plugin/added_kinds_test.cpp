@@ -9,8 +9,7 @@
 #include "core/diagnose/candidates.h"
 #include "core/reflectance/added_lobe.h"
 #include "core/reflectance/light_radiance.h"
-#include "core/reflectance/lobe_width.h"
-#include "core/reflectance/radiance_bound.h"
+#include "core/reflectance/lobe_terms.h"
 #include "core/surface/analytic.h"
 #include "plugins/example/student_lobe.h"
 #include "plugins/example/superellipsoid.h"
@@ -48,6 +47,61 @@ TEST(AddedLobe, StudentOfGammaTwoIsGgx) {
     EXPECT_NEAR(widthOf(lobe, 0.2, level), widthOf(Lobe::Ggx, 0.2, level), 1e-12);
     EXPECT_NEAR(roughnessOf(lobe, 0.15, level), roughnessOf(Lobe::Ggx, 0.15, level), 1e-12);
   }
+}
+
+/// GGX without masking and without 1 / cos^4, as a lobe with two widths states it.
+class TwoWidths final : public LobeProfile {
+ public:
+  std::string name() const override { return "two-widths"; }
+  bool hasTwoWidths() const override { return true; }
+  bool isMicrofacet() const override { return false; }
+  ProfileValue logDistribution(double m, double t) const override {
+    const double base = m * m + t;
+    return {2 * std::log(m) - 2 * std::log(base) - std::log(M_PI), 2 / m - 4 * m / base, -2 / base};
+  }
+};
+
+// D of GGX with slopes of two widths (Walter, Heitz): 1 / (pi a b cos^4 (1 + tan^2 (cos^2 phi / a^2 + sin^2 phi / b^2))^2), about a turned
+// tangent.
+TEST(AddedLobe, HasTwoWidthsAboutTheTangent) {
+  const Lobe lobe = addLobe(std::make_unique<TwoWidths>());
+  const double along = 0.1, across = 0.3, turned = 0.4;
+  const Roughness roughness(std::sqrt(along * across), across / along);
+  const Eigen::Vector3d n(0, 0, 1), tangent(std::cos(turned), std::sin(turned), 0);
+  std::mt19937 random(3);
+  for (int i = 0; i < 200; ++i) {
+    const Eigen::Vector3d l = unit(random), v = unit(random), h = (l + v).normalized();
+    const double phi = std::atan2(h.y(), h.x()) - turned, tan2 = (1 - h.z() * h.z()) / (h.z() * h.z());
+    const double tail = 1 + tan2 * (std::pow(std::cos(phi) / along, 2) + std::pow(std::sin(phi) / across, 2));
+    const double expected = -std::log(M_PI * along * across * std::pow(h.z(), 4) * tail * tail);
+    const auto got = logRadiance(lobe, roughness, {n, tangent}, l, v);
+    ASSERT_TRUE(got);
+    EXPECT_NEAR(got->lobe, expected, 1e-11 * (1 + std::abs(expected)));
+    const auto value = lobe::LobeAt<double>(lobe, roughness, {n, tangent}, v).towards(l);
+    EXPECT_NEAR(std::log(value.over / value.under) + value.exponent, expected, 1e-11 * (1 + std::abs(expected)));
+    // Where both widths are one, it is the isotropic lobe, whatever the tangent.
+    EXPECT_NEAR(logRadiance(lobe, along, n, l, v)->lobe, logRadiance(Lobe::Ggx, along, n, l, v)->lobe,
+                1e-11 * (1 + std::abs(expected)));
+  }
+}
+
+// The tangent of an analytic surface turns with it; others have the world's direction around y.
+TEST(AddedLobe, TangentTurnsWithTheSurface) {
+  AnalyticSpec spec;
+  spec.type = "cylinder";
+  spec.radius = 1;
+  spec.worldFromSurface.linear() = Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
+  const auto surface = makeAnalytic(spec);
+  const Eigen::Vector3d axis = spec.worldFromSurface.linear().col(1), out = spec.worldFromSurface.linear().col(0);
+  const auto hit = surface->firstHit(Ray{3 * out, -out});
+  ASSERT_TRUE(hit);
+  const Eigen::Vector3d tangent = surface->tangentAt(*hit);
+  EXPECT_NEAR(std::abs(tangent.dot(axis.cross(out))), 1, 1e-12);  // around the axis
+  AnalyticSpec plane;
+  plane.type = "plane";
+  const auto flat = makeAnalytic(plane);
+  EXPECT_LT((flat->tangentAt({{0, 0, 0}, {0, 0, 1}}) - Eigen::Vector3d::UnitX()).norm(), 1e-15);
+  EXPECT_LT((flat->tangentAt({{0, 0, 0}, {0, 1, 0}}) - Eigen::Vector3d::UnitX()).norm(), 1e-15);
 }
 
 struct Dual {  // as ceres::Jet: a value `a` and a derivative

@@ -6,7 +6,6 @@
 
 #include "core/model/model.h"
 #include "core/reflectance/fit_search.h"
-#include "core/reflectance/lobe_width.h"
 #include "tests/core/reflectance/radiance_views.h"
 
 namespace glint {

@@ -6,9 +6,13 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
 
+#include "core/base/settings.h"
+#include "core/reflectance/added_lobe.h"
 #include "core/reflectance/light_radiance.h"
-#include "core/reflectance/lobe_width.h"
 
 namespace glint {
 namespace {
@@ -149,6 +153,35 @@ TEST(Lamp, SaysItselfInFilesWordsAndLines) {
   Eigen::Matrix<double, 2, 3> ends;
   ends << 0.1, 0.7, 2, 0.4, 1.1, 2;
   EXPECT_EQ(fieldsOf(rows[3].lamp)[0].value, ends);
+}
+
+// What cannot ask for the shapes, because it lies below them or is no program, names the same ones.
+TEST(Lamp, SettingsAndSchemaNameEveryShape) {
+  const auto choices = [](const char* key) {
+    const std::vector<std::string>& all = paramSpec(key).choices;
+    return std::set<std::string>(all.begin(), all.end());
+  };
+  std::set<std::string> shapes{"auto"}, lobes{"auto"};
+  for (const LampShape& shape : allLampShapes()) shapes.insert(nameOf(shape));
+  for (const Lobe lobe : allLobes())
+    if (!profileOf(lobe)) lobes.insert(nameOf(lobe));
+  EXPECT_EQ(choices("fit.light_size"), shapes);
+  EXPECT_EQ(choices("fit.lobe"), lobes);
+
+  std::ifstream file(GLINT_SOURCE_DIR "/resources/scene.schema.json");
+  const auto light = nlohmann::json::parse(file).at("$defs").at("light");
+  std::set<std::string> places{"position", "direction"}, keys{"id", "radius"}, required, stated;
+  for (const PlacedShape& shape : placedShapes()) {
+    places.insert(shape.name);
+    const auto& points = light.at("properties").at(shape.name);
+    EXPECT_EQ(points.at("minItems"), shape.points) << shape.name;
+    EXPECT_EQ(points.at("maxItems"), shape.points) << shape.name;
+  }
+  keys.insert(places.begin(), places.end());
+  for (const auto& one : light.at("oneOf")) required.insert(one.at("required").at(0));
+  for (const auto& [key, value] : light.at("properties").items()) stated.insert(key);
+  EXPECT_EQ(required, places);
+  EXPECT_EQ(stated, keys);
 }
 
 TEST(Lamp, MovesWithTheWorld) {

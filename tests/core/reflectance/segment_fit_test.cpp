@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A lamp with a length from contours. The frames integrate over a tube of 3 cm by another quadrature than the fit (24 nodes along
 // and 3 across it, every one with its own shadow).
-#include "core/reflectance/segment_fit.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "core/reflectance/extended_fit.h"
 #include "core/reflectance/fit_search.h"
-#include "core/reflectance/lobe_width.h"
 #include "tests/core/reflectance/radiance_views.h"
 
 namespace glint {
@@ -113,7 +111,7 @@ TEST(FitSegment, DegenerateAPointHasNoLength) {
 
 TEST(FitSegment, DegenerateTwoFramesCannotLeaveOneOut) {
   const RadianceScene s = longLamp(ellipsoidScene(2));
-  EXPECT_FALSE(fitSegment(kMicrofacets, radianceViews(s), nullptr, guess(), 0.1));
+  EXPECT_FALSE(fitExtended(SegmentShape<>{}, kMicrofacets, radianceViews(s), nullptr, guess(), 0.1));
 }
 
 }  // namespace

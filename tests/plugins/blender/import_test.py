@@ -207,6 +207,17 @@ class Lamps(unittest.TestCase):
         self.assertLess(-tube.matrix_world.to_3x3().col[2][2], -0.9)  # towards the scene
         self.assertGreater(tube.matrix_world.to_3x3().determinant(), 0)
 
+    def test_corners_are_an_area(self):
+        """A shape that has its place by corners, whatever its key is called."""
+        panel = {"id": "panel", "corners": [[0, 0, 2], [0.6, 0, 2], [0.6, 0.4, 2], [0, 0.4, 2]]}
+        read(write("corners", scene_with({"p": {"analytic": {"type": "plane"}}}, [panel])), scale=0.1)
+        light, = (o for o in bpy.context.scene.objects if o.type == "LIGHT")
+        self.assertEqual((light.data.type, light.data.shape), ("AREA", "RECTANGLE"))
+        self.assertAlmostEqual(light.data.size, 6.0, 5)
+        self.assertAlmostEqual(light.data.size_y, 4.0, 5)
+        self.assertEqual([round(c, 5) for c in light.matrix_world.translation], [3, 2, 20])
+        self.assertEqual([round(c, 5) for c in -light.matrix_world.to_3x3().col[2]], [0, 0, -1])  # it shines down
+
     def test_out_again(self):
         scene = read(write("lamps_out", scene_with({"p": {"analytic": {"type": "plane"}}}, self.LIGHTS)), axis_forward="X", axis_up="Y", scale=0.1)
         host.select(*[o for o in scene.objects if "glint_surface" in o])

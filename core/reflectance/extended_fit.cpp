@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/reflectance/segment_fit.h"
+#include "core/reflectance/extended_fit.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -8,43 +8,46 @@
 #include <set>
 
 #include "core/light/left_out.h"
-#include "core/reflectance/lobe_width.h"
 #include "core/reflectance/radiance_problem.h"
 
 namespace glint {
 namespace {
 
-constexpr double kSegmentGain = 0.2;     // of the sum of squares, before a length is believed
+constexpr double kExtentGain = 0.2;      // of the sum of squares, before an extent is believed
 constexpr std::size_t kLeastFrames = 3;  // that a comparison of left-out ones needs
 constexpr int kAxisScreenPoints = 16, kAxisScreenIterations = 20;
 constexpr std::size_t kPromisingAxes = 3;
 constexpr int kLeftOutPoints = 24;  // a view: enough to compare two models
-constexpr double kSameSegment =
-    1e-2;  // of a unit vector L, log m and the half axis over the distance: far less than a basin is wide
+constexpr double kSameExtent =
+    1e-2;  // of a unit vector L, log m and the half axes over the distance: far less than a basin is wide
 constexpr double kProbedLength = 0.4;  // of the lobe's width, as angles of the light: it would show little
-constexpr double kStartLength = 0.1;   // half the lamp's length over its distance
 // Where a lamp's length takes a part of the width that is seen, the lobe is narrower than the contours; both are tried.
 constexpr std::array<double, 2> kStartWidths{0.7, 0.35};
 
 struct Start {
   Lamp lamp;
-  double roughness = 0;
+  Roughness roughness;
   double cost = 0;    ///< mean robust square per point after a short fit, px^2
   lobe::State place;  ///< normalised
 
-  /// Both lead to the same minimum; a half axis has no sense.
+  /// Both lead to the same minimum.
   bool isNear(const Start& other) const {
-    lobe::State turned = other.place;
-    std::get<SegmentShape<>>(turned.lamp.shape).halfAxis *= -1;
     const Eigen::VectorXd at = place.place();
-    return std::min((at - other.place.place()).norm(), (at - turned.place()).norm()) < kSameSegment;
+    lobe::State same = other.place;
+    double nearest = (at - same.place()).norm();
+    for (const LampShape& alias : aliasesOf(other.place.lamp.shape)) {
+      same.lamp.shape = alias;
+      nearest = std::min(nearest, (at - same.place()).norm());
+    }
+    return nearest < kSameExtent;
   }
 };
 
 /// What a length across the direction to a point lamp promises.
 struct Promise {
-  double gain = 0;                    ///< of the sum of squares, px^2, to first order
-  Eigen::Vector3d halfAxis{0, 0, 0};  ///< normalised: what promises most
+  double gain = 0;  ///< of the sum of squares, px^2, to first order
+  Eigen::Matrix<double, 3, 2> halfAxes =
+      Eigen::Matrix<double, 3, 2>::Zero();  ///< normalised: what promises most, and what is left across it
 };
 
 Promise gainByLength(lobe::RadianceProblem& problem, const lobe::State& point) {
@@ -67,14 +70,18 @@ Promise gainByLength(lobe::RadianceProblem& problem, const lobe::State& point) {
       found.extra(1) + 0.5 * found.extra(2);
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(moment);
   if (!moment.allFinite() || !(eigen.eigenvalues()(1) > 0)) return {};
-  const Eigen::Vector2d main = eigen.eigenvectors().col(1);
-  return {found.gain, (main(0) * u + main(1) * v).normalized() * length * std::sqrt(eigen.eigenvalues()(1))};
+  Promise promise{found.gain};
+  for (int k = 0; k < 2; ++k) {
+    const Eigen::Vector2d axis = eigen.eigenvectors().col(1 - k);
+    promise.halfAxes.col(k) =
+        (axis(0) * u + axis(1) * v).normalized() * length * std::sqrt(std::max(0.0, eigen.eigenvalues()(1 - k)));
+  }
+  return promise;
 }
 
-/// Five axes across the direction to the lamp and towards it, and the one that the point's residuals promise; after short fits,
-/// best first, each minimum once. None that leads nowhere.
-std::vector<Start> screened(Lobe lobe, const std::vector<RadianceView>& views, const Light& light, double widthRad,
-                            const std::optional<Eigen::Vector3d>& promised, RadianceFitOptions options) {
+/// The starts of a kind of lamp after short fits, best first, each minimum once. None that leads nowhere.
+std::vector<Start> screened(const LampShape& kind, Lobe lobe, const std::vector<RadianceView>& views, const Light& light,
+                            double widthRad, const std::optional<Promise>& promised, RadianceFitOptions options) {
   options.pointsPerView = std::min(options.pointsPerView, kAxisScreenPoints);
   options.maxIterations = std::min(options.maxIterations, kAxisScreenIterations);
   Outcome<lobe::ContourEvidence> gathered = lobe::gatherEvidence(views, options.pointsPerView);
@@ -85,19 +92,13 @@ std::vector<Start> screened(Lobe lobe, const std::vector<RadianceView>& views, c
   if (!(centre.w() > 0))
     centre.w() = 0.3 * centre.head<3>().norm();  // at infinity a length has no meaning: some camera distances away
   centre.normalize();
-  const Eigen::Vector3d towards = centre.head<3>().normalized();
-  const double distance = centre.head<3>().norm() / centre.w();
-  const Eigen::Vector3d u = towards.unitOrthogonal(), v = towards.cross(u);
-  std::vector<Eigen::Vector3d> halfAxes;
-  if (promised) halfAxes.push_back(*promised);
-  for (int k = 0; k < 4; ++k)
-    halfAxes.emplace_back(kStartLength * distance * (std::cos(k * M_PI / 4) * u + std::sin(k * M_PI / 4) * v));
-  halfAxes.emplace_back(kStartLength * distance * (towards + u).normalized());
+  ExtentGuess guess{centre.head<3>().normalized(), centre.head<3>().norm() / centre.w(), {}};
+  if (promised) guess.halfAxes = promised->halfAxes;
   std::vector<Start> starts;
-  for (const Eigen::Vector3d& halfAxis : halfAxes)
+  for (const LampShape& shape : startsOf(kind, guess))
     for (const double share : kStartWidths) {
       from.logRoughness = std::log(roughnessOf(lobe, share * widthRad, views.front().level));
-      from.lamp.shape = SegmentShape<>{halfAxis, 0};
+      from.lamp.shape = shape;
       const lobe::Attempt a = problem.solve(from);
       if (!std::isfinite(a.cost) || !a.state.isFinite() || lobe::RadianceProblem::tooWide(a.state)) continue;
       if (problem.excess(a, lobe::kPoorShare) > lobe::kHopeless) continue;
@@ -130,13 +131,13 @@ std::vector<double> leftOutErrors(const RadianceFit& fit, const std::vector<Radi
 
 }  // namespace
 
-std::optional<RadianceFit> fitSegment(const std::vector<Lobe>& lobes, const std::vector<RadianceView>& views,
-                                      const RadianceFit* plain, const Light& light, double widthRad,
-                                      const RadianceFitOptions& options) {
+std::optional<RadianceFit> fitExtended(const LampShape& kind, const std::vector<Lobe>& lobes,
+                                       const std::vector<RadianceView>& views, const RadianceFit* plain, const Light& light,
+                                       double widthRad, const RadianceFitOptions& options) {
   std::set<int> frames;
   for (const RadianceView& v : views) frames.insert(v.frame);
   if (frames.size() < kLeastFrames || (plain && plain->noiseOnly)) return std::nullopt;
-  std::optional<Eigen::Vector3d> promised;
+  std::optional<Promise> promised;
   Light from = light;
   double width = widthRad;
   std::vector<Lobe> order = lobes;
@@ -145,9 +146,8 @@ std::optional<RadianceFit> fitSegment(const std::vector<Lobe>& lobes, const std:
     Outcome<lobe::ContourEvidence> gathered = lobe::gatherEvidence(views, options.pointsPerView);
     if (!gathered) return std::nullopt;
     lobe::RadianceProblem problem(plain->lobe, views, *std::move(gathered), options);
-    const Promise promise = gainByLength(problem, problem.start(plain->light(), plain->roughness));
-    if (!(promise.gain > kSegmentGain * plain->cost)) return std::nullopt;
-    promised = promise.halfAxis;
+    promised = gainByLength(problem, problem.start(plain->light(), plain->roughness));
+    if (!(promised->gain > kExtentGain * plain->cost)) return std::nullopt;
     from = plain->light();
     width = widthOf(plain->lobe, plain->roughness, views.front().level);
     std::stable_partition(order.begin(), order.end(), [&](Lobe l) { return l == plain->lobe; });
@@ -156,7 +156,7 @@ std::optional<RadianceFit> fitSegment(const std::vector<Lobe>& lobes, const std:
   const auto consider = [&](const Outcome<RadianceFit>& f) {
     if (f && (!best || f->cost < best->cost)) best = *f;
   };
-  for (const Start& s : screened(order.front(), views, from, width, promised, options)) {
+  for (const Start& s : screened(kind, order.front(), views, from, width, promised, options)) {
     consider(fitLamp(order.front(), views, s.lamp, s.roughness, options));
     if (best && best->noiseOnly) break;
   }
@@ -168,7 +168,7 @@ std::optional<RadianceFit> fitSegment(const std::vector<Lobe>& lobes, const std:
   }
   if (best->poor) return std::nullopt;
   if (!plain || plain->poor) return best->doubtful ? std::nullopt : best;
-  if (!(best->cost < (1 - kSegmentGain) * plain->cost)) return std::nullopt;
+  if (!(best->cost < (1 - kExtentGain) * plain->cost)) return std::nullopt;
   return predictsLeftOutBetter(leftOutErrors(*best, views, options), leftOutErrors(*plain, views, options)) ? best : std::nullopt;
 }
 
