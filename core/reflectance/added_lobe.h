@@ -18,31 +18,32 @@ struct ProfileValue {
 /// Up to this roughness a profile is checked when it is added; beyond it nothing relies on the check.
 inline constexpr double kCheckedRoughness = 0.8;
 
-/// A lobe beyond the four of lobe.h: a distribution of normals about N. log I = log D(m, t_h) and, for a microfacet lobe, the masking
-/// -log(1 + Lambda(L) + Lambda(V)) and the cosines -log(4 cos theta_V), as in LogRadiance. Functions are called from several threads.
+/// A lobe beyond the four of lobe.h: a distribution of normals about N. log I = log D(m, t_h) and, for a microfacet lobe, the
+/// masking -log(1 + Lambda(L) + Lambda(V)) and the cosines -log(4 cos theta_V), as in LogRadiance. Functions are called from
+/// several threads.
 class LobeProfile {
  public:
   virtual ~LobeProfile() = default;
   virtual std::string name() const = 0;  ///< as `fit.lobe` takes it: "student-t"
-  /// log D; for m <= kCheckedRoughness it may not rise with t, so that its value in the mirror direction is the largest. Any constant factor of D that does not
-  /// depend on m or t may be left out.
+  /// log D; for m <= kCheckedRoughness it may not rise with t, so that its value in the mirror direction is the largest. Any
+  /// constant factor of D that does not depend on m or t may be left out.
   virtual ProfileValue logDistribution(double roughness, double tanSquared) const = 0;
   virtual bool isMicrofacet() const { return true; }
   virtual ProfileValue lambda(double, double) const { return {}; }  ///< Smith's Lambda, >= 0
 };
 
-/// std::invalid_argument for a name that is taken or empty, and for a profile that rises, is not finite or whose derivatives differ from its
-/// differences (at a grid of m and t).
+/// std::invalid_argument for a name that is taken or empty, and for a profile that rises, is not finite or whose derivatives
+/// differ from its differences (at a grid of m and t).
 void checkLobe(const LobeProfile& profile);
-/// One more lobe, known to `fit.lobe` and to rendering; `fit.lobe=auto` tries it after the others. Not thread-safe: before anything asks
-/// for lobes. std::invalid_argument as checkLobe().
+/// One more lobe, known to `fit.lobe` and to rendering; `fit.lobe=auto` tries it after the others. Not thread-safe: call it
+/// before anything asks for lobes. std::invalid_argument as checkLobe().
 Lobe addLobe(std::unique_ptr<const LobeProfile> profile);
 /// Null for the four of lobe.h.
 const LobeProfile* profileOf(Lobe lobe);
 const char* addedLobeName(Lobe lobe);  ///< "" for the four of lobe.h
 /// All lobes in the order in which `fit.lobe=auto` tries them.
 const std::vector<Lobe>& allLobes();
-/// It has masking and cosines; false for the cosine powers.
+/// Whether the lobe has masking and cosines; false for the cosine powers.
 bool isMicrofacet(Lobe lobe);
 
 namespace lobe {

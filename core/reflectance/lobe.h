@@ -7,8 +7,8 @@
 
 namespace glint {
 
-/// Specular lobes. `roughness` is m: near the mirror direction every lobe falls as exp(-theta_h^2 / m^2). Plugins add further values
-/// (added_lobe.h), so a switch over these four has a default.
+/// Specular lobes. `roughness` is m: near the mirror direction every lobe falls as exp(-theta_h^2 / m^2). Plugins add further
+/// values (added_lobe.h), so a switch over these four has a default.
 enum class Lobe { Phong, BlinnPhong, TorranceSparrow, Ggx };
 
 /// phong, blinn-phong, torrance-sparrow, ggx, and those of plugins (added_lobe.h); nothing for another name.

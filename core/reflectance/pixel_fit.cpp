@@ -17,8 +17,8 @@ using patch::PixelProblem;
 constexpr double kSearchTolerance = 1e-4;   // of fits that only choose a start or a background
 constexpr double kMicrofacetMargin = 0.02;  // of the cost, by which a cosine power must be better than a microfacet lobe
 constexpr double kClearGain = 0.1;          // of the cost, before an extent or a blur is believed
-// Gain of the cost over its mean per independent cell, by up to three more parameters: noise alone exceeds this in one of a million
-// images (chi squared, three degrees of freedom).
+// Gain of the cost over its mean per independent cell, by up to three more parameters. Noise alone exceeds this in one of a
+// million images (chi squared, three degrees of freedom).
 constexpr double kBeyondNoise = 30;
 constexpr std::size_t kCoarseFrom = 400;  // cells of a patch, from which the search takes a quarter of them
 constexpr std::size_t kFewestFrom = 100;  // and below which no lamp is worth joining more
@@ -69,7 +69,7 @@ patch::State stateOf(const LobeModel& model, const patch::Normalised& n) {
   return {{normalised(model.lamp, n.origin, n.scale), std::log(model.roughness)}, model.blurVariance};
 }
 
-/// Of the lobe in one look at all cells.
+/// Evaluations of the lobe in one look at all cells.
 double evaluationsOf(const LobeModel& model, const patch::Normalised& evidence) {
   PixelProblem trial(evidence, model.lobe, BackgroundKind::None);
   trial.chooseRule(stateOf(model, evidence));
@@ -88,8 +88,8 @@ class Search {
     double criterion;
   };
 
-  /// The kinds of background with the lobe that comes first; then all lobes with all kinds, each from the best so far, and once more
-  /// from the best of all: a start far off may have held one back. Nothing where no lobe reaches the pixels.
+  /// The kinds of background with the lobe that comes first; then all lobes with all kinds, each from the best so far, and once
+  /// more from the best of all: a start far off may have held one back. Nothing where no lobe reaches the pixels.
   std::optional<Candidate> run(const std::vector<Lobe>& lobes, const patch::State& start) {
     for (const Lobe lobe : lobes) {
       const Candidate* best = least([](const Candidate&) { return true; });
@@ -212,7 +212,7 @@ Outcome<PixelFit> fitPixels(const std::vector<Lobe>& lobes, const std::vector<co
   if (!chosen) return Failure{Reason::NotConverged, "no lobe reaches the pixels from the contours' light"};
   int iterations = search.iterations();
 
-  // In full, as far as an extended lamp lets it, then with a blur where it shows.
+  // The full fit, as far as an extended lamp allows it, then with a blur where one shows.
   const patch::State found = chosen->attempt.at;
   const LobeModel start{chosen->lobe, found.roughness(), inWorld(found, few), 0};
   while (!lamp.isPoint() && evaluationsOf(start, full.all()) > kMostEvaluations &&
@@ -242,7 +242,7 @@ Outcome<PixelFit> fitPixels(const std::vector<Lobe>& lobes, const std::vector<co
   fit.model = {chosen->lobe, a.at.roughness(), inWorld(a.at, fine), a.at.blurVariance};
   fit.background = chosen->kind;
   fit.iterations = iterations;
-  // All pixels say what it leaves, so that fits can be compared.
+  // What a fit leaves is measured on all pixels, so that fits can be compared.
   const patch::Normalised whole = patch::normalised(patches);
   PixelProblem described(whole, chosen->lobe, chosen->kind);
   const patch::State at = stateOf(fit.model, whole);

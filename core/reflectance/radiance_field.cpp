@@ -19,7 +19,7 @@ constexpr double kLastMovePx = 3e-4;  // Newton's next move is about the square 
 constexpr double kSamePeakPx = 0.05;
 constexpr int kMaxSteps = 80;
 constexpr double kFirstStridePx = 4, kLongestStridePx = 40;  // of steps uphill where the field is not concave
-// Of the search without derivatives; a maximum at a kink is no better known than by its last steps.
+// Steps of the search without derivatives; a maximum at a kink is known no better than its last steps.
 constexpr double kFirstPatternPx = 4, kLeastPatternPx = 1e-4, kPatternShrink = 0.25;
 constexpr double kAtBorderPx = kStencilPx;  // closer to the border of its domain a climb goes on without derivatives
 
@@ -56,8 +56,8 @@ RadianceField::RadianceField(const Surface& surface, const Camera& camera, Lobe 
   require(roughness > 0 && std::isfinite(roughness), "RadianceField: roughness must be positive");
 }
 
-/// Of the visible points where the lobe may show, on a coarse grid; where none of them is near the mirror direction, of the
-/// nearest.
+/// Size ratio over the visible points where the lobe may show, on a coarse grid; where no point is near the mirror direction, at
+/// the nearest one.
 double RadianceField::largestSizeRatio() const {
   constexpr int kColumns = 12, kRows = 9;
   constexpr double kFoot = 7, kReserve = 1.25;  // log I below the lobe's top; for what lies between the grid's points
@@ -113,7 +113,7 @@ std::optional<RadiancePeak> RadianceField::climb(Pixel p, double marginPx) const
   int heading = 0;  // eighths of a turn
   double stride = kFirstStridePx;
   for (int step = 0; step < kMaxSteps && pattern > kLeastPatternPx; ++step) {
-    // Beside, above, and two corners: central differences of second order want no more.
+    // Beside, above, and two corners: central differences of second order need no more.
     std::optional<double> f[3][3];
     bool whole = true;
     for (const auto& [i, j] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, -1}}) {
@@ -152,7 +152,7 @@ std::optional<RadiancePeak> RadianceField::climb(Pixel p, double marginPx) const
     // The field ends in the stencil, or has a kink (flat facets): to better neighbours, closer and closer.
     for (; !moved && pattern > kLeastPatternPx; pattern *= moved ? 1 : kPatternShrink)
       for (int tried = 0; tried < 8 && step < kMaxSteps; ++tried) {
-        // The way that led on first, then the ways beside it.
+        // First the way that led on, then the ways beside it.
         const double a = (heading + (tried % 2 ? 1 : -1) * ((tried + 1) / 2)) * M_PI / 4;
         const Pixel q = p + pattern * Pixel(std::cos(a), std::sin(a));
         const std::optional<double> next = value(q);

@@ -9,8 +9,8 @@
 
 #include "core/reflectance/light_radiance.h"
 
-// Left to itself the compiler calls a function for every sum of dual numbers. With a sanitizer's checks in each of them one flat
-// function takes more than 46 minutes to compile.
+// By itself the compiler calls a function for every sum of dual numbers. One flat function with a sanitizer's checks in each sum
+// takes more than 46 minutes to compile.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define GLINT_FLATTEN
 #else
@@ -55,8 +55,8 @@ GLINT_FLATTEN std::optional<T> logOf(const RadianceProblem& problem, const Seen&
   return logOfShape(shape, problem.lobe(), roughness, s.position, s.normal, s.toCamera, light, problem.rule());
 }
 
-/// (g - sqrt(-log q)) in pixels, with its derivatives by dual numbers; g at the frame's peak is the problem's, of the same parameters.
-/// Parameter blocks: L (4), log m (1), then the shape's own.
+/// (g - sqrt(-log q)) in pixels, with its derivatives by dual numbers; g at the frame's peak is the problem's, of the same
+/// parameters. Parameter blocks: L (4), log m (1), then the shape's own.
 template <template <class> class Shape>
 class RootCost final : public ceres::CostFunction {
  public:

@@ -14,14 +14,14 @@
 namespace glint {
 namespace {
 
-constexpr double kSegmentGain = 0.2;     // of the sum of squares, before a length is believed
+constexpr double kSegmentGain = 0.2;     // of the sum of squares: what a length must gain before it is believed
 constexpr std::size_t kLeastFrames = 3;  // that a comparison of left-out ones needs
 constexpr int kAxisScreenPoints = 16, kAxisScreenIterations = 20;
 constexpr std::size_t kPromisingAxes = 3;
 constexpr int kLeftOutPoints = 24;  // a view: enough to compare two models
-constexpr double kSameSegment =
-    1e-2;  // of a unit vector L, log m and the half axis over the distance: far less than a basin is wide
-constexpr double kProbedLength = 0.4;  // of the lobe's width, as angles of the light: it would show little
+// Distance in the unit vector L, log m and the half axis over the distance: far less than a basin is wide.
+constexpr double kSameSegment = 1e-2;
+constexpr double kProbedLength = 0.4;  // of the lobe's width, as angles of the light: a shorter lamp would hardly show
 constexpr double kStartLength = 0.1;   // half the lamp's length over its distance
 // Where a lamp's length takes a part of the width that is seen, the lobe is narrower than the contours; both are tried.
 constexpr std::array<double, 2> kStartWidths{0.7, 0.35};
@@ -32,7 +32,7 @@ struct Start {
   double cost = 0;    ///< mean robust square per point after a short fit, px^2
   lobe::State place;  ///< normalised
 
-  /// Both lead to the same minimum; a half axis has no sense.
+  /// Whether both lead to the same minimum; a half axis and its opposite are the same.
   bool isNear(const Start& other) const {
     lobe::State turned = other.place;
     std::get<SegmentShape<>>(turned.lamp.shape).halfAxis *= -1;
@@ -56,7 +56,7 @@ Promise gainByLength(lobe::RadianceProblem& problem, const lobe::State& point) {
   const double length = point.lengthOf(kProbedLength);
   std::vector<lobe::RadianceProblem::ProbeColumn> columns;
   for (const Eigen::Vector3d& axis : {u, v, Eigen::Vector3d((u + v) / std::sqrt(2.0))}) {
-    // Against a segment too short to be seen: the sine of the angle to the axis is there for any length.
+    // Compared with a segment too short to be seen, because the sine of the angle to the axis is there for any length.
     columns.push_back({point, point});
     columns.back().grown.lamp.shape = SegmentShape<>{length * axis, 0};
     columns.back().plain.lamp.shape = SegmentShape<>{1e-3 * length * axis, 0};  // as good as a point
@@ -72,7 +72,7 @@ Promise gainByLength(lobe::RadianceProblem& problem, const lobe::State& point) {
 }
 
 /// Five axes across the direction to the lamp and towards it, and the one that the point's residuals promise; after short fits,
-/// best first, each minimum once. None that leads nowhere.
+/// best first, each minimum once. Those that lead nowhere are left out.
 std::vector<Start> screened(Lobe lobe, const std::vector<RadianceView>& views, const Light& light, double widthRad,
                             const std::optional<Eigen::Vector3d>& promised, RadianceFitOptions options) {
   options.pointsPerView = std::min(options.pointsPerView, kAxisScreenPoints);
