@@ -300,7 +300,7 @@ Outcome<DepthRefinement> refineDepth(const std::vector<BundleView>& given, const
       distance += here->depth * here->ray.norm();
     }
   }
-  // A depth that is off leaves residuals that keep their sign along contours.
+  // A wrong depth leaves residuals that keep their sign along contours.
   const bool systematic = bundle->rmsPx > refining::kLeastNoisePx && bundle->uncertainty &&
                           bundle->uncertainty->degreesOfFreedom < refining::kSystematic * double(problem.points.size());
   if (!systematic || problem.points.size() < 4 + DepthCorrection::kTerms) return result;
@@ -313,7 +313,8 @@ Outcome<DepthRefinement> refineDepth(const std::vector<BundleView>& given, const
   state.light.normalize();
   state.limit = bundle->limitAngle;
   const Terms prior = priors(sigma);
-  // As many terms as predict views that were left out better: free terms that nothing asks for would trade noise between depth and light.
+  // As many terms as predict views that were left out better: free terms that the views do not need would move noise between
+  // depth and light.
   int terms = 0;
   std::vector<double> best = leftOutErrors(problem, state, prior, 0, options.robustPx);
   for (const int more : {6, DepthCorrection::kTerms}) {  // up to second, up to fourth degree
