@@ -41,7 +41,7 @@ struct SurfacePart {
 class BoundedParts {
  public:
   virtual ~BoundedParts() = default;
-  /// All parts inside the view that the test does not rule out and that the eye can see; also some that it cannot.
+  /// All parts inside the view that the test does not rule out and that the eye can see, and some that it cannot see.
   /// @param lightReach  how far the points of an extended light lie from query.light.head<3>(), in its homogeneous units.
   /// Nothing where the surface has no continuous normals, or when more than `most` parts remain.
   virtual std::optional<std::vector<SurfacePart>> partsThatMay(const MirrorQuery& query, double lightReach, const PartTest& test,
