@@ -51,7 +51,8 @@ class Canonical final : public HighlightModel {
     for (const TrainingView& v : input.views) {
       std::optional<ConicView> outline = outlineIn(v);
       if (!outline) continue;
-      // On the tangent plane the contour is larger than in the photograph, and so are its noise and what the ellipsoid leaves of it.
+      // On the tangent plane the contour is larger than in the photograph, and so are its noise and what the ellipsoid leaves of
+      // it.
       const double canonicalRadius = std::sqrt(outline->ellipse.semiAxes.prod());
       used.push_back(usedContour(v, canonicalRadius / radiusPx(v.highlight.contour)));
       conics.push_back(*std::move(outline));
@@ -65,7 +66,8 @@ class Canonical final : public HighlightModel {
     std::get<EllipsoidFit>(fit.family).limitAngle = input.light->limitAngle;
     fit.hints = hintsOf(input);
     if (fit.uncertainty && input.light->uncertainty) {
-      // The light moves the prediction on its own as well. Taken as independent: the contours' noise enters both, through different residuals.
+      // The light moves the prediction on its own as well. The two count as independent: the contours' noise enters both, through
+      // different residuals.
       const Eigen::MatrixXd ellipsoid = fit.uncertainty->root, lamp = parameters::kLight.of(input.light->uncertainty->root);
       Eigen::MatrixXd& root = fit.uncertainty->root;
       root = Eigen::MatrixXd::Zero(ellipsoid.rows() + lamp.rows(), ellipsoid.cols() + lamp.cols());
@@ -109,9 +111,9 @@ class Canonical final : public HighlightModel {
       outlineOf(*h.canonical, h);
       if (patch) h.curvatureVariation = curvatureVariation(*patch, *surface, *h.canonical);
       h.ellipse = h.canonical->ellipse;
-      h.canonical->ellipse = *e;  // on T: what the viewer draws there
+      h.canonical->ellipse = *e;  // on T, for the viewer
       if (h.contour.points.size() < 3) {
-        // Too little to close a contour; the first named reason tells why.
+        // Too few directions close a contour; the first named reason tells why.
         for (const DirectionResult& d : h.canonical->directions)
           if (d.failure) {
             why = d.failure;
