@@ -49,7 +49,7 @@ void keep(Json& target, const std::string& key, Json value) {
 const std::set<std::string> kCameraKeys = {"width", "height", "fx", "fy", "cx", "cy", "skew", "distortion", "model", "response"};
 const std::set<std::string> kLightKeys = {"id", "position", "direction", "segment", "radius"};
 
-// As the keys of cameras and frames (core/geometry/camera_json.cpp): they would move a surface, or all of the scene.
+// Like the keys of cameras and frames (core/geometry/camera_json.cpp): they would move a surface, or the whole scene.
 const std::set<std::string> kSurfaceGeometry = {"world_from_surface",
                                                 "world_from_mesh",
                                                 "surface_from_world",
@@ -137,7 +137,7 @@ Highlight readHighlight(const JsonNode& node, const Camera& camera) {
     h.contour.points.push_back(ideal(contour.at(i)));
   }
   h.peak = ideal(node.at("peak"));
-  // One orientation for all contours, whoever wrote them; the first point stays first.
+  // One orientation for all contours, whatever program wrote them; the first point stays first.
   const double area = signedArea(h.contour);
   if (area < 0) std::reverse(h.contour.points.begin() + 1, h.contour.points.end());
   h.areaPx2 = std::abs(area);

@@ -11,7 +11,7 @@ namespace glint {
 namespace fs = std::filesystem;
 
 namespace {
-constexpr std::size_t kMostFolders = 100;  // every frame is looked for in each; a user names one or two of a kind
+constexpr std::size_t kMostFolders = 100;  // each frame is looked for in all of them; a user names one or two of a kind
 
 fs::path pathOf(const JsonNode& node, const fs::path& folder) {
   const std::string text = node.text();
@@ -41,7 +41,7 @@ SessionInput readSessionInput(const JsonNode& root, const fs::path& folder) {
   const JsonNode input = root.at("input");
   SessionInput result;
   result.scene = pathOf(input.at("path"), folder);
-  if (const auto n = input.find("allow_outside")) n->boolean();  // what a session says about its own rights counts for nothing
+  if (const auto n = input.find("allow_outside")) n->boolean();  // a session's own statement about its rights does not count
   if (const auto n = input.find("photographs"); n && !n->isNull())
     result.folders.push_back({FrameFile::Photograph, pathOf(*n, folder)});
   const auto all = input.find("folders");
@@ -63,7 +63,7 @@ SessionInput readSessionInput(const JsonNode& root, const fs::path& folder) {
 std::vector<fs::path> foldersOfSession(const fs::path& session, const fs::path& scene, const std::vector<fs::path>& named) {
   std::vector<fs::path> folders = named;
   if (!session.empty()) folders.push_back(fs::absolute(session).lexically_normal().parent_path());
-  std::error_code ignored;  // what cannot be asked about is a file
+  std::error_code ignored;  // a path that cannot be looked at counts as a file
   folders.push_back(fs::is_directory(scene, ignored) ? scene : scene.parent_path());
   for (fs::path& folder : foldersOfCapture(scene)) folders.push_back(std::move(folder));
   return folders;
@@ -81,7 +81,7 @@ void require(bool lies, const fs::path& path, const std::string& file, const std
 }  // namespace
 
 void requireSceneFile(const fs::path& scene, const std::string& session) {
-  std::error_code ignored;  // what cannot be asked about is no folder
+  std::error_code ignored;  // a path that cannot be looked at counts as no folder
   if (fs::is_directory(scene, ignored))
     throw InputError(session, "input.path", "'" + scene.string() + "' is a folder; name the scene file");
 }

@@ -11,16 +11,17 @@
 
 namespace glint {
 
-/// 1: the first. 2: `tradeoff` may stand in it; a file of version 1 reads as one without. 3: `input.folders` for every kind of file and
-/// `view.more_cameras`; the one folder of photographs that older ones name (`input.photographs`) is the first of them.
-/// 4: `input.reading`, how a capture of another program is read.
+/// Version 1 was the first. 2: `tradeoff` may stand in it; a file of version 1 reads as one without. 3: `input.folders` for every
+/// kind of file and `view.more_cameras`; the one folder of photographs that older ones name (`input.photographs`) is the first of
+/// them. 4: `input.reading`, how a capture of another program is read.
 inline constexpr int kSessionVersion = 4;
 
-/// The version of a session's document. InputError when the document is no session (a scene is named as such), or of a version newer than
-/// this program's, or of one that never existed.
+/// The version of a session's document. InputError when the document is no session (a scene is named as such), or its version is
+/// newer than this program's or never existed.
 int readSessionVersion(const JsonNode& root);
 
-/// What the `input` of a session names, absolute. A session comes from others: `requirePermitted` before anything of it is looked at.
+/// What the `input` of a session names, absolute. A session comes from others: call `requirePermitted` before anything that it
+/// names is looked at.
 struct SessionInput {
   std::filesystem::path scene;                          ///< a file, see requireSceneFile(); may lie anywhere
   std::vector<FilesFolder> folders;                     ///< in which frames' files are looked for, in the session's order

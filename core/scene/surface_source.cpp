@@ -23,7 +23,7 @@ using json_dom::Json;
 
 namespace {
 
-/// One function for the formula, one for files: an alternative that has none does not compile.
+/// One function for the formula, one for files: an alternative without a function does not compile.
 template <class... F>
 struct Of : F... {
   using F::operator()...;
