@@ -65,7 +65,7 @@ Outcome<std::vector<Highlight>> exactHighlights(const Surface& surface, const Ca
   if (limit && !light.lamp.isPoint()) return Failure{Reason::NotSupported, "a limit angle needs a point light"};
   const Light centre = lightOf(light.lamp);  // stands for the lamp where one direction is needed (seeds, limit angles)
 
-  // The larger, the brighter: log I, or -alpha.
+  // The brightness by which peaks are compared: log I, or -alpha.
   const auto brightness = [&](const Pixel& pixel) -> std::optional<double> {
     if (!limit) return logSpecular(surface, camera, pixel, light, material);
     const Ray ray = camera.ray(pixel);
