@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `glint lights --on`: which lamps are on, against synthetic frames whose lamps were switched by hand. Nine frames name their lamp; six do not.
+// `glint lights --on`: which lamps are on, against synthetic frames whose lamps were switched by hand. Nine frames name their
+// lamp; six do not.
 #include <gmock/gmock.h>
 
 #include <Eigen/Geometry>
@@ -58,7 +59,8 @@ Answer answerOf(const std::string& csv) {
 
 class LampsOnTest : public testing::Test {
  protected:
-  /// Makes the frames, takes what is on from all but the first nine, and asks. @param scale  of the scene. @param noise  of the pixels
+  /// Makes the frames, takes what is on from all but the first nine, and asks. @param scale  of the scene. @param noise  of the
+  /// pixels
   Answer ask(double scale, double noise) {
     Json frames = Json::array();
     for (std::size_t i = 0; i < kOn.size(); ++i) {

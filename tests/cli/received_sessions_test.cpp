@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A session that came from somebody else has no rights of its own: what it names outside of its folder and its scene's is not looked at
-// until the person at this command line says so.
+// A session that came from somebody else has no rights of its own: what it names outside of its folder and its scene's is not
+// looked at until the person at this command line says so.
 #include <gmock/gmock.h>
 
 #include "tests/cli/small_scene.h"

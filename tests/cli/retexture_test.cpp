@@ -70,7 +70,8 @@ class Retexture : public testing::Test {
   inline static std::unique_ptr<TemporaryFolder> made_;
 };
 
-/// docs/retexture.md: against exact renderings, a model without a lobe loses half of a GGX highlight's light, and 7 % of a Beckmann one's.
+/// docs/retexture.md: against exact renderings, a model without a lobe loses half of a GGX highlight's light, and 7 % of a
+/// Beckmann one's.
 TEST_F(Retexture, ATailThatPassesForBackgroundIsWarnedOf) {
   for (const bool tail : {true, false}) {
     const TemporaryFolder folder;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `glint detect` and bright texture: a glossy ball made by `glint synth`, with two spots painted into its pictures here, so that it is known which is which.
+// `glint detect` and bright texture: a glossy ball made by `glint synth`, with two spots painted into its pictures here, so that
+// it is known which is which.
 #include <gmock/gmock.h>
 
 #include <Eigen/Geometry>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `glint synth` writes inside the folder that was named, whatever the specification calls its frames and meshes, and nothing at all
-// when the specification is wrong.
+// `glint synth` writes inside the folder that was named, whatever the specification calls its frames and meshes, and nothing at
+// all when the specification is wrong.
 #include <gmock/gmock.h>
 
 #include <sstream>

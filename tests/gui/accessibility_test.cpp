@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// For who works by keyboard, hears the window or sees it badly: every control has a name, icons say what they do, pictures say what they show.
+// For who works by keyboard, hears the window or sees it badly: every control has a name, icons say what they do, pictures say
+// what they show.
 #include <QAbstractButton>
 #include <QAbstractItemView>
 #include <QAbstractSlider>

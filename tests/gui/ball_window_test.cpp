@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Photographs of mirror balls in their window, by real drags and clicks: outlines that are drawn and dragged, lamps whose truth is the reflection law
-// written out here, and the same answer to the last bit as the command line's.
+// Photographs of mirror balls in their window, by real drags and clicks: outlines that are drawn and dragged, lamps whose truth
+// is the reflection law written out here, and the same answer to the last bit as the command line's.
 #include "gui/lamps/ball_window.h"
 
 #include <QApplication>
@@ -43,7 +43,8 @@ const std::vector<Eigen::Vector3d> kTrueLamps{Eigen::Vector3d(0.5, -0.4, -0.8).n
                                               Eigen::Vector3d(-0.6, 0.3, -0.6).normalized(),
                                               Eigen::Vector3d(0.2, 0.5, -0.7).normalized()};
 
-/// Dark balls before a bright wall, each with the clipped reflection of a distant lamp: its normal halves the angle to the camera.
+/// Dark balls before a bright wall, each with the clipped reflection of a distant lamp: its normal halves the angle to the
+/// camera.
 QImage shotUnder(const Eigen::Vector3d& lamp) {
   QImage image(520, 260, QImage::Format_RGB888);
   const Eigen::Vector2d normal = (lamp - Eigen::Vector3d::UnitZ()).normalized().head<2>();

@@ -190,7 +190,8 @@ class DiagnosisTest : public QObject {
     QVERIFY(document.request() == clicked);
   }
 
-  /// A better model that is there already: "Try" selects it, the verdict is then about that one, and offers nothing that is on screen.
+  /// A better model that is there already: "Try" selects it, the verdict is then about that one, and offers nothing that is on
+  /// screen.
   void anotherModelIsSelectedAndTheVerdictIsAboutIt() {
     Document document(parseTrainSpec);
     DiagnosisPanel panel(document);
@@ -285,7 +286,8 @@ class DiagnosisTest : public QObject {
     QCOMPARE(panel.list()->topLevelItemCount(), 0);
   }
 
-  /// From a change until its results are there: at every moment the list is of one state, whatever was asked and is selected meanwhile.
+  /// From a change until its results are there: at every moment the list is of one state, whatever was asked and is selected
+  /// meanwhile.
   void causesOfTwoStatesNeverStandBesideEachOther() {
     Document document(parseTrainSpec);
     DiagnosisPanel panel(document);

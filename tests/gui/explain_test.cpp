@@ -123,7 +123,8 @@ class ExplainTest : public QObject {
     QVERIFY(!window_->findChild<SymbolLinks*>()->lit().planeShown());
   }
 
-  /// What is clicked in 3D, and a training frame that is selected, lights its plane there. The main window's keys work, too; Esc closes it.
+  /// What is clicked in 3D, and a training frame that is selected, lights its plane there. The main window's keys work, too; Esc
+  /// closes it.
   void theWindowOfPrimalAndDualFollowsThe3dViewAndKnowsTheKeys() {
     window_->actions().find("explain.duality")->trigger();
     auto* shown = window_->findChild<DualityWindow*>("duality");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Names from files that look like markup, or hold line ends, escapes and marks that turn the direction of writing: every widget of the
-// window shows them as they are, or escaped.
+// Names from files that look like markup, or hold line ends, escapes and marks that turn the direction of writing: every widget
+// of the window shows them as they are, or escaped.
 #include <QAbstractItemView>
 #include <QAction>
 #include <QDir>

@@ -89,8 +89,8 @@ const std::vector<Turn>& turns() {
   return all;
 }
 
-/// What is set in a turn. A lobe that is fitted to pixels on every other surface takes most of the time of the rows that change one:
-/// `surface.normals` and the settings of the detection tell whether it follows.
+/// What is set in a turn. A lobe that is fitted to pixels on every other surface takes most of the time of the rows that change
+/// one: `surface.normals` and the settings of the detection tell whether it follows.
 std::map<std::string, std::string> baseOf(const Turn& t) {
   std::map<std::string, std::string> base = t.base;
   const std::string key = t.key;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Missed and spurious highlights by mouse, and highlights changed by hand. An observed contour is moved away from the exact one, so that
-// the exact prediction is spurious and the moved contour is missed.
+// Missed and spurious highlights by mouse, and highlights changed by hand. An observed contour is moved away from the exact one,
+// so that the exact prediction is spurious and the moved contour is missed.
 #include <QAction>
 #include <QDoubleSpinBox>
 #include <QMenu>

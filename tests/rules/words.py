@@ -23,8 +23,7 @@ TERMS = {
     r"(?<![a-zA-Z])[Ss]kirt|[a-z]Skirt": "flank",
 }
 # Not yet looked through: the rules do not hold there.
-LATER = ("core/reflectance/", "core/light/", "core/surface/", "core/scene/", "core/model/", "core/synth/", "core/render/", "tests/gui/",
-         "tests/cli/", "tests/rules/")
+LATER = ("tests/gui/", "tests/cli/", "tests/rules/")
 
 
 def faults(name, text):
