@@ -10,7 +10,7 @@
 
 namespace glint::gui {
 
-/// What tests of the whole window do with it.
+/// What tests of the whole window do with the window.
 struct WindowFixture {
   static void show(MainWindow& window) {
     window.show();
