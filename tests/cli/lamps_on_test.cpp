@@ -14,7 +14,7 @@ using namespace testing_support;
 using testing::HasSubstr;
 
 using Lamps = std::vector<std::string>;
-/// What is on in each frame; the first nine say so.
+/// The lamps that are on in each frame; the first nine frames name them.
 const std::vector<Lamps> kOn{{"a"}, {"b"},      {"c"}, {"a"}, {"b"},      {"c"},           {"a"},     {"b"},
                              {"c"}, {"a", "b"}, {"c"}, {"b"}, {"a", "c"}, {"a", "b", "c"}, {"a", "d"}};
 constexpr std::size_t kStated = 9;
@@ -105,7 +105,7 @@ class LampsOnTest : public testing::Test {
     return answerOf(run.out);
   }
 
-  /// No wrong answer, and few that are open. @return how many were right
+  /// Expects no wrong answer, and few open ones. @return how many were right
   static int right(const Answer& answer) {
     int count = 0;
     for (const auto& [key, row] : answer.lamps) {

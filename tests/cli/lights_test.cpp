@@ -357,8 +357,8 @@ TEST(TwoBalls, PositionsWithAFocalLength) {
   }
 }
 
-// A rough ball: the middle of a wide highlight is not its mirror point, and its lobe knows. Photographs by `glint synth`, truth
-// from its specification.
+// A rough ball: the middle of a wide highlight is not its mirror point, but the fit of its lobe finds that point. Photographs by
+// `glint synth`, truth from its specification.
 TEST(RoughBall, ItsLobeIsFitted) {
   const TemporaryFolder folder;
   const std::vector<Eigen::Vector3d> lamps{Eigen::Vector3d(0.2, -0.3, -1).normalized(),
@@ -439,7 +439,7 @@ TEST_F(LightsOfAScene, AWrongDetectionIsDroppedByName) {
   EXPECT_LT((at - truth).norm(), 1e-4 * truth.norm());
 }
 
-// One frame alone: its direction is that of a distant lamp, and nothing is said of a distance. The lamp is 2.8 m away from a body
+// One frame alone: its direction is that of a distant lamp, and no distance is given. The lamp is 2.8 m away from a body
 // of 0.6 m.
 TEST_F(LightsOfAScene, OneViewGivesNoPosition) {
   const ProgramRun run = on("lights", "--exclude 1-7 --json - ");

@@ -151,7 +151,7 @@ TEST_F(ReceivedSessions, ASceneIsNoSession) {
   EXPECT_THAT(run.err, HasSubstr("is a scene, not a session"));
 }
 
-/// A document of another kind is named, not searched for what it lacks.
+/// A document of another kind is named as such; its missing keys are not listed.
 TEST_F(ReceivedSessions, ASpecificationIsNeitherASceneNorASession) {
   const std::string specification = inQuotes(std::filesystem::path(GLINT_SOURCE_DIR) / "resources/specs/ellipsoid_80.json");
   for (const char* command : {"info ", "evaluate "}) {

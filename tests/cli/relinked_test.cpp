@@ -107,7 +107,7 @@ TEST_F(RelinkedScene, ASessionRemembersThePlaces) {
   // A session made from that session remembers them, too.
   EXPECT_EQ(runGlint("reconstruct " + session(moved.path()) + kQuick + " -o " + inQuotes(moved / "second.glint") + yes).code, 0);
   EXPECT_EQ(runGlint("replay " + inQuotes(moved / "second.glint") + yes).code, 0);
-  // What is given counts, not what the session says; another file than it was made with is told.
+  // The given place counts, not the session's; a file other than the one it was made with is reported.
   fs::create_directories(moved / "third");
   fs::rename(moved / "elsewhere/shape/body.ply", moved / "third/b.ply");
   EXPECT_EQ(runGlint("replay " + session(moved.path()) + yes).code, 2);

@@ -41,7 +41,7 @@ std::optional<Eigen::Vector3d> ballUnder(const Eigen::Isometry3d& camFromWorld, 
   return eye + (-b - std::sqrt(root)) * ray;
 }
 
-/// A spot of paint whose middle this is.
+/// A spot of paint about this middle.
 bool isPaint(const std::optional<Eigen::Vector3d>& p) {
   return p && std::any_of(kSpots.begin(), kSpots.end(), [&](const auto& s) { return (*p - s).norm() < 0.5 * kSpotRadius; });
 }
@@ -189,7 +189,7 @@ TEST_F(TextureTest, NominalOwnDepthMapsThatAgreeAreAsked) {
   EXPECT_EQ(rejected.highlights, 8);
   EXPECT_EQ(rejected.rejectedOther, 0);
   EXPECT_GE(rejected.rejectedPaint, off.paint - 2);  // two may lie where the depth maps end
-  // The same evidence goes into a model.
+  // A model is fitted to the same evidence.
   const ProgramRun run = runGlint("evaluate " + inQuotes(folder_ / "scene") +
                                   " --models limit-angle --train spread:4 --set fit.most_residual=0.5 --json -");
   EXPECT_THAT(run.out + run.err, HasSubstr("no evidence (texture, detect.motion)"));
