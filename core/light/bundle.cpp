@@ -152,7 +152,7 @@ Attempt solve(std::vector<ContourEvidence>& points, Eigen::Vector4d start, bool 
   return a;
 }
 
-/// From (x - origin) / scale to world.
+/// Carries a solution from (x - origin) / scale to the world.
 Eigen::Vector4d worldOf(const Eigen::Vector4d& light, const NormalisedContours& in) {
   Eigen::Vector4d world;
   world << in.scale * light.head<3>() + light.w() * in.origin, light.w();

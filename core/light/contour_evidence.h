@@ -43,7 +43,7 @@ struct NormalisedContours {
 /// TooFewPoints below five; NotFinite.
 Outcome<NormalisedContours> normalised(std::vector<ContourEvidence> points);
 
-/// As bundleLight() and leftOutErrors() for points whose rays were cast before: several solutions for the same views.
+/// bundleLight() and leftOutErrors() for points whose rays were cast before: several solutions for the same views.
 /// @param evidence  of contoursOnSurfaces()
 /// @param views     how many there are
 Outcome<Bundle> bundleLight(const std::vector<ContourEvidence>& evidence, std::size_t views, const Light& start,

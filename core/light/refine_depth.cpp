@@ -313,8 +313,8 @@ Outcome<DepthRefinement> refineDepth(const std::vector<BundleView>& given, const
   state.light.normalize();
   state.limit = bundle->limitAngle;
   const Terms prior = priors(sigma);
-  // As many terms as predict views that were left out better: free terms that the views do not need would move noise between
-  // depth and light.
+  // Uses as many terms as improve the prediction of left-out views: free terms that the views do not need would move noise
+  // between depth and light.
   int terms = 0;
   std::vector<double> best = leftOutErrors(problem, state, prior, 0, options.robustPx);
   for (const int more : {6, DepthCorrection::kTerms}) {  // up to second, up to fourth degree

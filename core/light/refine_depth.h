@@ -27,7 +27,7 @@ struct DepthRefinement {
   /// Standard deviation of each coefficient over that of its prior, in (0, 1]: 1 where the contours say nothing or the term is
   /// not used.
   DepthCorrection::Terms openShare = DepthCorrection::Terms::Ones();
-  /// As Bundle::uncertainty, with the depth's own uncertainty in it. Empty where nothing was refined.
+  /// The same as Bundle::uncertainty, with the depth's own uncertainty in it. Empty where nothing was refined.
   std::optional<ParameterUncertainty> uncertainty;
 };
 

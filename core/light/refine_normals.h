@@ -25,7 +25,7 @@ struct NormalRefinement {
   /// Standard deviation of a tilt that all contours share over that of its prior, in (0, 1]: 1 where the contours cannot tell it
   /// from a moved light.
   double openTilt = 1;
-  /// As Bundle::uncertainty, with the normals' own uncertainty in it. Empty where nothing was refined.
+  /// The same as Bundle::uncertainty, with the normals' own uncertainty in it. Empty where nothing was refined.
   std::optional<ParameterUncertainty> uncertainty;
 };
 

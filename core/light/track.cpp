@@ -82,8 +82,8 @@ std::optional<Item> itemOf(const TrackedFrame& frame, const Surface& surface, st
   return item;
 }
 
-/// From the peak to the light's mirror point, px: one Newton step of "the reflected ray points at the light". Nothing behind the
-/// surface.
+/// The way from the peak to the light's mirror point, px: one Newton step of "the reflected ray points at the light". Nothing
+/// behind the surface.
 std::optional<Pixel> toMirrorPoint(const Item& item, const Light& light) {
   const Eigen::Vector3d to = light.directionFrom(item.ray.origin);
   if (!(to.dot(item.ray.direction) > 0) || !(to.dot(item.ray.normal) > 0)) return std::nullopt;

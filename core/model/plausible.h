@@ -45,7 +45,7 @@ std::optional<Failure> lightBehind(const std::vector<TrainingView>& views, const
 /// @param why  of a view: why it could not be used; nothing where it could
 std::string unusedViews(const std::vector<TrainingView>& views,
                         const std::function<std::optional<Failure>(const TrainingView&)>& why);
-/// With the failure of the view itself.
+/// The same with the failure of the view itself.
 std::string unusedViews(const std::vector<TrainingView>& views);
 
 /// TooFewViews with why the other views could not be used; other failures as they are.

@@ -46,7 +46,7 @@ struct StarOutline {
   double relativeReach(const Pixel& p) const;
   /// A lower bound of it, faster.
   double leastRelativeReach(const Pixel& p) const { return (inverse * (p - centre)).norm() / most; }
-  /// Whether it is certainly below 1; faster.
+  /// Whether that reach is certainly below 1; faster.
   bool surelyInside(const Pixel& p) const { return (inverse * (p - centre)).squaredNorm() < least * least; }
 };
 

@@ -180,7 +180,7 @@ Outcome<RadianceFit> fitNear(const std::vector<Lobe>& lobes, const std::vector<R
   }
   if (found.empty()) return failure;
   if (near.lamp.isPoint()) return preferred(found);
-  // As searchRadiance, which takes the smallest residual where the lamp has a size.
+  // The same choice as in searchRadiance, which takes the smallest residual where the lamp has a size.
   const auto best =
       std::min_element(found.begin(), found.end(), [](const auto& a, const auto& b) { return isBetter(a.second, b.second); });
   return best->second;

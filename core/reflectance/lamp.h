@@ -141,7 +141,7 @@ int unknownCount(const LampShape& shape);
 inline constexpr int kMostShapeUnknowns = 3;
 
 const char* nameOf(const LampShape& shape);
-/// One of each, from those with an extent to the point: what a search may try in turn.
+/// One lamp of each shape, from those with an extent to the point, for a search to try in turn.
 std::vector<LampShape> allLampShapes();
 /// Shapes beside a point that a search may take where the contours show them, by their place in LampShape.
 using LampChoices = std::bitset<std::variant_size_v<LampShape>>;

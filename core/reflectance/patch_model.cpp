@@ -268,7 +268,7 @@ LinearFit robustFit(const FramePatches& frame, const LobeImage& image, const Bac
     for (std::size_t i = 0; i < weights.size(); ++i) weights[i] = robustWeight(fit.residual[i]);
     if (before.size() > 0 && (fit.coefficients - before).norm() <= kCoefficientsSettled * fit.coefficients.norm()) break;
   }
-  // With the weights as they are left: a caller that keeps them and moves the lobe a little compares with this.
+  // This is the fit with the weights as they are left: a caller that keeps them and moves the lobe a little compares with it.
   return linearFit(frame, image, basis, weights);
 }
 

@@ -141,7 +141,7 @@ std::optional<RadianceFit> fitSegment(const std::vector<Lobe>& lobes, const std:
   double width = widthRad;
   std::vector<Lobe> order = lobes;
   if (plain && !plain->poor) {
-    // To first order, about the point light at the plain fit's place.
+    // The promise is to first order, about the point light at the plain fit's place.
     Outcome<lobe::ContourEvidence> gathered = lobe::gatherEvidence(views, options.pointsPerView);
     if (!gathered) return std::nullopt;
     lobe::RadianceProblem problem(plain->lobe, views, *std::move(gathered), options);

@@ -29,7 +29,7 @@ std::vector<std::string_view> wordsOf(std::string_view line, std::string& scratc
     if (c == ',' || c == ';') c = ' ';
   std::vector<std::string_view> words;
   std::string_view rest = scratch;
-  // One more than any file may hold tells that there are too many.
+  // One word more than a line may hold tells that there are too many.
   for (std::string_view word = io::takeWord(rest); !word.empty() && words.size() <= kMostCodes; word = io::takeWord(rest))
     words.push_back(word);
   return words;

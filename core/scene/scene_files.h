@@ -21,7 +21,7 @@ std::vector<std::filesystem::path> filesOf(const Scene& scene);
 /// All kinds, in the order in which a file that could be of several is taken.
 inline constexpr std::array<FrameFile, 4> kFrameFiles{FrameFile::Photograph, FrameFile::Depth, FrameFile::Normals,
                                                       FrameFile::Mask};
-/// As sessions write it: "photographs", "depth", "normals", "masks".
+/// The word in sessions: "photographs", "depth", "normals", "masks".
 const char* nameOf(FrameFile kind);
 
 /// Why a file of a frame (for photographs the image, else the radiance) cannot be read, as far as it shows without decoding:
@@ -29,7 +29,7 @@ const char* nameOf(FrameFile kind);
 /// frame names no such file.
 std::string frameFileProblem(const Frame& frame, FrameFile kind);
 
-/// By kind and by the frame's index: "FILE: reason".
+/// Unreadable files by kind and by the frame's index: "FILE: reason".
 using FrameFileProblems = std::map<FrameFile, std::map<int, std::string>>;
 
 /// The same for all frames of a scene but those of `known`. Reads every file once. Stopped.

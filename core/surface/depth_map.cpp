@@ -142,7 +142,7 @@ std::vector<Eigen::Vector3i> cells(const Points& points, int width, int height, 
   return triangles;
 }
 
-/// One per vertex, camera frame, towards the camera; 0 where there are too few neighbours.
+/// One normal per vertex, camera frame, towards the camera; 0 where there are too few neighbours.
 std::vector<Eigen::Vector3d> planeNormals(const Points& points, bool onPixelGrid, double radius) {
   pcl::NormalEstimation<pcl::PointXYZ, pcl::Normal> estimation;
   pcl::search::Search<pcl::PointXYZ>::Ptr search;

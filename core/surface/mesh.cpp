@@ -235,7 +235,7 @@ class MeshSurface : public Surface, public ManyOcclusions, public MirrorPlaces, 
     return last < 1e-9;  // close enough to be a place
   }
 
-  /// From triangle to neighbour until the line passes through one. Nothing at a border or after `most` triangles.
+  /// Walks from triangle to neighbour until the line passes through one. Nothing at a border or after `most` triangles.
   /// Gives up at once when the first triangle's weights say that the place is more than `far` triangles away.
   std::optional<Place> walk(int triangle, const Vector3d& o, const Vector3d& d, int most, double far = kInf) const {
     Place best;

@@ -15,7 +15,7 @@ class ManyOcclusions {
   virtual ~ManyOcclusions() = default;
   /// Surface::occluded for every point towards one other point: 1 where it holds.
   virtual std::vector<char> occludedMany(const std::vector<SurfacePoint>& from, const Eigen::Vector3d& to) const = 0;
-  /// Whether it holds for any of many points that lie close together. Faster where it holds for none: a ray that slips through a
+  /// Whether any of many points that lie close together is occluded. Faster where none is: a ray that slips through a
   /// vertex is not asked again, because its neighbours hit.
   virtual bool anyOccluded(const std::vector<SurfacePoint>& from, const Eigen::Vector3d& to) const = 0;
 };

@@ -27,8 +27,8 @@ struct PartBounds {
   Eight lightSquared;  ///< |l - w P|^2 for the homogeneous light (l, w): at least this
 };
 
-/// From the bounds of eight parts, an upper bound of what a field can reach above its level in each: parts with less than 0
-/// cannot reach it.
+/// Makes, from the bounds of eight parts, an upper bound of what a field can reach above its level in each: parts with less than
+/// 0 cannot reach it.
 using PartTest = std::function<Eight(const PartBounds&)>;
 
 /// A part of a surface that may reach a field's level.

@@ -241,7 +241,7 @@ TriangleMesh agreeing(TriangleMesh mesh) {
   return out;
 }
 
-/// From the cloud to the surface, step by step.
+/// The steps from the cloud to the surface.
 class SurfaceOfPoints {
  public:
   SurfaceOfPoints(const PointCloud& cloud, const PointSurfaceOptions& options, const ProgressFn& progress)

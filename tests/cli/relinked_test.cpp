@@ -60,7 +60,7 @@ class RelinkedScene : public SmallScene {
   std::string meshes() const { return " --meshes " + inQuotes(elsewhere_.path()); }
   std::string photographs() const { return " --photographs " + inQuotes(elsewhere_.path()); }
 
-  /// From contours with a smooth background: these tests are about places of files, and a fit to the pixels takes ten times as
+  /// Fits contours with a smooth background: these tests are about places of files, and a fit to the pixels takes ten times as
   /// long.
   static constexpr const char* kQuick = " --models limit-angle --set detect.background=smooth --set fit.evidence=contours";
   static inline const std::string kRequest = std::string(kQuick) + " --json -";

@@ -220,7 +220,7 @@ TEST_F(Requests, JsonAloneOnStandardOutputAndNoProgressInAPipe) {
                                 onSession("predict", "--json -")}) {
     EXPECT_EQ(run.code, 0);
     EXPECT_TRUE(Json::accept(run.out));
-    // One line at most: the tail of this scene's lobe (GGX) may be taken for background, which `detect` says.
+    // At most one line comes: the tail of this scene's lobe (GGX) may be taken for background, which `detect` says.
     if (!run.err.empty()) {
       EXPECT_THAT(run.err, StartsWith("glint: warning: the background is uncertain under 8 highlights"));
       EXPECT_EQ(run.errorLines(), 1);

@@ -224,7 +224,7 @@ TEST_F(TextureTest, DegenerateTooFewViewsAreSaidInWords) {
   EXPECT_GE(close.paintFlagged, 12);
   ASSERT_FALSE(words_.empty());
   EXPECT_THAT(*words_.begin(), HasSubstr("the views are too close"));
-  // One view: nothing can be asked.
+  // One view: no other can be asked.
   make(1, 0);
   const Count one = detect("");
   EXPECT_EQ(one.rejectedPaint + one.rejectedOther + one.paintFlagged + one.highlightsFlagged, 0);

@@ -111,7 +111,7 @@ class CameraPickingTest : public QObject, SceneFixture {
     };
     const Eigen::Vector3d eye = document_->scene()->frames[11].camera.centreInWorld(), depth(0, 0, kDepth);
     const auto corners = viz::imagePlane(document_->scene()->frames[11].camera, kDepth);
-    // From behind it, its image plane is its outline.
+    // Seen from behind, a camera has its image plane as outline.
     lookFrom(eye - Eigen::Vector3d(0, 0, 4), eye);
     const auto backside = panel_->view().pickCamera(display(insideOf(11)).x(), display(insideOf(11)).y());
     QVERIFY(backside && (backside->position - eye).norm() < 0.1 * kDepth);

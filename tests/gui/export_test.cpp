@@ -191,7 +191,7 @@ class ExportTest : public QObject {
     QGuiApplication::clipboard()->setText("untouched");
     window_->actions().find("export.command")->trigger();
     QCOMPARE(QGuiApplication::clipboard()->text(), QStringLiteral("untouched"));
-    // As if it had been saved: the session computes it.
+    // The session computes it, as if it had been saved.
     d.markSaved("/some where/a b.glint", d.state());
     QVERIFY(window_->exports()->command());
     QCOMPARE(toQString(*window_->exports()->command()), QStringLiteral("glint evaluate '/some where/a b.glint'"));

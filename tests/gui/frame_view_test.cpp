@@ -66,7 +66,7 @@ class FrameViewTest : public QObject {
     QVERIFY(canvas->grab().toImage() == plain);
   }
 
-  /// From frame to frame one compares the highlight: it stays in the middle until the view is moved or shows the whole.
+  /// The highlight stays in the middle from frame to frame, to be compared, until the view is moved or shows the whole.
   void zoomedToTheHighlightItFollowsFromFrameToFrame() {
     FrameCanvas* canvas = frame_->canvas();
     const auto middle = [&](int frame) {
@@ -148,7 +148,7 @@ class FrameViewTest : public QObject {
     QTRY_VERIFY(folded->isHidden() && !observed->isHidden());
   }
 
-  /// Else one would wonder why the highlight of the photograph stays where it was.
+  /// Words say why the highlight of the photograph stays where it was.
   void itSaysWhatIsNotAsCaptured() {
     FrameCanvas* canvas = frame_->canvas();
     const auto caption = [&](const WhatIf& w) {

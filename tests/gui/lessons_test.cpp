@@ -381,7 +381,7 @@ class LessonsTest : public QObject {
     QCOMPARE(walk.step(), paused + 1);
     window_->document().undoStack()->undo();
     QCOMPARE(walk.step(), paused);
-    // To the end it stops by itself.
+    // At the end the walk stops by itself.
     window_->document().setOption("explain/walk-step", double(last - 3), "near the end");
     window_->actions().find("explain.play-walk")->trigger();
     QTRY_VERIFY(!walk.playing());

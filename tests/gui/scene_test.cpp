@@ -307,7 +307,7 @@ class SceneTest : public QObject, SceneFixture {
     QVERIFY(samePlaces(placesNow(), std::vector(4, linked)));
   }
 
-  /// One view large for a moment.
+  /// One view can be large for a moment.
   void unlinkedViewsComeBackWhereTheyStood() {
     trigger("view.views-4");
     settle();

@@ -135,7 +135,7 @@ class SessionTest : public QObject {
     MainWindow window(engine);
     openAndWait(window, file);
     QVERIFY(same(seen(window), saved));
-    // One view large for a moment: they come back where the session had them.
+    // One view is large for a moment: the others come back where the session had them.
     Actions& actions = window.actions();
     actions.find(QStringLiteral("view.views-1"))->trigger();
     QTRY_VERIFY(window.idle());

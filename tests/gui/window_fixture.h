@@ -16,7 +16,7 @@ struct WindowFixture {
     window.show();
     QVERIFY(QTest::qWaitForWindowExposed(&window));
   }
-  /// With its scene, the docks of the layout for debugging, and the keyboard.
+  /// The window with its scene, the docks of the layout for debugging, and the keyboard.
   void openActive(MainWindow& window) {
     show(window);
     openAndWait(window);
