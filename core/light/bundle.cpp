@@ -22,12 +22,13 @@
 namespace glint {
 namespace {
 using namespace bundling;
-/// Of the contours' radius, to first order, below which a limit angle says that every contour point mirrors the light.
+/// Share of the contours' radius, to first order. A smaller limit angle says that every contour point mirrors the light.
 constexpr double kLeastLimitShare = 0.01;
-constexpr double kLeastNoiseShare =
-    0.1;  ///< of the residuals' variance: below, moving weights would change nothing that can be seen
+/// Share of the residuals' variance. Below it, moving weights would change nothing that can be seen.
+constexpr double kLeastNoiseShare = 0.1;
 
-/// (alpha - alpha_lim) in pixels, with d alpha / d L in closed form. The light is (l, w), or l alone where it is held at infinity.
+/// (alpha - alpha_lim) in pixels, with d alpha / d L in closed form. The light is (l, w), or l alone where it is held at
+/// infinity.
 class AngleCost final : public ceres::CostFunction {
  public:
   /// @param noiseShare  s, see noiseShare(): the weight is k (|d alpha / d pixel| k)^-s of the light, k the held one
@@ -94,9 +95,9 @@ bool reweighted(std::vector<ContourEvidence>& points, Attempt& a, bool atInfinit
   const int already = a.iterations;
   a.noiseShare = share;
   for (int round = 0; round < kMaxReweightings && a.iterations < already + options.maxIterations; ++round) {
-    // The weights are held while the light moves (but for the share that is noise). A residual whose own weight moves with the light gains by
-    // lights under which the angle changes faster over the image; held weights leave no such reward, and the fixed point is reached in
-    // a few rounds.
+    // The weights are held while the light moves (but for the share that is noise). A residual whose own weight moves with the
+    // light prefers lights under which the angle changes faster over the image. Held weights give no such reward, and the fixed
+    // point is reached in a few rounds.
     if (round > 0 || share > 0)
       renew(points, a, share);
     else
@@ -112,7 +113,7 @@ bool reweighted(std::vector<ContourEvidence>& points, Attempt& a, bool atInfinit
         problem.SetManifold(a.light.data(), new ceres::SphereManifold<3>());
       else
         problem.SetManifold(a.light.data(), new ceres::SphereManifold<4>());
-      // To round-off: invariances hold to 1e-9 only then.
+      // Down to round-off: only then do invariances hold to 1e-9.
       solution = solveDense(problem, already + options.maxIterations - a.iterations, 1e-12);
     }
     a.iterations += solution.iterations;
@@ -151,14 +152,14 @@ Attempt solve(std::vector<ContourEvidence>& points, Eigen::Vector4d start, bool 
   return a;
 }
 
-/// From (x - origin) / scale to world.
+/// Carries a solution from (x - origin) / scale to the world.
 Eigen::Vector4d worldOf(const Eigen::Vector4d& light, const NormalisedContours& in) {
   Eigen::Vector4d world;
   world << in.scale * light.head<3>() + light.w() * in.origin, light.w();
   return world;
 }
 
-/// solve(), for whoever records.
+/// solve(), recorded in the trace.
 Attempt traced(NormalisedContours& contours, Eigen::Vector4d start, bool atInfinity, const BundleOptions& options) {
   if (atInfinity) start.w() = 0;
   TracedRun run(atInfinity ? "light at infinity with one limit angle" : "light with one limit angle", worldOf(start, contours));
@@ -233,8 +234,8 @@ void setCovariance(const std::vector<ContourEvidence>& points, const Attempt& a,
   }
 }
 
-/// The light with one limit angle that explains the points best, from several starts where the first one converges badly. The
-/// points hold its weights afterwards.
+/// The light with one limit angle that explains the points best, from several starts where the first one converges badly.
+/// Afterwards the points hold its weights.
 struct Best {
   Attempt attempt;
   int iterations = 0;  ///< of all starts
@@ -254,7 +255,7 @@ Outcome<Best> bestAttempt(NormalisedContours& contours, const Light& start, cons
       Eigen::Vector4d direction = a.light;
       if (a.behind) direction = -direction;
       const Attempt far = traced(contours, direction, true, options);
-      // As good but for round-off is enough for the simpler light.
+      // The simpler light is taken where it is as good but for round-off.
       if (!far.behind && (a.behind || far.cost <= a.cost * (1 + 1e-9) + 1e-18 * points.size())) a = far;
     }
     return a;
@@ -293,7 +294,7 @@ Outcome<Best> bestAttempt(NormalisedContours& contours, const Light& start, cons
   return Best{best, iterations};
 }
 
-/// directed(), for whoever records.
+/// directed(), recorded in the trace.
 Attempt directedAndTraced(NormalisedContours& contours, const Attempt& start, const BundleOptions& options) {
   TracedRun run("light with its extent", worldOf(start.light, contours));
   const Attempt a = directed(contours.points, start, options.robustPx, options.maxIterations);
@@ -303,7 +304,7 @@ Attempt directedAndTraced(NormalisedContours& contours, const Attempt& start, co
   return a;
 }
 
-/// Why a limit angle is none: every point of the contours sees the light in its mirror direction, so that any light near it would do.
+/// Why a limit angle means nothing: every contour point sees the light in its mirror direction, so any light near it would do.
 std::optional<Failure> withoutLimit(const std::vector<ContourEvidence>& points, const Attempt& a) {
   std::map<int, std::pair<Pixel, int>> middles;
   for (const ContourEvidence& e : points) {

@@ -81,7 +81,7 @@ double noiseShare(const std::vector<ContourEvidence>& points, const Attempt& a) 
     views[e.view].push_back({e.pixel, r});
   }
   for (auto& [view, members] : views) {
-    // Neighbours by their azimuth about the middle: whoever gives a contour may start anywhere, or list its points in any order.
+    // Neighbours by their azimuth about the middle: a given contour may start anywhere and list its points in any order.
     Pixel middle(0, 0);
     for (const Member& m : members) middle += m.pixel / double(members.size());
     for (Member& m : members) m.azimuth = std::atan2(m.pixel.y() - middle.y(), m.pixel.x() - middle.x());
@@ -106,11 +106,12 @@ ResidualSpread spreadOf(const std::vector<ContourEvidence>& points, const Attemp
 }
 
 namespace {
-/// Noise moves a measured point along a contour that bends away from it: isotropic noise of variance s^2 displaces the residual by
-/// s^2 / 2 times the Laplacian of alpha on average, outwards. s is what the residuals show (their median, so that a few wild
-/// points do not count), and the correction is kept below s / 2: it fades where the contour is as small as the noise.
-/// The slope, taken at the noisy point, errs together with the residual: where alpha bends along its gradient g (alpha_gg) this displaces the
-/// residual by -s^2 alpha_gg, and its product with its own derivative by as much again. `share` is that of noise in s^2, see noiseShare.
+/// Noise moves a measured point along a contour that bends away from it: isotropic noise of variance s^2 displaces the residual
+/// by s^2 / 2 times the Laplacian of alpha on average, outwards. s is what the residuals show (their median, so that a few wild
+/// points do not count), and the correction is kept below s / 2: it fades where the contour is as small as the noise. The slope,
+/// taken at the noisy point, errs together with the residual: where alpha bends along its gradient g (alpha_gg) this displaces
+/// the residual by -s^2 alpha_gg, and its product with its own derivative by as much again. `share` is the share of noise in s^2,
+/// see noiseShare().
 void unbias(std::vector<ContourEvidence>& points, const Attempt& a, double share, const std::vector<AnglesAround>& angles) {
   std::vector<double> sizes;
   for (std::size_t i = 0; i < points.size(); ++i) sizes.push_back(std::abs(residual(points[i], a, angles[i].here)));

@@ -14,8 +14,8 @@ namespace {
 /// Beyond twenty times the distance of the cameras a light may as well be at infinity.
 constexpr double kFar = 0.05;
 
-/// Residual with an extent, over the light (4), the limit angle (1) and the extent (6) in units of `unit`: about the squared distance of the
-/// light, so that the six numbers are squared angles whatever the distance.
+/// Residual with an extent, over the light (4), the limit angle (1) and the extent (6) in units of `unit`: about the squared
+/// distance of the light, so that the six numbers are squared angles whatever the distance.
 class DirectedCost final : public ceres::SizedCostFunction<1, 4, 1, 6> {
  public:
   DirectedCost(const ContourEvidence& evidence, double unit) : evidence_(evidence), unit_(unit) {}
@@ -52,8 +52,8 @@ double meanDistance(const Eigen::Vector4d& light, const std::vector<ContourEvide
   return reach;
 }
 
-/// From `start` in its own chart: a light at infinity stays there. `directed` is false where nothing was found in front of the
-/// surface.
+/// Solves from `start` in its own chart: a light at infinity stays there. `directed` is false where nothing was found in front of
+/// the surface.
 /// @param noisePx  of the points, the unit in which they and the prior are compared
 Attempt inChartOf(std::vector<ContourEvidence>& points, const Attempt& start, double noisePx, double robustPx,
                   int maxIterations) {
@@ -96,8 +96,8 @@ Attempt inChartOf(std::vector<ContourEvidence>& points, const Attempt& start, do
   return a;
 }
 
-/// What the points are worth is told by the residuals of the start, which hold what the extent explains, then by those of each
-/// result, until it stays.
+/// The noise is estimated from the residuals of the start, which contain what the extent explains, then from those of each
+/// result, until it settles.
 Attempt weighed(std::vector<ContourEvidence>& points, const Attempt& start, double robustPx, int maxIterations) {
   constexpr double kLeastNoisePx =
       0.01;                            // below the accuracy of any detection; keeps the prior's weight above zero on exact data
@@ -141,11 +141,11 @@ bool directedResidual(const ContourEvidence& e, const Eigen::Vector4d& light, do
 }
 
 double extentPrior(const Attempt& a, const std::vector<ContourEvidence>& points) {
-  const double width =
-      2 * meanDistance(a.light, points) * a.limit;  // of the light that is seen under the limit angle: H turns half as much as L
-  // A compromise, measured on docs/accuracy.md and docs/reflectance.md. With more, fits to few views of a plane drift along what their
-  // contours hardly show (plane_to_cylinder per surface: 0.093 % at 0.4, 0.084 % at 0.3); with less, a light wider than the lobe is
-  // held back (1.20 % at 0.1, 0.31 % at 0.3).
+  // Width of the light that is seen under the limit angle: H turns half as much as L.
+  const double width = 2 * meanDistance(a.light, points) * a.limit;
+  // A compromise, measured on docs/accuracy.md and docs/reflectance.md. With a larger value, fits to few views of a plane drift
+  // along what their contours hardly show (plane_to_cylinder per surface: 0.093 % at 0.4, 0.084 % at 0.3); with a smaller one, a
+  // light wider than the lobe is held back (1.20 % at 0.1, 0.31 % at 0.3).
   constexpr double kShare = 0.3;
   return 1 / (kShare * width * width);
 }
@@ -159,7 +159,7 @@ Attempt directed(std::vector<ContourEvidence>& points, const Attempt& start, dou
     far.extent.setZero();
     settleSide(points, far);
     if (!far.behind) far = weighed(points, far, robustPx, maxIterations);
-    // As good but for round-off is enough for the simpler light.
+    // The simpler light is taken where it is as good but for round-off.
     if (far.directed && (!best.directed || far.cost <= best.cost * (1 + 1e-9) + 1e-18 * double(points.size()))) best = far;
   }
   restoreBiases(points, best);

@@ -15,7 +15,8 @@ struct SeenPoint {
   Eigen::Vector3d position, normal, toCamera;  ///< unit vectors away from the surface
 };
 
-/// One contour point of a bundle. Nothing of where it lies depends on the light, so rays are cast once; weight and bias belong to one solution.
+/// One contour point of a bundle. Its place does not depend on the light, so rays are cast once; weight and bias belong to one
+/// solution.
 struct ContourEvidence {
   static constexpr double kStepPx = 0.5;  ///< of the finite differences that turn an angle into pixels
   SeenPoint at;
@@ -42,14 +43,15 @@ struct NormalisedContours {
 /// TooFewPoints below five; NotFinite.
 Outcome<NormalisedContours> normalised(std::vector<ContourEvidence> points);
 
-/// As bundleLight() and leftOutErrors() for points whose rays were cast before: several solutions for the same views.
+/// bundleLight() and leftOutErrors() for points whose rays were cast before: several solutions for the same views.
 /// @param evidence  of contoursOnSurfaces()
 /// @param views     how many there are
 Outcome<Bundle> bundleLight(const std::vector<ContourEvidence>& evidence, std::size_t views, const Light& start,
                             const BundleOptions& options);
 
-/// Distance of every view's contour from the level set alpha = limitAngle under a light that was found elsewhere, px to first order: the
-/// rmsWithoutTail() of its points. NaN for a view without a point on its surface, and for all of them below five points.
+/// Distance of every view's contour from the level set alpha = limitAngle under a light that was found elsewhere, px to first
+/// order: the rmsWithoutTail() of its points. NaN for a view without a point on its surface, and for all of them below five
+/// points.
 std::vector<double> typicalResidualsPx(const std::vector<ContourEvidence>& evidence, std::size_t views, const Light& light,
                                        double limitAngle);
 /// @param places    of placesOf(), one per view

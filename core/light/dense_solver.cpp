@@ -42,7 +42,7 @@ DenseSolution solveDense(ceres::Problem& problem, int maxIterations, double tole
   if (progress) options.callbacks.push_back(&ask);
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
-  // No exception through the solver, which is not written for it.
+  // No exception may pass through the solver, which is not written for it.
   if (ask.stopped()) throw Stopped{};
   // Half the sum of squares, with the costs of steps that were not taken among them.
   std::vector<double> costs;

@@ -18,10 +18,10 @@ struct DenseSolution {
   int iterations = 0;
 };
 
-/// Levenberg-Marquardt for a handful of unknowns under many residuals: QR of the Jacobian (no normal equations), silent, on the caller's
-/// thread. The parameters are changed in place.
-/// @param tolerance      relative change of cost and unknowns that ends the iteration; the gradient's is a hundredth of it, so that a
-///                       flat valley does not end it early
+/// Levenberg-Marquardt for a handful of unknowns under many residuals: QR of the Jacobian (no normal equations), silent, on the
+/// caller's thread. The parameters are changed in place.
+/// @param tolerance      relative change of cost and unknowns that ends the iteration; the gradient's is a hundredth of
+///                       it, so that a flat valley does not end it early
 /// @param costTolerance  the cost's own, where it may be looser
 /// @param progress       asked after every iteration
 /// Stopped.

@@ -10,7 +10,7 @@ namespace {
 using Eigen::Vector3d;
 constexpr double kLeast = 0.01;  // of a^2: an extent may come out slightly negative where the views do not support it
 
-/// The half vector's frame at a surface point, and what carries the extent into it.
+/// The half vector's frame at a surface point, and the map that carries the extent into it.
 struct HalfFrame {
   Vector3d l, h, t, p;  ///< towards the light; half vector; across it towards N; h x t
   Vector3d u, v;        ///< A^T t and A^T p

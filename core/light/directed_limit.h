@@ -7,13 +7,14 @@ namespace glint {
 
 /// Limit angle in the direction in which a surface point lies off the mirror direction, for a light that is not a point.
 ///
-/// A lobe that falls as a Gaussian of the half vector, seen from a light with some second moment, falls as the wider Gaussian whose
-/// covariance is the sum: the limit angle a becomes the radius of the ellipse of M = a^2 I + B, B the extent carried to the
-/// half vector's tangent plane, B = A E A^T, A = (I - H H^T)(I - L L^T) / (r |L + V|). In the direction t (across H towards N), with
-/// p = H x t: radius^2 = det M / (p^T M p). As a series over the azimuth its even terms have the frame, the foreshortening and
-/// the distance of every single view, so that the same six numbers hold for all of them.
+/// A lobe that falls as a Gaussian of the half vector, seen from a light with some second moment, falls as the wider Gaussian
+/// whose covariance is the sum: the limit angle a becomes the radius of the ellipse of M = a^2 I + B, B the extent carried to the
+/// half vector's tangent plane, B = A E A^T, A = (I - H H^T)(I - L L^T) / (r |L + V|). In the direction t (across H towards N),
+/// with p = H x t: radius^2 = det M / (p^T M p). As a series over the azimuth, its even terms contain the frame, the
+/// foreshortening and the distance of each view, so that the same six numbers hold for all views.
 /// @param limitAngle  a > 0, rad
-/// @param extent      E, symmetric, m^2 (rad^2 for a light at infinity): -2 log q times the second moment of the light about `light`
+/// @param extent      E, symmetric, m^2 (rad^2 for a light at infinity): -2 log q times the second moment of the light
+///                    about `light`
 /// @param n,toCamera  unit vectors away from the surface
 /// @param light       (l, w) of any scale, seen with N.L > 0
 /// @return rad; at least a tenth of a, whatever the extent

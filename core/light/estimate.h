@@ -50,15 +50,16 @@ struct Bundle {
   Light light;
   double limitAngle = 0;                  ///< rad
   std::optional<Eigen::Matrix3d> extent;  ///< m^2 (rad^2 at infinity), see directed_limit.h; with limitOrders 1
-  Eigen::Matrix<double, 4, 4>
-      covariance;  ///< of (tangent coordinates of L (3), alpha_lim) in the solver's chart; scaled by the residual variance
+  /// Covariance of the tangent coordinates of L (3) and alpha_lim in the solver's chart, scaled by the residual variance.
+  Eigen::Matrix<double, 4, 4> covariance;
   Eigen::Matrix3d positionCovariance;  ///< m^2; not finite for a light at infinity
   double rmsPx = 0;
   std::vector<double> residualPx;  ///< per view, RMS
-  std::vector<double>
-      typicalPx;  ///< per view, rmsWithoutTail(): where alpha hardly changes over the image a residual has no bound
+  /// rmsWithoutTail() per view: where alpha hardly changes over the image, a residual has no bound.
+  std::vector<double> typicalPx;
   int iterations = 0;
-  /// Of (L homogeneous with |L| = 1 (4), limitAngle (1), extent xx yy zz xy xz yz where there is one), world. None when the contours leave a direction of L open.
+  /// Uncertainty of L (homogeneous, |L| = 1: 4 entries), limitAngle (1), and the extent xx yy zz xy xz yz if estimated; world.
+  /// Empty where the contours leave a direction of L open.
   std::optional<ParameterUncertainty> uncertainty;
 };
 

@@ -15,8 +15,8 @@ namespace glint {
 /// @return one number per view, equal for views from one place; the places count from 0 in the order in which they first occur
 template <class View>
 std::vector<int> placesOf(const std::vector<View>& views) {
-  constexpr double kSamePlace =
-      1e-6;  // of the extent of all centres: rounding stays below, and no two steps of a hand are as near
+  /// Share of the extent of all centres: rounding stays below it, and no two steps of a hand are as near.
+  constexpr double kSamePlace = 1e-6;
   Eigen::AlignedBox3d box;
   std::vector<Eigen::Vector3d> centres;
   for (const View& v : views) box.extend(centres.emplace_back(v.camera.centreInWorld()));

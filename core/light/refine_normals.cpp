@@ -152,7 +152,7 @@ Linearised linearised(const Problem& problem, const Basis& basis, double amplitu
   const Eigen::Matrix<double, 4, 3> chart = chartOf(s.light);
   for (Eigen::Index i = 0; i < n; ++i) {
     const Point& p = problem.points[std::size_t(i)];
-    // The slope over the image is that of the surface as it is: bumps turn normals much more than they change its curvature.
+    // The slope over the image is that of the given surface: bumps turn normals much more than they change curvature.
     const auto beside = [&](std::size_t k) { return alphaOf(p.around[k], s.light); };
     const double slope = std::hypot(beside(1) - beside(0), beside(3) - beside(2)) / (2 * ContourEvidence::kStepPx);
     if (!(slope > 0)) continue;
@@ -345,8 +345,9 @@ double meanLog(const std::vector<double>& errors) {
   return sum;
 }
 
-/// Of the flattest processes that predict left-out views no worse than the best one by more than the standard error, the best. None where it gains nothing
-/// over the normals as they are. Flat: where no highlight tells, a steep one would go astray.
+/// The best of the flattest processes that predict left-out views no worse than the best one by more than the standard error.
+/// Nothing where it gains nothing over the normals as they are. A flat one is preferred, because a steep one would go astray
+/// where no highlight shows the surface.
 std::optional<Choice> choose(const Problem& problem, const State& plain, const Basis& none, double sigma, double size) {
   std::vector<Basis> bases;
   for (const double reach : kReaches) bases.push_back(basisOf(problem, reach * size));
@@ -376,7 +377,8 @@ std::optional<Choice> choose(const Problem& problem, const State& plain, const B
   return *chosen;
 }
 
-/// Covariance of everything together, the prior as further rows in units of the noise: columns of its root. Empty where a direction is free.
+/// Covariance of everything together, the prior as further rows in units of the noise: columns of its root. Empty where a
+/// direction is free.
 MatrixXd rootOf(const Linearised& at, Eigen::Index terms, const ResidualSpread& spread) {
   const Eigen::Index columns = 4 + terms;
   MatrixXd rows = MatrixXd::Zero(at.jacobian.rows() + terms, columns);
@@ -424,7 +426,7 @@ Outcome<NormalRefinement> refineNormals(const std::vector<BundleView>& views, co
   if (!worldLight(state).allFinite()) return Failure{Reason::NotFinite, "light"};
   result.light = Light::homogeneous(worldLight(state));
   result.limitAngle = state.limit;
-  // Normals that are off leave residuals that keep their sign along contours.
+  // Wrong normals leave residuals that keep their sign along contours.
   const ResidualSpread before = residualSpread(list(plain), owners, 4, options.robustPx);
   if (!(result.plainRmsPx > refining::kLeastNoisePx) ||
       !(before.degreesOfFreedom < refining::kSystematic * double(problem.points.size())))

@@ -16,8 +16,8 @@ namespace {
 constexpr double kPoseStep = 0.02;  // of a standard deviation of the prior: central differences, far above the round-off of a hit
 constexpr int kPoseRounds = 8;
 
-using Correction =
-    Eigen::Matrix<double, 6, 1>;  ///< turn (3) and shift (3) in the camera's frame, in standard deviations of the prior
+/// Turn (3) and shift (3) in the camera's frame, in standard deviations of the prior.
+using Correction = Eigen::Matrix<double, 6, 1>;
 
 struct View {
   const BundleView* given;
@@ -155,8 +155,8 @@ Outcome<PoseRefinement> refinePoses(const std::vector<BundleView>& given, const 
     v.shift = n > 0 ? sigmaPx / focal * distance / n : 0;
     views.push_back(std::move(v));
   }
-  // Poses that are off leave residuals that keep their sign along contours. Without those the bundle is as good as it gets, and freeing the
-  // poses would only hand noise to the light.
+  // Wrong poses leave residuals that keep their sign along contours. Without such residuals the bundle is as good as it gets, and
+  // free poses would only move noise into the light.
   std::size_t points = 0;
   for (const View& v : views) points += v.pixels.size();
   const bool systematic = bundle->rmsPx > refining::kLeastNoisePx && bundle->uncertainty &&

@@ -5,8 +5,8 @@
 
 namespace glint::refining {
 
-/// Share of the points that count as independent, from which residuals are noise. Below it they keep their sign along contours, and
-/// something systematic is left; white noise leaves nearly all of them.
+/// Share of the points that count as independent, from which residuals are noise. Below it they keep their sign along contours,
+/// and something systematic is left; white noise leaves nearly all of them.
 inline constexpr double kSystematic = 0.5;
 /// The accuracy of detection (px): below it poses, depth and normals would be bent to round-off.
 inline constexpr double kLeastNoisePx = 0.02;

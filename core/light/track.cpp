@@ -42,7 +42,7 @@ struct Item {
   Eigen::Matrix2d tight, loose;  ///< metrics: d^T M d <= 1 is an inlier, d in pixels
 };
 
-/// Squared semi-axes of the contour about its peak; zero where there is none.
+/// Squared semi-axes of the contour about its peak; zero without a contour.
 Eigen::Matrix2d shapeOf(const Highlight& h) {
   Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
   if (h.contour.points.size() < 3) return sum;
@@ -83,7 +83,8 @@ std::optional<Item> itemOf(const TrackedFrame& frame, const Surface& surface, st
   return item;
 }
 
-/// From the peak to the light's mirror point, px: one Newton step of "the reflected ray points at the light". None behind the surface.
+/// The way from the peak to the light's mirror point, px: one Newton step of "the reflected ray points at the light". Nothing
+/// behind the surface.
 std::optional<Pixel> toMirrorPoint(const Item& item, const Light& light) {
   const Eigen::Vector3d to = light.directionFrom(item.ray.origin);
   if (!(to.dot(item.ray.direction) > 0) || !(to.dot(item.ray.normal) > 0)) return std::nullopt;
@@ -157,7 +158,7 @@ struct Group {
   Members members;  ///< that contain its mirror point and no nearer one of another light
 };
 
-/// The light that most of `free` confirm, refined on its own inliers. None when too few frames do.
+/// The light that most of `free` confirm, refined on its own inliers. Nothing when too few frames do.
 std::optional<Group> bestGroup(const std::vector<Item>& items, const Members& free, std::size_t leastFrames,
                                const TrackOptions& options) {
   const Members voters = evenly(free, kVoters);
@@ -186,8 +187,8 @@ std::optional<Group> bestGroup(const std::vector<Item>& items, const Members& fr
   return Group{*best, std::move(members)};
 }
 
-/// Squared distance of every item from a light's mirror point in units of its own size; infinite where it does not contain the mirror point, or
-/// where a highlight of the same frame sits on that very mirror point: one point shows one highlight.
+/// Squared distance of every item from a light's mirror point in units of its own size; infinite where it does not contain the
+/// mirror point, or where a highlight of the same frame sits on that very mirror point: one point shows one highlight.
 std::vector<double> containing(const std::vector<Item>& items, const std::vector<TrackedFrame>& frames, const Light& light) {
   constexpr double kSamePoint = 0.5;  // of the distance to it: two Newton steps that end this close together mean one point
   const double infinity = std::numeric_limits<double>::infinity();
@@ -215,7 +216,8 @@ std::vector<double> containing(const std::vector<Item>& items, const std::vector
   return miss;
 }
 
-/// Every item to the nearest light whose mirror point it contains, lights triangulated again from those that confirm them.
+/// Gives every item to the nearest light whose mirror point it contains, and triangulates lights again from those that confirm
+/// them.
 void settle(const std::vector<Item>& items, const std::vector<TrackedFrame>& frames, std::vector<Group>& groups) {
   for (int round = 0; round < kVoteRounds; ++round) {
     std::vector<std::vector<double>> miss;
@@ -240,8 +242,8 @@ void settle(const std::vector<Item>& items, const std::vector<TrackedFrame>& fra
   }
 }
 
-/// Highlights of one frame must show lights side by side, in most of the frames of a light that nobody has stated: frames in disagreement
-/// (a bad pose, a bad normal) look like lights that are never on together.
+/// A light that nobody has stated must appear beside others in most of its frames: frames in disagreement (a bad pose, a bad
+/// normal) look like lights that are never on together.
 bool provenBySight(const std::vector<Item>& items, const Group& group, const std::vector<Group>& others) {
   std::set<std::size_t> elsewhere, own;
   for (const Group& g : others)
@@ -263,7 +265,7 @@ Members unexplained(const std::vector<Item>& items, const std::vector<TrackedFra
   return result;
 }
 
-/// As many groups as there are lights; with `lights` 0 as many as the highlights prove.
+/// Forms as many groups as there are lights; with `lights` 0 as many as the highlights prove.
 std::vector<Group> findGroups(const std::vector<Item>& items, const std::vector<TrackedFrame>& frames, std::size_t lights,
                               const TrackOptions& options) {
   std::vector<Group> groups;
@@ -319,7 +321,7 @@ double agreement(const std::vector<TrackedFrame>& frames, const std::vector<Item
   return sum;
 }
 
-/// A different name for every group, best agreement over all of them (greedily where there are too many orders to try).
+/// Gives every group a different name, with the best agreement over all groups (greedily where there are too many orders to try).
 std::vector<std::string> namesFor(const std::vector<TrackedFrame>& frames, const std::vector<Item>& items,
                                   const std::vector<Group>& groups, const std::set<std::string>& ids) {
   const std::vector<std::string> names(ids.begin(), ids.end());

@@ -20,28 +20,29 @@ struct TrackedFrame {
 };
 
 struct TrackOptions {
-  double inlierPx =
-      3;  ///< a light is confirmed by peaks this close to its mirror point; a fifth of the highlight's size is added (in squares)
+  /// A light is confirmed by peaks this close to its mirror point; a fifth of the highlight's size is added (in squares).
+  double inlierPx = 3;
   int maxPairs = 3000;  ///< pairs of highlights tried as seeds
   unsigned seed = 1;    ///< of the choice of pairs when there are more
 };
 
 /// Sets the light of every highlight, in place.
 ///
-/// A frame where one light is on gives all its highlights that light. Otherwise highlights are grouped over frames: two reflected rays
-/// from different frames meet in a candidate light, every highlight votes with its distance in pixels from the candidate's mirror point
-/// (one Newton step on the surface around its peak), and the candidate with most votes (a truncated sum of squares) becomes a group.
-/// When all lights are found, every highlight goes to the light whose mirror point it contains, the nearest where several do, and
-/// the lights are triangulated again, until nothing changes. A light may own several highlights of a frame (concave surfaces). A highlight that contains the
-/// mirror points of two lights, the other of which has none of its own in that frame, is of both and belongs to neither: it keeps "".
+/// A frame where one light is on gives all its highlights that light. Otherwise highlights are grouped over frames: two reflected
+/// rays from different frames meet in a candidate light, every highlight votes with its distance in pixels from the candidate's
+/// mirror point (one Newton step on the surface around its peak), and the candidate with most votes (a truncated sum of squares)
+/// becomes a group. When all lights are found, every highlight goes to the light whose mirror point it contains, the nearest
+/// where several do, and the lights are triangulated again, until nothing changes. A light may own several highlights of a frame
+/// (concave surfaces). A highlight that contains the mirror points of two lights is of both if the other light has no highlight
+/// of its own in that frame; it belongs to neither and keeps "".
 ///
-/// Groups are as many as the frames' `lightsOn` name. They get the names that agree best with the frames where each is on, and with
-/// highlights that are named already; lights that are on in the same frames cannot be told apart: which gets which name is then
-/// arbitrary. Where no frame states anything, all highlights are of one "light" unless they prove that there are more: another light counts
-/// (named "light-2" ...) when at least 3 frames and half of those with unexplained highlights confirm it, most of which show another light too.
-/// Highlights of no group keep "".
-/// @param surfaceOf  the surface that a frame sees, asked once per frame that has highlights and only where something has to be grouped;
-///                   null: the frame's highlights keep no light unless only one is on.
+/// Groups are as many as the frames' `lightsOn` name. They get the names that agree best with the frames where each is on, and
+/// with highlights that are named already; lights that are on in the same frames cannot be told apart, and their names are then
+/// arbitrary. Where no frame states anything, all highlights are of one "light" unless they prove that there are more: another
+/// light counts (named "light-2" ...) when at least 3 frames and half of those with unexplained highlights confirm it, most of
+/// which show another light too. Highlights of no group keep "".
+/// @param surfaceOf  the surface that a frame sees, asked once per frame that has highlights and only where something has to be
+///                   grouped; null: the frame's highlights keep no light unless only one is on.
 /// @return number of groups found (0 when nothing had to be grouped).
 int assignLights(std::vector<TrackedFrame>& frames, const std::function<std::shared_ptr<const Surface>(std::size_t)>& surfaceOf,
                  const TrackOptions& options = {});

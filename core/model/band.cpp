@@ -11,7 +11,8 @@
 namespace glint {
 namespace {
 
-// A clipped peak may have been ten times as high: a Gaussian lobe's contour at half of it then has half the radius. 1.96 of this hold that.
+// A clipped peak may have been ten times as high: a Gaussian lobe's contour at half of it then has half the radius. 1.96 times
+// this share covers that.
 constexpr double kClippedShare = 0.25;
 
 const PredictedHighlight* nearest(const Prediction& p, const Pixel& to) {
@@ -40,7 +41,7 @@ std::optional<ViewResiduals> residualsOf(const Polyline& measured, const Polylin
     arcs.push_back(foot.arc);
     rows.push_back((1 - foot.share) * shifts.row(i) + foot.share * shifts.row(j));
   }
-  constexpr std::size_t kLeast = 5;  // as the light's bundle asks for
+  constexpr std::size_t kLeast = 5;  // as many as the light's bundle needs
   if (residual.size() < kLeast) return std::nullopt;
   ViewResiduals v;
   v.residual = Eigen::Map<const Eigen::VectorXd>(residual.data(), Eigen::Index(residual.size()));
@@ -50,8 +51,9 @@ std::optional<ViewResiduals> residualsOf(const Polyline& measured, const Polylin
   return v;
 }
 
-/// Where a highlight lies and whence it is seen: neighbouring views share a bump of the surface, and what a lobe gets wrong at an angle.
-/// @param unit  distance of a camera: what a turn by a radian is on the surface
+/// Where a highlight lies and from where it is seen: neighbouring views share a bump of the surface, and a lobe's error at an
+/// angle.
+/// @param unit  distance of a camera: a turn by a radian is this far on the surface
 Eigen::VectorXd placeOf(const PredictedHighlight& h, const Camera& camera, double unit) {
   Eigen::VectorXd place(6);
   place << h.brightest.point.position / unit, (camera.centreInWorld() - h.brightest.point.position).normalized();

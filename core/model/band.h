@@ -12,7 +12,7 @@
 
 namespace glint {
 
-/// Another fit that might as well be true: another lobe, or the same model under inputs that are off by their tolerance.
+/// Another fit that may equally be true: another lobe, or the same model under inputs that are off by their tolerance.
 struct BandAlternative {
   const HighlightModel* model = nullptr;
   ModelFit fit;
@@ -21,8 +21,8 @@ struct BandAlternative {
   double share = 1;                             ///< of the squared distance to it that counts as variance
 };
 
-/// The uncertainty of a fit's predictions, from what its training views show: the noise of single points, errors that whole views have in
-/// common (view_effects.h), and how far alternatives are away.
+/// The uncertainty of a fit's predictions, from what its training views show: the noise of single points, errors that whole views
+/// have in common (view_effects.h), and how far alternatives are away.
 class Band {
  public:
   /// Predicts the training views and takes their residuals. Null where the fit has no uncertainty, or no view shows its contour.
@@ -30,14 +30,16 @@ class Band {
                                   const Settings& settings);
 
   void add(BandAlternative alternative) { alternatives_.push_back(std::move(alternative)); }
-  /// The parameters' own covariance counts beside the residuals: it holds a part (a refined depth or normals) that no residual shows.
+  /// The parameters' own covariance counts beside the residuals: it contains a part (a refined depth or normals) that no residual
+  /// shows.
   void addOwnCovariance() { own_ = true; }
 
   const ViewEffects& effects() const { return effects_; }
   double radiusPx() const { return radius_; }  ///< of the training contours, mean
   bool clipped() const { return clipped_; }    ///< contours at a level of a clipped peak: nothing tells the level
 
-  /// One per vertex of the contour: 1.96 of it hold 95 %. Student's factor for few degrees of freedom is in it. 0 along the surface's own edge.
+  /// One per vertex of the contour: 1.96 of it hold 95 %. It includes Student's factor for few degrees of freedom. 0 along the
+  /// surface's own edge.
   std::vector<double> sigmaPx(const PredictedHighlight& highlight, const Camera& camera, const Surface* surface) const;
 
  private:

@@ -71,9 +71,9 @@ class Canonical final : public EllipsoidModel {
       outlineOf(*h.canonical, h);
       if (patch) h.curvatureVariation = curvatureVariation(*patch, *surface, *h.canonical);
       h.ellipse = h.canonical->ellipse;
-      h.canonical->ellipse = *e;  // on T: what the viewer draws there
+      h.canonical->ellipse = *e;  // on T, for the viewer
       if (h.contour.points.size() < 3) {
-        // Too little to close a contour; the first named reason tells why.
+        // Too few directions close a contour; the first named reason tells why.
         for (const DirectionResult& d : h.canonical->directions)
           if (d.failure) {
             why = d.failure;

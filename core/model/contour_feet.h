@@ -18,7 +18,7 @@ struct ContourFoot {
   double share = 0;              ///< of the way from one to the other
 };
 
-/// One for every point; none for a contour of fewer than three vertices.
+/// One foot for every point; empty for a contour of fewer than three vertices.
 std::vector<ContourFoot> feetOn(const Polyline& predicted, const std::vector<Pixel>& points);
 
 /// Arc length at every vertex of a closed contour, as a share of the whole.

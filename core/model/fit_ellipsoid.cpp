@@ -18,8 +18,8 @@ namespace glint {
 namespace {
 
 constexpr int kContourPoints = 72;
-/// How far the centre may lie from the estimated light as a share of the light's distance: the light of a simple lobe is off by 1 % (path-traced
-/// plane) to 9 % (sphere).
+/// How far the centre may lie from the estimated light as a share of the light's distance: the light of a simple lobe is off by 1
+/// % (path-traced plane) to 9 % (sphere).
 constexpr double kPriorBias = 0.01;
 constexpr double kSameWorth = 1e-3;     // residuals tell a standard deviation to some hundredths
 constexpr int kMostWeightings = 12;     // two to four mostly
@@ -33,9 +33,9 @@ CentrePrior priorWith(const CentreAnchor& anchor, double bias) {
 }
 
 /// What one contour point is worth, px: the RMS distance of the points from the outlines, times the root of 1 + 2 sum rho_k for
-/// distances that are correlated along their contour. Where the ellipsoid fits to the noise that is the noise; where it does not
-/// fit (a curved surface, slanted views) the distances wave slowly along the contour, and many points say no more than a few.
-/// Nothing where too few views see it.
+/// distances that are correlated along their contour. Where the ellipsoid fits down to the noise, that is the noise. Where it
+/// does not (a curved surface, slanted views), the distances vary slowly along the contour, and many points say no more than a
+/// few. Nothing where there are too few views.
 std::optional<double> worthPx(const Ellipsoid& ellipsoid, const std::vector<ConicView>& views) {
   std::vector<double> distances;
   std::vector<int> seenBy;
@@ -54,9 +54,9 @@ std::optional<double> worthPx(const Ellipsoid& ellipsoid, const std::vector<Coni
   return std::max(kLeastWorthPx, std::sqrt(correlationInflation(distances, seenBy, Neighbours::Closed) * squares / free));
 }
 
-/// Looks for the value that a fit counts a contour point as and that its residuals then confirm. Taking over what the residuals
-/// say goes to and fro where a looser prior makes them much smaller; once the answers lie on both sides, the value is sought
-/// between (secant in logarithms, kept off the ends).
+/// Looks for the value at which a fit counts a contour point and which its residuals then confirm. Simply taking the residuals'
+/// answer goes to and fro where a looser prior makes them much smaller. Once the answers lie on both sides, the value is sought
+/// between them (secant in logarithms, kept off the ends).
 class SteadyWorth {
  public:
   double next(double counted, double worth) {
@@ -69,13 +69,13 @@ class SteadyWorth {
   }
 
  private:
-  std::optional<std::pair<double, double>> below_, above_;  ///< log of what was counted, log of what the residuals make of it
+  std::optional<std::pair<double, double>> below_, above_;  ///< log of the value that was counted, log of the residuals' answer
 };
 
 /// The refined ellipsoid with contours and prior in the same unit: standard deviations. What a contour point is worth is not
-/// known before the fit, so it is estimated from the start, then from each fit, until it stays (the solver counts a pixel as one
-/// standard deviation, so the prior is scaled instead). A first guess in pixels would make the answer depend on their number.
-/// Where the fit with the better weight is refused, the one before it stands, with a remark.
+/// known before the fit, so it is estimated from the start, then from each fit, until it settles (the solver counts a pixel as
+/// one standard deviation, so the prior is scaled instead). A first guess in pixels would make the answer depend on their number.
+/// Where the fit with the better weight is refused, the one before it is kept, with a remark.
 Outcome<Reconstruction> refinedWithPrior(const std::vector<ConicView>& views, const Ellipsoid& start, const CentreAnchor& anchor,
                                          double bias) {
   const CentrePrior prior = priorWith(anchor, bias);
@@ -85,7 +85,7 @@ Outcome<Reconstruction> refinedWithPrior(const std::vector<ConicView>& views, co
   double counted = 1;  // px, as which the fit so far counts a contour point
   Outcome<Reconstruction> refined = Failure{Reason::NotConverged, ""};
   if (const std::optional<double> worth = worthPx(start, views)) refined = counting(counted = *worth);
-  // Where no weight is known, or the first one is refused: a pixel.
+  // A pixel, where no weight is known or the first one is refused.
   if (!refined) refined = counting(counted = 1);
   SteadyWorth steady;
   for (int round = 0; refined && refined->ellipsoid; ++round) {

@@ -17,18 +17,18 @@ struct CentreAnchor {
   double distance = 0;  ///< m, typical distance from the surface (or the cameras); scale of the anchor's bias
 };
 
-/// The anchor at an estimated light; empty for a light at infinity. The distance is the mean one from the views' brightest points.
+/// The anchor at an estimated light; empty for a light at infinity. The distance is the mean one from the views' brightest
+/// points.
 std::optional<CentreAnchor> anchorAtLight(const FitInput& input);
 
 /// The solver chosen by `fit.solver`, the same for the three ellipsoid models:
 /// linear (centre free, >= 3 views), anchored (centre at the anchor, >= 2 views), refined (>= 3 views; starts at the anchored
 /// solution or, without an anchor, at the linear one). The prior of `refined` on the centre is the anchor's covariance plus an
-/// isotropic bias of `fit.prior_bias` (0 = one hundredth) times the anchor's distance: the covariance knows the noise only, but the ellipsoid
-/// that explains a highlight is not centred exactly at the light, and the light of a simple lobe is itself off. A contour point is
-/// weighed against it by what the residuals say it is worth: where the ellipsoid does not fit, the prior counts more.
-/// A linear solution that is no ellipsoid is returned with its quadric alone, so that it can be shown and named; without an anchor
-/// `refined` has no other start, and returns it too.
-/// TooFewViews; NoLight (anchored without an anchor); the solver's own.
+/// isotropic bias of `fit.prior_bias` (0 = one hundredth) times the anchor's distance: the covariance knows the noise only, but
+/// the ellipsoid that explains a highlight is not centred exactly at the light, and the light of a simple lobe is itself off. A
+/// contour point is weighed against it by what the residuals say it is worth: where the ellipsoid does not fit, the prior counts
+/// more. A linear solution that is no ellipsoid is returned with its quadric alone, so that it can be shown and named; without an
+/// anchor `refined` has no other start, and returns it too. TooFewViews; NoLight (anchored without an anchor); the solver's own.
 Outcome<Reconstruction> fitEllipsoid(const std::vector<ConicView>& views, const std::optional<CentreAnchor>& anchor,
                                      const Settings& settings);
 
@@ -40,13 +40,14 @@ bool hasWholeEllipse(const TrainingView& view);
 /// Empty when the rays are parallel.
 std::optional<CentreAnchor> anchorFromCentres(const std::vector<TrainingView>& views);
 
-/// A view's contour as evidence for an ellipsoid: its ellipse, and 72 points equally spaced, which is more than an outline has freedom for.
+/// A view's contour as evidence for an ellipsoid: its ellipse, and 72 equally spaced points, more than an outline has degrees of
+/// freedom.
 /// @param projection  real or virtual camera. The view must have an ellipse.
 ConicView conicViewOf(const TrainingView& view, const Projection& projection);
 
 /// Copies a reconstruction into the fields of a fit.
 void store(const Reconstruction& reconstruction, ModelFit& fit);
-/// The ellipsoid of a fit; NotAnEllipsoid, with what Q* is instead.
+/// The ellipsoid of a fit; else NotAnEllipsoid, which says what Q* is instead.
 Outcome<Ellipsoid> ellipsoidOf(const ModelFit& fit);
 
 /// A model that fits one ellipsoid to an outline in every view that has one (outlineIn).

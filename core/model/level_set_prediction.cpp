@@ -72,7 +72,7 @@ Prediction predictLevelSet(const SurfaceField& field, const Camera& camera, cons
   std::vector<LevelSetComponent> components = traceLevelSets(exact, batch, field.level, window, options);
   if (std::any_of(components.begin(), components.end(),
                   [&](const LevelSetComponent& c) { return coverageOf(c, window, 0) < 1; })) {
-    // The image cuts it: follow it beyond the border, so that the whole highlight is known.
+    // The image cuts the highlight: it is followed beyond the border, so that all of it is known.
     options.marginPx = kMarginFraction * window.sizes().maxCoeff();
     components = traceLevelSets(exact, batch, field.level, window, options);
   }

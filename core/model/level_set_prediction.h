@@ -25,8 +25,8 @@ struct SurfaceField {
 
 /// All components of { value < level } in the image, each followed beyond the border where the image cuts it (by
 /// kMarginFraction), as highlights: outline, coverage (share of the outline on the level set or on the surface's own edge),
-/// ellipse, brightest point. A component that encloses several minima is returned once (method.md section 8). When there
-/// is none: OutsideImage where all known minima lie there, else NotReached.
+/// ellipse, brightest point. A component that encloses several minima is returned once (method.md section 8). Without a
+/// component: OutsideImage where all known minima lie there, else NotReached.
 Prediction predictLevelSet(const SurfaceField& field, const Camera& camera, const Surface& surface, const Settings& settings);
 
 }  // namespace glint

@@ -23,7 +23,7 @@ std::optional<double> alphaAt(const SurfacePoint& p, const Eigen::Vector3d& eye,
   return std::isfinite(alpha) ? std::optional<double>(alpha) : std::nullopt;
 }
 
-/// alpha in units in which the limit angle is the same in all directions: a level set of it at `limit` is the contour.
+/// alpha in units in which the limit angle is the same in all directions: its level set at `limit` is the contour.
 std::optional<double> directedAlpha(const SurfacePoint& p, const Eigen::Vector3d& eye, const Light& light, double limit,
                                     const std::optional<Eigen::Matrix3d>& extent) {
   const std::optional<double> alpha = alphaAt(p, eye, light);
@@ -32,8 +32,9 @@ std::optional<double> directedAlpha(const SurfacePoint& p, const Eigen::Vector3d
          directedLimit(limit, *extent, p.position, p.normal, (eye - p.position).normalized(), light.homogeneous());
 }
 
-/// In words: the length of a uniform lamp whose second moment, length^2 / 12, is that of the longest axis. `extent` is -2 log q times it.
-/// A point lamp over a long-tailed lobe at slanted incidence asks for one, too: the model has no lobe to tell them apart by.
+/// The extent in words: the length of a uniform lamp whose second moment, length^2 / 12, is that of the longest axis. `extent` is
+/// -2 log q times it. A point lamp over a long-tailed lobe at slanted incidence asks for one, too: the model has no lobe to tell
+/// them apart by.
 std::string extentRemark(const Eigen::Matrix3d& extent, bool angular, double level) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(extent);
   const double length = std::sqrt(12 * std::max(0.0, axes.eigenvalues()(2)) / (-2 * std::log(level)));
@@ -111,7 +112,8 @@ class LimitAngle final : public HighlightModel {
         const auto moved = [&](const Eigen::VectorXd& by) -> double {
           const Eigen::Vector4d other = light.homogeneous() + parameters::kLight.of(by);
           Eigen::Matrix3d extent = *fitted->extent + symmetric(parameters::kExtent.of(by));
-          // A light at infinity keeps its angular extent where the step brings it nearer: beyond infinity is the other side of it.
+          // A light at infinity keeps its angular extent where the step brings it nearer: beyond infinity is the other side of
+          // it.
           if (light.atInfinity() && other.w() != 0) extent *= other.head<3>().squaredNorm() / (other.w() * other.w());
           Eigen::Vector3d toLight = (other.head<3>() - other.w() * at.position).normalized();
           if (at.normal.dot(toLight) < 0) toLight = -toLight;
@@ -193,7 +195,7 @@ class LimitAngle final : public HighlightModel {
   }
 
   /// The level set around the only brightest point by walks on the surface. Nothing when some direction fails: the region is then
-  /// cut, hidden in part or no star, and the level set answers.
+  /// cut, partly hidden or not a star, and the level set answers.
   static std::optional<PredictedHighlight> star(double limit, const Camera& camera, const Surface& surface, const Light& light,
                                                 const BrightestPoint& b, const Settings& settings) {
     const TangentWalk walk(surface, camera, b, light, walkOptions(settings));
@@ -208,8 +210,8 @@ class LimitAngle final : public HighlightModel {
     return h;
   }
 
-  /// The same around several brightest points, by walks along pixel rays on alpha^2, which is quadratic at its zeros. Why not, where two
-  /// share a region, one is no star, or the surface may reach the limit elsewhere.
+  /// The same around several brightest points, by walks along pixel rays on alpha^2, which is quadratic at its zeros. The reason
+  /// where two share a region, one is not a star, or the surface may reach the limit elsewhere.
   static Outcome<std::vector<PredictedHighlight>> stars(double limit, const Camera& camera, const Surface& surface,
                                                         const Light& light, const std::vector<BrightestPoint>& brightest,
                                                         const Settings& settings) {

@@ -58,13 +58,13 @@ struct SeenOnSurface {
 /// One observation used for training: one highlight of one light in one frame, with what was derived from it.
 struct TrainingView {
   int frame = -1;
-  std::string frameId;  ///< what a person is told; "" where no scene names the frame
+  std::string frameId;  ///< for people; "" where no scene names the frame
   Camera camera;
   std::shared_ptr<const Surface> surface;  ///< may be null only for `primal`
   Highlight highlight;
   std::vector<LevelContour> levels;          ///< contours at other levels than highlight.level; they share the frame's maximum
   std::shared_ptr<const PixelPatch> pixels;  ///< around the highlight, where pixels are evidence (core/reflectance/pixel_patch.h)
-  /// Or why this view cannot be used; `primal` alone, which needs no surface, looks at the reason.
+  /// What was seen, or why this view cannot be used; only `primal`, which needs no surface, looks at the reason.
   Outcome<SeenOnSurface> seen = Failure{Reason::NotReached, "nothing was observed"};
   std::optional<CanonicalContour> canonical;  ///< of a view that was seen, once its light is known
 
@@ -80,10 +80,10 @@ struct LightEstimate {
   double rmsPx = 0;                           ///< of the bundle's residuals, 0 when triangulated
   std::vector<double> residualPx;             ///< per view that was used (those `seen`), in their order: rmsWithoutTail()
   std::string solver;                         ///< "triangulated" or "bundle"
-  /// Second moment of an extended light about `light`, m^2 (rad^2 for a light at infinity): widens the limit angle where the light
-  /// is long. None for a limit angle that is one constant.
+  /// Second moment of an extended light about `light`, m^2 (rad^2 for a light at infinity): widens the limit angle where the
+  /// light is long. Empty for a limit angle that is one constant.
   std::optional<Eigen::Matrix3d> extent;
-  /// Of parameters::kLight, kLimitAngle and, where there is one, kExtent; bundle only.
+  /// Uncertainty of parameters::kLight, kLimitAngle and, with an extent, kExtent; bundle only.
   std::optional<ParameterUncertainty> uncertainty;
 };
 
@@ -91,11 +91,11 @@ struct LightEstimate {
 struct FitInput {
   std::vector<TrainingView> views;                       ///< those that were not `seen` are skipped
   std::optional<LightEstimate> light;                    ///< for models with needsLight()
-  std::optional<Failure> lightFailure;                   ///< why there is none
+  std::optional<Failure> lightFailure;                   ///< why `light` is empty
   std::shared_ptr<const PixelFit> pixelFit;              ///< of the pixels of exactly these views, where it is known already
-  std::shared_ptr<const UnexplainedPixels> unexplained;  ///< of a fit to pixels that failed: serves where it was asked the same
-  /// By the same model, of nearly these views: cameras moved a little. `reflectance` starts from its lamp and keeps the lamp's
-  /// shape.
+  std::shared_ptr<const UnexplainedPixels> unexplained;  ///< a fit to pixels that failed: it answers the same question
+  /// A fit of the same model to nearly these views (cameras moved a little). `reflectance` starts from its lamp and keeps the
+  /// lamp's shape.
   std::shared_ptr<const ModelFit> near;
   ProgressFn progress{};  ///< asked in long fits, which then throw Stopped
 };
@@ -138,12 +138,12 @@ struct ModelFit {
   std::vector<double> residualPx;  ///< per training view, RMS contour distance; of the robust models without its tail
   std::string solver;              ///< "linear", "anchored", "refined", "bundle", ...
   std::vector<int> frames;         ///< frames used
-  std::vector<SurfacePoint>
-      hints;  ///< brightest points of the views used, normals as observed; none where a frame showed several
-  /// Of the blocks in `parameters`, family by family; other models say theirs.
+  /// Brightest points of the views used, normals as observed; empty where a frame showed several.
+  std::vector<SurfacePoint> hints;
+  /// Uncertainty of the blocks in `parameters`, family by family; other models have their own blocks.
   std::optional<ParameterUncertainty> uncertainty;
   std::vector<std::string> remarks;  ///< warnings in words, for the user: what makes the answer doubtful
-  std::string poor;  ///< why it explains its evidence badly: it predicts and is scored all the same; "" where it explains it
+  std::string poor;  ///< why it explains its evidence badly, "" where it does not; it predicts and is scored all the same
   double timeUs = 0;
 
   const char* status() const { return poor.empty() ? "ok" : "poor"; }
@@ -158,12 +158,12 @@ struct ModelFit {
     const ReflectanceFit* const lobe = as<ReflectanceFit>();
     return lobe && lightEstimate ? std::optional(Lamp(lightEstimate->homogeneous(), lobe->shape)) : std::nullopt;
   }
-  /// Null where there is none.
+  /// Null for a fit without an ellipsoid.
   const Ellipsoid* ellipsoid() const {
     const EllipsoidFit* const e = as<EllipsoidFit>();
     return e && e->ellipsoid ? &*e->ellipsoid : nullptr;
   }
-  /// rad; none where neither ellipsoid nor contours know it.
+  /// rad; nothing where neither ellipsoid nor contours know it.
   std::optional<double> limitAngle() const {
     if (const EllipsoidFit* const e = as<EllipsoidFit>()) return e->limitAngle;
     const LimitAngleFit* const contours = as<LimitAngleFit>();
@@ -180,28 +180,28 @@ struct PredictedHighlight {
   std::optional<Plane> tangentPlane;
   std::optional<CanonicalContour> canonical;  ///< directions with their ends on S and T
   double coverage = 1;                        ///< share of directions that gave a point
-  std::optional<double>
-      curvatureVariation;  ///< predict.query = local-quadric only, see `curvatureVariation` in core/model/star.h
-  /// One per vertex of `contour`: standard deviation across the contour from the fit's uncertainty, px; 0 where the contour runs along
-  /// the surface's edge. Empty unless asked for (predict.band) and known.
+  /// For predict.query = local-quadric alone, see `curvatureVariation` in core/model/star.h.
+  std::optional<double> curvatureVariation;
+  /// One per vertex of `contour`: standard deviation across the contour from the fit's uncertainty, px; 0 where the contour runs
+  /// along the surface's edge. Empty unless asked for (predict.band) and known.
   std::vector<double> sigmaPx;
 };
 
-/// A highlight that a model predicts and a filter took out (core/inspect/prediction_filter.h): nobody compares it, views draw it
-/// faintly.
+/// A highlight that a model predicts and a filter took out (core/inspect/prediction_filter.h). It is not compared, and views draw
+/// it faintly.
 struct FilteredHighlight {
   PredictedHighlight highlight;
   std::string reason;  ///< in words
 };
 
-/// Prediction of one light in one view: highlights, at least one, or the reason why there is none.
+/// Prediction of one light in one view: at least one highlight, or the reason why nothing is predicted.
 class Prediction {
  public:
   Prediction() : answer_(Failure{Reason::NotReached, "nothing was predicted"}) {}
   Prediction(Failure reason) : answer_(std::move(reason)) {}
   /// @param why  the answer where `found` is empty
   Prediction(std::vector<PredictedHighlight> found, std::optional<Failure> why = std::nullopt);
-  const std::vector<PredictedHighlight>& highlights() const;                 ///< none where there is a failure
+  const std::vector<PredictedHighlight>& highlights() const;                 ///< empty where there is a failure
   std::span<PredictedHighlight> editable();                                  ///< the same, to add to them
   const Failure* failure() const { return std::get_if<Failure>(&answer_); }  ///< null where there are highlights
   /// Drops the highlights for which there is a reason; where none is left, the first reason is the answer.
@@ -227,9 +227,9 @@ inline constexpr int kLampShape = 5;
 
 /// What others must know of a model to show, check and compare it.
 struct ModelTraits {
-  std::array<int, 3>
-      rgb{};  ///< the model's colour in every view and report, 8-bit sRGB; together colour-blind safe (Okabe and Ito, 2008)
-  bool mirrored = true;  ///< it looks from the virtual (mirrored) cameras, along reflected rays; else from the cameras themselves
+  /// The model's colour in every view and report, 8-bit sRGB; the colours together are colour-blind safe (Okabe and Ito, 2008).
+  std::array<int, 3> rgb{};
+  bool mirrored = true;         ///< it uses the virtual (mirrored) cameras, along reflected rays; else the cameras themselves
   bool stopsAtOutline = false;  ///< its predictions are an ellipsoid's outlines: no walk follows
   enum class Assumes { AnySurface, Plane, ConstantCurvature } surface = Assumes::AnySurface;
 };
@@ -255,13 +255,15 @@ class HighlightModel {
   /// @param surface  may be null for `primal`.
   virtual Prediction predict(const ModelFit& fit, const Camera& camera, const Surface* surface,
                              const Settings& settings) const = 0;
-  /// Shifts of a prediction's contour along its normals, px and positive outwards: one row per vertex, one column per column of the fit's
-  /// ParameterUncertainty::root, each for one standard deviation. A row of zeros along the surface's own edge. Empty where the fit has no uncertainty.
+  /// Shifts of a prediction's contour along its normals, px and positive outwards: one row per vertex, one column per column of
+  /// the fit's ParameterUncertainty::root, each for one standard deviation. A row of zeros along the surface's own edge. Empty
+  /// where the fit has no uncertainty.
   virtual Eigen::MatrixXd bandShiftsPx(const ModelFit&, const PredictedHighlight&, const Camera&, const Surface*,
                                        const Settings&) const {
     return {};
   }
-  /// Norms of the rows of bandShiftsPx: the standard deviation that the noise in the residuals alone makes. core/model/band.h knows more.
+  /// Norms of the rows of bandShiftsPx: the standard deviation that the noise in the residuals alone makes. core/model/band.h
+  /// knows more.
   std::vector<double> bandSigmaPx(const ModelFit& fit, const PredictedHighlight& highlight, const Camera& camera,
                                   const Surface* surface, const Settings& settings) const {
     const Eigen::VectorXd norms = bandShiftsPx(fit, highlight, camera, surface, settings).rowwise().norm();
@@ -271,20 +273,21 @@ class HighlightModel {
 
 /// All models, from simple to rich. The only registration: one line each in registry.cpp, or addModel().
 const std::vector<std::unique_ptr<HighlightModel>>& allModels();
-/// One more model, the richest. Not thread-safe: before anything else asks for models. std::invalid_argument for a name that is taken.
+/// Adds a model, as the richest. Not thread-safe: call it before anything else asks for models. std::invalid_argument for a name
+/// that is taken.
 void addModel(std::unique_ptr<HighlightModel> model);
-/// InputError listing the known names when there is none.
+/// InputError listing the known names for an unknown one.
 const HighlightModel& modelByName(const std::string& id);
-/// Null when there is none.
+/// Null for an unknown name.
 const HighlightModel* findModel(const std::string& id);
 /// Ids of all models, in their order.
 std::vector<std::string> modelIds();
 
-/// The model that assumes least and is soon computed: what others are compared with where nothing was observed.
+/// The model that assumes least and is quickly computed: others are compared with it where nothing was observed.
 const HighlightModel& levelSetModel();
 /// The model that predicts radiance, with a lobe and the lamp's shape.
 const HighlightModel& radianceModel();
-/// The model whose ellipsoid the canonical contours on the tangent planes are of.
+/// The model whose ellipsoid makes the canonical contours on the tangent planes.
 const HighlightModel& canonicalModel();
 
 }  // namespace glint

@@ -18,7 +18,7 @@ std::unique_ptr<HighlightModel> makeReflectance();
 /// brightest point or a part of its contour out there.
 inline constexpr double kMarginFraction = 0.65;
 
-/// predictedBrightestPoints with the settings' search; looks beyond the image by kMarginFraction where the image has none.
+/// predictedBrightestPoints with the settings' search; looks beyond the image by kMarginFraction if the image has no such point.
 /// @param hints  ModelFit::hints; used when `predict.search` says so.
 Outcome<std::vector<BrightestPoint>> brightestPointsFor(const Surface& surface, const Camera& camera, const Light& light,
                                                         const Settings& settings, const std::vector<SurfacePoint>& hints = {});
@@ -26,8 +26,8 @@ Outcome<std::vector<BrightestPoint>> brightestPointsFor(const Surface& surface, 
 /// ModelFit::hints of a fit's input.
 std::vector<SurfacePoint> hintsOf(const FitInput& input);
 
-/// Median alpha, rad, over the contour points (equally spaced) that the light reaches: the robust limit angle for a given light. Views with
-/// a failure are skipped; 0 when no point is left.
+/// Median alpha, rad, over the contour points (equally spaced) that the light reaches: the robust limit angle for a given light.
+/// Views with a failure are skipped; 0 when no point is left.
 double medianContourAngle(const std::vector<TrainingView>& views, const Light& light, int pointsPerView);
 
 /// Leaves one highlight where several brightest points share one contour: those whose peak lies inside a larger predicted

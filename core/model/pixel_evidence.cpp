@@ -16,7 +16,8 @@ namespace {
 
 constexpr int kWidthPoints = 36;            // of a contour, for the first guess of the roughness
 constexpr std::size_t kFewestContours = 3;  // that tell a lamp's shape
-// Of a contour's radius: right lobes leave a tenth of it between contours and pixels, 2 % where JPEG of quality 20 moves the contours.
+// Share of a contour's radius: right lobes leave a tenth of it between contours and pixels, 2 % where JPEG of quality 20 moves
+// the contours.
 constexpr double kContradiction = 0.025;
 constexpr double kBlurShift = 1.5;  // times blur^2 / radius: how far blur moves a contour, of a lobe with a long tail too
 
@@ -33,8 +34,8 @@ std::optional<Light> meanRay(const std::vector<TrainingView>& views) {
   return mean.norm() > 1e-6 * count ? std::optional<Light>(Light::towards(mean)) : std::nullopt;
 }
 
-/// A sphere or a segment that explains the pixels clearly better than a point. What the contours say starts the search: they tell a
-/// lamp's shape quickly, the pixels then measure it without the background's share.
+/// A sphere or a segment that explains the pixels clearly better than a point. The contours start the search: they tell a lamp's
+/// shape quickly, and the pixels then measure it without the background's share.
 std::optional<PixelFit> withExtent(const std::vector<TrainingView>& views, const std::vector<const PixelPatch*>& patches,
                                    const PixelFit& point, const Settings& settings, const ProgressFn& progress) {
   const LampChoices choices = lampChoicesOf(settings);
@@ -69,8 +70,8 @@ std::optional<PixelFit> withExtent(const std::vector<TrainingView>& views, const
     }
   }
   if (!tried && admits<SphereShape<>>(choices)) {
-    // Contours may hide a size that pixels show: as large as half the lobe is wide, to begin with. What has a pattern may come from a lamp
-    // that is wider than the lobe: the lobe is then narrower than a point lamp makes it.
+    // Contours may hide a size that pixels show: the first guess is half the lobe's width. Residuals with a pattern may come from
+    // a lamp that is wider than the lobe, which is then narrower than a point lamp makes it.
     const double distance = centre.position().norm();
     double reach = 0;
     for (const PixelPatch* p : patches) {
@@ -89,9 +90,9 @@ std::optional<PixelFit> withExtent(const std::vector<TrainingView>& views, const
   return best;
 }
 
-/// Where the contours of the training views lie far from where a fit to their pixels puts them, that in words. Pixels far down the lobe count
-/// in the fit as much as those at the contour: a lobe that has another tail moves the contour, and what remains of the pixels may look
-/// small. Clipped highlights, whose level is not known, and what noise does to contours count for nothing.
+/// A remark where the contours of the training views lie far from where a fit to their pixels puts them. Pixels far down the lobe
+/// count in the fit as much as those at the contour: a lobe with another tail moves the contour, and the pixels' residuals may
+/// still look small. Clipped highlights, whose level is not known, and the noise of contours do not count.
 std::optional<std::string> contradiction(const std::vector<TrainingView>& views, const PixelFit& fit, const Settings& settings) {
   std::vector<RadianceView> contours;
   std::vector<UsedContour> used;
@@ -122,7 +123,7 @@ std::optional<std::string> contradiction(const std::vector<TrainingView>& views,
       std::sqrt(squares / count), 100 * std::sqrt(shares / count));
 }
 
-/// To the last bit, in all that a fit to pixels looks at beside the surface.
+/// Equal to the last bit in all that a fit to pixels looks at beside the surface.
 bool showTheSame(const TrainingView& a, const TrainingView& b) {
   const Highlight &h = a.highlight, &k = b.highlight;
   return a.frame == b.frame && a.pixels == b.pixels && a.camera.pixelFromRay == b.camera.pixelFromRay &&

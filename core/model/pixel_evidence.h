@@ -9,16 +9,18 @@
 
 namespace glint {
 
-/// Every view that can be used has its pixels, and there is one.
+/// Whether there are views that can be used and all of them have their pixels.
 bool havePixels(const std::vector<TrainingView>& views);
 
 /// The lobe and light of the views' pixels (core/reflectance/pixel_fit.h), started by what their contours say.
-/// @param light  first guess; where there is none, or the fit from it is poor, the mean of the reflected peak rays
-/// TooFewViews; the failures of fitPixels(); NotConverged where the lobe leaves more than a tenth of the contours' radius. Stopped.
+/// @param light  first guess; without it, or where the fit from it is poor, the mean of the reflected peak rays
+/// TooFewViews; the failures of fitPixels(); NotConverged where the lobe leaves more than a tenth of the contours' radius.
+/// Stopped.
 Outcome<PixelFit> fitViewsPixels(const std::vector<TrainingView>& views, const std::optional<LightEstimate>& light,
                                  const Settings& settings, const ProgressFn& progress = {});
 
-/// A fit to pixels that failed, with all that it was asked. It takes as long as one that succeeds, so that the same question is asked once.
+/// A fit to pixels that failed, with its whole question. It takes as long as one that succeeds, so the same question is asked
+/// once.
 struct UnexplainedPixels {
   std::vector<TrainingView> views;
   std::optional<LightEstimate> light;
@@ -29,8 +31,8 @@ struct UnexplainedPixels {
                           const Settings& otherSettings) const;
 };
 
-/// The reflectance model from the pixels of a fit's views, taken from FitInput::pixelFit or FitInput::unexplained where these know it.
-/// NotSupported where a view has no pixels; the failures of fitViewsPixels().
+/// The reflectance model from the pixels of a fit's views, taken from FitInput::pixelFit or FitInput::unexplained where these
+/// know it. NotSupported where a view has no pixels; the failures of fitViewsPixels().
 Outcome<ModelFit> reflectanceFromPixels(const FitInput& input, const Settings& settings);
 
 }  // namespace glint

@@ -16,8 +16,8 @@ struct PixelSample {
   double value = 0;
 };
 
-/// Evaluates a field by pixels. Near a known point the surface is followed from there, which on a mesh costs a tenth of a ray;
-/// the place it finds may then be hidden by another part, and the caller asks for that.
+/// Evaluates a field by pixels. Near a known point the surface is followed from there, which on a mesh costs a tenth of a ray.
+/// The place it finds may be hidden by another part, which the caller checks.
 class PixelSampler {
  public:
   using Value = std::function<double(const SurfacePoint& facingCamera)>;
@@ -37,12 +37,12 @@ class PixelSampler {
 
   Ray ray(const Pixel& p) const { return {eye_, (worldFromPixel_ * p.homogeneous()).normalized()}; }
 
-  /// By a ray. Nothing where it meets no surface or the value is not finite.
+  /// The sample by a ray. Nothing where the ray meets no surface or the value is not finite.
   std::optional<PixelSample> at(const Pixel& p) const {
     Outcome<SurfacePoint> hit = surface_.firstHit(ray(p));
     return hit ? sample(*hit) : std::nullopt;
   }
-  /// From a surface point close by.
+  /// The sample by a step from a surface point close by.
   std::optional<PixelSample> near(const Pixel& p, const SurfacePoint& from) const {
     if (!follows_) return at(p);
     const Ray r = ray(p);

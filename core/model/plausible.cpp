@@ -11,7 +11,7 @@
 namespace glint {
 namespace {
 
-constexpr double kRemarkPx = 3, kRemarkShare = 0.05;  // what no detection leaves, and what no highlight hides
+constexpr double kRemarkPx = 3, kRemarkShare = 0.05;  // more than any detection leaves, and more than any highlight hides
 constexpr double kNoiseShare = 1.2;                   // of the noise's sigma: what a right model leaves of it, with some reserve
 
 std::string figure(double v) { return formatted("%.3g", v); }

@@ -8,10 +8,10 @@
 
 namespace glint {
 
-/// The contours of a reflectance fit and its light by one walk per direction around the maxima
-/// beside the mirror points: what predictLevelSet draws, to 0.01 % of the diameter, at a twentieth of its time. Where that is not
-/// certain, why: what summitNear and starHighlights say, and NoBrightestPoint where the brightest maximum lies `faintest` or more
-/// (in log I) down the lobe.
+/// The contours of a reflectance fit and its light by one walk per direction around the maxima beside the mirror points: those of
+/// predictLevelSet, to 0.01 % of the diameter, at a twentieth of its time. Where that is not certain, the reason: that of
+/// summitNear or starHighlights, or NoBrightestPoint where the brightest maximum lies `faintest` or more (in log I) down the
+/// lobe.
 Outcome<std::vector<PredictedHighlight>> radianceStars(const RadianceField& radiance, const ReflectanceFit& fit,
                                                        const Light& light, const std::vector<BrightestPoint>& mirrorPoints,
                                                        double faintest, const Camera& camera, const Surface& surface,

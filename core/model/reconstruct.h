@@ -37,11 +37,11 @@ struct Reconstruction {
   std::string brief() const;                        ///< "4 views, gap 1.2e-4, worst 0.83 px (view 2)"
 };
 
-/// Linear: s_i vech(C_i*) = vech(P_i Q* P_i^T), images and world normalised, smallest singular vector. The scales s_i are eliminated
-/// by projecting across the measured conics, which leaves ten unknowns and the same null space
-/// (method.md section 7; nullities in style.md rule 18). Returns Q* even when it is no ellipsoid (`ellipsoid` is then empty).
-/// TooFewViews (< 3); RankDeficient (judged by the second last singular value, then by the gap); NotFinite.
-/// @param origin  a point near the answer (the light), for normalisation; the views' mean axis point when empty.
+/// Linear: s_i vech(C_i*) = vech(P_i Q* P_i^T), images and world normalised, smallest singular vector. The scales s_i are
+/// eliminated by projecting across the measured conics, which leaves ten unknowns and the same null space (method.md section 7;
+/// nullities in style.md rule 18). Returns Q* even when it is no ellipsoid (`ellipsoid` is then empty). TooFewViews (< 3);
+/// RankDeficient (judged by the second last singular value, then by the gap); NotFinite.
+/// @param origin  a point near the answer (the light), for normalisation; if empty, the views' mean axis point.
 Outcome<Reconstruction> reconstructLinear(const std::vector<ConicView>& views, const std::optional<Eigen::Vector3d>& origin = {},
                                           const ReconstructOptions& options = {});
 
@@ -59,8 +59,8 @@ struct CentrePrior {
 /// Refined: minimises contour distances (px, points to the outline) over the centre and the positive semidefinite S, from
 /// `start`, with the prior on the centre when there is one. Never worse than the start.
 /// TooFewViews (< 3 without a prior, < 2 with one); NotAnEllipsoid when the start has none; NotFinite; RankDeficient;
-/// NotConverged where the iteration ends far from a minimum (the next step is longer than the ellipsoid). Running out of iterations
-/// closer to it is no failure: the result is still better than the start, and `solver` says so.
+/// NotConverged where the iteration ends far from a minimum (the next step is longer than the ellipsoid). Running out of
+/// iterations closer to it is no failure: the result is still better than the start, and `solver` says so.
 Outcome<Reconstruction> reconstructRefined(const std::vector<ConicView>& views, const Ellipsoid& start,
                                            const std::optional<CentrePrior>& prior = {}, int maxIterations = 100);
 

@@ -20,13 +20,13 @@ namespace glint {
 namespace {
 
 constexpr int kUnknowns = 9;          // centre, rotation, three lengths
-constexpr double kBorderPx = 2;       // detectors end the box of a cut object at the border, give or take their rounding
+constexpr double kBorderPx = 2;       // detectors end the box of a cut object at the border, up to rounding
 constexpr int kStarts = 16;           // rotations; with 8 each object of the published data is found too
 constexpr int kMostIterations = 100;  // a start that needs more is not the best one
 constexpr double kTolerance = 1e-14;  // relative, of cost and unknowns: round-off of 32 sides
 constexpr double kSidesRank = 1e-9;  // last over first singular value of the slopes: the same as ReconstructOptions' minRankRatio
 constexpr double kFlattest = 1e-6;   // of the longest length: thinner is a disc to any box
-constexpr double kStandsOut = 0.05;  // chance that one of all sides does without cause (Bonferroni)
+constexpr double kStandsOut = 0.05;  // chance that one of all sides stands out without cause (Bonferroni)
 constexpr double kLeastStandsOutPx = 1;    // below this no box is drawn
 constexpr double kLeastVariance = 1e-300;  // px^2, so that exact sides divide by no zero
 constexpr double kTellsApart = 0.95;       // confidence of the F test
@@ -105,7 +105,8 @@ std::optional<Failure> checkBoxes(const std::vector<BoxView>& views) {
 /// left, top, right, bottom
 double sideAt(const BoxView& v, int which) { return which < 2 ? v.low[which] : v.high[which - 2]; }
 
-/// The image's border is at -0.5 and size - 0.5; a side beyond it belongs to a box that was not cut (some detectors complete objects).
+/// The image's border is at -0.5 and size - 0.5; a side beyond it belongs to a box that was not cut (some detectors complete
+/// objects).
 bool atBorder(const BoxView& v, int which) {
   const int size = v.imageSize[which % 2];
   return size > 0 && std::abs(sideAt(v, which) - (which < 2 ? -0.5 : size - 0.5)) < kBorderPx;
@@ -116,7 +117,8 @@ Eigen::Matrix<double, 3, 4> withDepth(const Projection& p) {
   return p.matrix / std::copysign(p.matrix.row(2).head<3>().norm(), p.matrix.leftCols<3>().determinant());
 }
 
-/// Rotations spread over all directions: the same for every input, seen from the first camera, so that the world's axes do not matter.
+/// Rotations spread over all directions: the same for every input, seen from the first camera, so that the world's axes do not
+/// matter.
 Eigen::Matrix3d startRotation(int i) {
   // Quasi-random quaternions: Shoemake's map of three additive recurrences (their steps are powers of 1 / 1.2207, Roberts' R3).
   const auto part = [&](double step) { return std::fmod(0.5 + i * step, 1.0); };
@@ -138,7 +140,7 @@ class BoxProblem {
       SolidState s;
       const Eigen::AngleAxisd turn(first_ * startRotation(i));
       s.rotation = turn.angle() * turn.axis();
-      // Lengths that differ, or turning would change nothing at first; of a cuboid somewhat shorter.
+      // The lengths differ, or turning would change nothing at first; those of a cuboid are somewhat shorter.
       s.logs = Eigen::Vector3d(0.3, 0, -0.3).array() - (solid == BoxSolid::Cuboid ? 0.4 : 0.0);
       ceres::Problem problem;
       for (const Side& side : sides_)
@@ -154,8 +156,8 @@ class BoxProblem {
     return best;
   }
 
-  /// Gaps in px, and their slopes: by the centre and by the shape (of an ellipsoid, whose rotation means nothing where axes agree) or the
-  /// rotation and logarithms (of a cuboid).
+  /// Gaps in px, and their slopes: by the centre and by the shape (of an ellipsoid, whose rotation means nothing where axes
+  /// agree) or the rotation and logarithms (of a cuboid).
   std::pair<Eigen::VectorXd, Eigen::MatrixXd> rows(BoxSolid solid, const SolidState& s) const {
     const Eigen::Index n = Eigen::Index(sides_.size());
     Eigen::VectorXd gaps = Eigen::VectorXd::Zero(n);
@@ -237,8 +239,8 @@ Outcome<SolidFit> fitSolid(const BoxProblem& problem, BoxSolid solid, const Eige
   return fit;
 }
 
-/// The side that the others contradict most, where it does so by more than chance: residuals divided by their standard deviation, which
-/// the other sides tell. @see Cook and Weisberg, Residuals and Influence in Regression, 1982, sec. 2.2 (externally studentised).
+/// The side that the others contradict most, if by more than chance: residuals divided by their standard deviation, which the
+/// other sides tell. @see Cook and Weisberg, Residuals and Influence in Regression, 1982, sec. 2.2 (externally studentised).
 std::optional<std::string> outlierOf(const SolidFit& fit, const std::vector<Side>& sides) {
   static const char* const kSideNames[4] = {"left", "top", "right", "bottom"};
   const double free = double(sides.size()) - kUnknowns - 1;
@@ -249,7 +251,7 @@ std::optional<std::string> outlierOf(const SolidFit& fit, const std::vector<Side
   double most = 0;
   for (std::size_t i = 0; i < sides.size(); ++i) {
     const double residual = fit.residualPx[std::size_t(sides[i].view)][sides[i].which], rest = 1 - fit.leverage[i];
-    if (!(rest > kFlattest)) continue;  // no other side speaks of what this one tells
+    if (!(rest > kFlattest)) continue;  // no other side tells what this one tells
     const double variance = (squares - residual * residual / rest) / free;
     const double studentised = std::abs(residual) / std::sqrt(std::max(variance, kLeastVariance) * rest);
     if (std::abs(residual) > kLeastStandsOutPx && studentised > most) {
@@ -284,7 +286,8 @@ std::vector<std::string> remarksOn(const BoxReconstruction& r, const std::vector
   return remarks;
 }
 
-/// Sides in the world x = origin + scale * normalised. Planes are scaled with their projections, so that a gap over a depth is px.
+/// Sides in the world x = origin + scale * normalised. Planes are scaled with their projections, so that a gap over a depth is
+/// px.
 std::vector<Side> boxSidesOf(const std::vector<BoxView>& views, const Eigen::Vector3d& origin, double scale) {
   std::vector<Side> sides;
   for (std::size_t i = 0; i < views.size(); ++i) {

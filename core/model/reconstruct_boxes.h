@@ -20,7 +20,7 @@ struct BoxView {
   bool visible = true;  ///< false: the object is not seen, and nothing of this view is used
 };
 
-/// The solid that a box is a box of. Both have nine unknowns, so their residuals may be compared.
+/// The solid inside a box. Both kinds have nine unknowns, so their residuals may be compared.
 enum class BoxSolid { Ellipsoid, Cuboid };
 const char* nameOf(BoxSolid solid);
 
@@ -48,17 +48,19 @@ struct BoxReconstruction {
 ///   n.c + d = h(R^T n),   h(n) = |diag(a) n|_q,   q = 2 of an ellipsoid with semi-axes a, q = 1 of a cuboid with half edges a,
 /// with n away from the object and h the support function. (An ellipse inscribed in the box is no outline, unless the
 /// object's axes happen to lie along the image's: of a tilted object such ellipses contradict each other.)
-/// Minimises the sides' distances in px, first order, over centre, rotation and a; the least of several starts. The solid with the smaller
-/// residual is the answer. A remark says where an F test at 95 % cannot tell the two apart, where one side stands out (an object that is cut or occluded), and
-/// where the centre is not known to half of the object's size.
-/// @return TooFewViews (fewer than 3 views with a side to use); TooFewPoints (fewer than 9 sides); RankDeficient (the views repeat each other or share a
-/// centre); BehindCamera (the rays through the boxes do not meet in front of the cameras); NotAnEllipse (a box without area); NotFinite; NotConverged.
-/// @see Rubino, Crocco and Del Bue, 3D Object Localisation from Multi-View Image Detections, PAMI 2018 (inscribed ellipses, linear);
-/// Nicholson, Milford and Suenderhauf, QuadricSLAM, RA-L 2019 (tangent planes of the sides).
+/// Minimises the sides' distances in px, first order, over centre, rotation and a; the least of several starts. The solid with
+/// the smaller residual is the answer. A remark says where an F test at 95 % cannot tell the two apart, where one side stands out
+/// (an object that is cut or occluded), and where the centre is not known to half of the object's size.
+/// @return TooFewViews (fewer than 3 views with a side to use); TooFewPoints (fewer than 9 sides); RankDeficient (the views
+///   repeat each other or share a centre); BehindCamera (the rays through the boxes do not meet in front of the cameras);
+///   NotAnEllipse (a box without area); NotFinite; NotConverged.
+/// @see Rubino, Crocco and Del Bue, 3D Object Localisation from Multi-View Image Detections, PAMI 2018 (inscribed ellipses,
+///   linear); Nicholson, Milford and Suenderhauf, QuadricSLAM, RA-L 2019 (tangent planes of the sides).
 Outcome<BoxReconstruction> reconstructFromBoxes(const std::vector<BoxView>& views);
 
-/// Eq. (cuboid): squared semi-axes m_i^2 = a_i (a_i + (2 / pi) (a_j + a_k)): the ellipsoid along the cuboid's axes whose squared support function
-/// differs least from the cuboid's, (sum a_i |n_i|)^2, over all directions n: the one that boxes of a cuboid from all around look like.
+/// Eq. (cuboid): squared semi-axes m_i^2 = a_i (a_i + (2 / pi) (a_j + a_k)): the ellipsoid along the cuboid's axes whose squared
+/// support function differs least from the cuboid's, (sum a_i |n_i|)^2, over all directions n. Boxes of a cuboid, seen from all
+/// around, look like boxes of this ellipsoid.
 /// @param halfEdges  a, not negative. @return m
 Eigen::Vector3d ellipsoidOfCuboid(const Eigen::Vector3d& halfEdges);
 

@@ -60,7 +60,7 @@ Normalisation normalise(const std::vector<ConicView>& views, const Eigen::Vector
     const Eigen::Matrix<double, 2, 3> across = p.block<2, 3>(0, 0) - p.block<2, 1>(0, 3) / depth * p.block<1, 3>(2, 0);
     const double size = std::abs(depth) * std::numbers::sqrt2 / across.norm();
     if (std::isfinite(size) && size > 0) sizes.push_back(size);
-    // Scale of the shape only: subtracting the centre first keeps small ellipses whole.
+    // Scale of the shape only: subtracting the centre first keeps the digits of small ellipses.
     const Ellipse local{{0, 0}, v.ellipse.semiAxes / radius, v.ellipse.angle};
     n.views.push_back({p, vech(local.dual().matrix).normalized()});
   }
@@ -201,7 +201,7 @@ Outcome<Reconstruction> reconstructLinear(const std::vector<ConicView>& views, c
     result.ellipsoid = Ellipsoid(pose, world.scale * e->semiAxes());
   }
   // Rays of a narrow baseline seem to meet near the cameras, and measured from there the singular values hide how many quadrics
-  // fit. The found centre is the better origin, and the judge of the rank.
+  // fit. The centre that was found is the better origin, and decides about the rank.
   if (!origin && result.ellipsoid && (result.ellipsoid->centre() - *at).norm() > 2 * result.ellipsoid->semiAxes().x())
     return reconstructLinear(views, result.ellipsoid->centre(), options);
   result.residualPx = detail::residuals(views, result);

@@ -26,11 +26,12 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kRankRatio = 1e-9;
 /// The second axis is kept above this share of the longest, squared: a segment has no outline to step from.
 constexpr double kSegment = 1e-10;
-/// Share of the cost that the linear model may still promise at a minimum: the root of round-off, as the cost is flat to second order there.
+/// Share of the cost that the linear model may still promise at a minimum: the root of round-off, as the cost is flat to second
+/// order there.
 constexpr double kStationary = 1e-8;
 
-/// Centre and shape S = V diag(e) V^T with ascending e >= 0: distances are linear in S where an axis vanishes, while a factor of S
-/// has no slope there and would creep towards the flat ellipsoid.
+/// Centre and shape S = V diag(e) V^T with ascending e >= 0: distances are linear in S where an axis vanishes, while a factor of
+/// S has no slope there and would creep towards the flat ellipsoid.
 struct State {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
   Eigen::Matrix3d vectors = Eigen::Matrix3d::Identity();
@@ -52,7 +53,7 @@ struct State {
     next.centre = centre + step.head<3>();
     next.vectors = eigen.eigenvectors();
     next.squares = eigen.eigenvalues().cwiseMax(0.0);
-    // An axis of round-off is a zero axis.
+    // An axis that is round-off counts as zero.
     if (next.squares(0) <= 4 * std::numeric_limits<double>::epsilon() * next.squares(2)) next.squares(0) = 0;
     next.squares(1) = std::max(next.squares(1), kSegment * next.squares(2));
     return next;
@@ -183,8 +184,8 @@ struct Linearised {
 };
 
 /// Covariance at the solution. With H = J^T J + W^T W (contours and prior) the estimate moves by H^-1 (J^T noise + W^T e), e the
-/// prior's own unit errors; with [J; W] = Q R that is R^-1 Q^T diag(noise.., 1..), so no product of Jacobians is formed. The thickness
-/// of a flat ellipsoid that the contours hold at zero counts as fixed.
+/// prior's own unit errors; with [J; W] = Q R that is R^-1 Q^T diag(noise.., 1..), so no product of Jacobians is formed. The
+/// thickness of a flat ellipsoid that the contours hold at zero counts as fixed.
 std::optional<ParameterUncertainty> uncertaintyOf(const Rows& rows, const State& state, int unknowns, bool prior, double scale) {
   const Eigen::Index data = rows.rows() - 3;  // the prior's rows come last, zero without one
   const double free = double(data) + (prior ? 3 : 0) - unknowns;

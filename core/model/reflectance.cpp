@@ -42,7 +42,7 @@ std::optional<Light> firstLight(const FitInput& input) {
   return mean.norm() > 1e-6 * double(rays.size()) ? std::optional<Light>(Light::towards(mean)) : std::nullopt;
 }
 
-/// Over all contours of a training view, from the residual of each contour; contours of one view have about equally many points.
+/// RMS over all contours of a training view, from the residual of each; contours of one view have about equally many points.
 std::vector<double> perView(const std::vector<double>& rms, const std::vector<std::size_t>& owner, std::size_t views) {
   std::vector<double> squares(views, 0);
   std::vector<int> counts(views, 0);
@@ -64,7 +64,7 @@ std::vector<double> levelsOf(const std::vector<RadianceView>& views) {
   return {levels.begin(), levels.end()};
 }
 
-/// -log I; `contour` is log I on the contour: a shadow matters inside the highlight only.
+/// -log I. `contour` is log I on the contour: a shadow matters only inside the highlight.
 std::function<std::optional<double>(const SurfacePoint&)> valueOf(const RadianceField& radiance, double contour) {
   return [&radiance, contour](const SurfacePoint& at) -> std::optional<double> {
     const std::optional<double> log = radiance.at(at, contour);
@@ -72,7 +72,7 @@ std::function<std::optional<double>(const SurfacePoint&)> valueOf(const Radiance
   };
 }
 
-/// As a fit of contours: lobe, roughness and lamp.
+/// The same as a fit of contours: lobe, roughness and lamp.
 std::optional<RadianceFit> radianceFitOf(const ModelFit& fit) {
   const ReflectanceFit* const fitted = fit.as<ReflectanceFit>();
   if (!fit.lightEstimate || !fitted) return std::nullopt;
@@ -154,7 +154,7 @@ class Reflectance final : public HighlightModel {
     return explaining(std::move(fit), used, true, settings.number("fit.most_residual"));
   }
 
-  /// From the fit that is known nearby, where it leads to an explanation; else by a search.
+  /// Starts from the fit that is known nearby, where that leads to an explanation; else searches.
   static Outcome<RadianceFit> lampOfContours(const FitInput& input, const std::vector<RadianceView>& views,
                                              const Settings& settings) {
     RadianceFitOptions options = radianceFitOptionsOf(settings);

@@ -11,12 +11,12 @@ namespace glint {
 namespace {
 
 constexpr std::size_t kMostParts = 8192;  // half of a large mesh: no bound helps there
-constexpr int kMostLooks = 48;            // with more parts unexplained the level set is no slower
+constexpr int kMostLooks = 48;            // with more unexplained parts the level set is as fast
 constexpr double kOnOutline = 1.02;       // relative reach: the outline is known far better, a part's middle is a point
 constexpr double kPartsNear = 4;          // radii: where the bounds of a part at the outline may still reach the level
 constexpr double kCellsNear = 1.5;
 constexpr int kColumns = 20;  // of the grid that stands for the parts
-// Of the change of H - N from ray to ray: what it may bend within a cell, and move where the surface ends in the cell.
+// Share of the change of H - N from ray to ray: by how much it may bend within a cell, and move where the surface ends there.
 constexpr double kCurvedShare = 0.25, kCutShare = 0.5;
 constexpr int kFine = 4;  // rays a side over a cell or part that is looked at
 
@@ -175,7 +175,7 @@ class Inspector {
     for (const StarOutline& o : outlines_) least = std::min(least, o.relativeReach(p));
     return least;
   }
-  /// Inside an outline, or so close to one that nothing else follows from it.
+  /// Whether the place is inside an outline, or so close to one that nothing else follows from it.
   bool explained(const Pixel& p, double nearPx, const SurfacePoint& at) const {
     for (const StarOutline& o : outlines_) {
       if (o.surelyInside(p)) return true;
@@ -187,7 +187,7 @@ class Inspector {
     }
     return false;
   }
-  /// A visible point that is inside and lit, within the pixels that count, and outside of all outlines.
+  /// Whether a visible point is inside and lit, within the pixels that count, and outside of all outlines.
   bool insideElsewhere(const Pixel& p, const SurfacePoint& visible) const {
     if ((min_ - p).maxCoeff() > 0 || (p - max_).maxCoeff() > 0) return false;
     if (!(field_.value(visible) < level_) || relativeReach(p) < kOnOutline) return false;

@@ -8,10 +8,9 @@
 
 namespace glint {
 
-/// Why it is not certain that nothing of the visible, lit surface between two corners of the image is inside { value < level }
-/// but what the outlines enclose; empty where it is. Surfaces that know bounds of their parts rule out all others by them;
-/// elsewhere a grid of rays stands for the parts. What remains and is not near an outline is looked at by rays a few pixels
-/// apart.
+/// Why it is not certain that, between two corners of the image, only what the outlines enclose of the visible, lit surface is
+/// inside { value < level }; empty where it is certain. Surfaces that know bounds of their parts rule out all others by them;
+/// elsewhere a grid of rays stands for the parts. Rays a few pixels apart look at what remains and is not near an outline.
 std::optional<Failure> somethingElseInside(const StarField& field, const Camera& camera, const Surface& surface,
                                            const std::vector<StarOutline>& outlines, double level, const Pixel& min,
                                            const Pixel& max);

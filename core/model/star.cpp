@@ -26,7 +26,7 @@ std::array<double, kStencil> weights(int count, double at) {
 
 using Table = std::array<std::array<double, kStencil>, kSubdivisions>;
 
-/// Those of a full stencil around a chord, for every one of `parts` subdivisions: nearly all chords use these.
+/// The weights of a full stencil around a chord, for each of `parts` subdivisions: nearly all chords use these.
 const Table& centredWeights(int parts) {
   static const auto tables = [] {
     std::array<Table, kSubdivisions + 1> t{};

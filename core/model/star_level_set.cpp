@@ -16,20 +16,20 @@
 namespace glint {
 namespace {
 
-// Of the region's radius. Differences over a tenth of it are unbiased to a part in a thousand; the last step's, over a hundredth,
-// to one in 1e5, and a mesh's kinks cost less than that.
+// Shares of the region's radius. Differences over a tenth of it are unbiased to a part in a thousand; those of the last step,
+// over a hundredth, to one in 1e5, and a mesh's kinks cost less than that.
 constexpr double kWideStencil = 0.1, kNarrowStencil = 0.01;
 constexpr int kSummitSteps = 10;
 constexpr double kLargestAxisRatio = 100;  // beyond it (a fold) no second order describes the region
 
-constexpr double kReachTolerance = 1e-6;  // relative; a hundredth of what the contour may be off by
+constexpr double kReachTolerance = 1e-6;  // relative; a hundredth of the contour's tolerance
 constexpr int kRootSteps = 8;
 constexpr double kTrust = 0.35;  // of the rise and of the reach: beyond it another branch may be in between
 constexpr double kFall = 0.02;   // of the rise: a value that falls by more on its way out is no round-off or mesh noise
 constexpr double kMarchStart = 0.2, kMarchGrowth = 1.35, kFarthest = 30;
 
-// Of the diameter: how far the curve between the directions may be off where it is checked. The points of the check join the
-// outline, so that what remains is at most half of this (a kink), a thirtieth on a smooth curve.
+// Share of the diameter: how far the curve between the directions may be off where it is checked. The points of the check join
+// the outline, so that what remains is at most half of this (a kink), a thirtieth on a smooth curve.
 constexpr double kMeanOff = 1e-4, kLargestOff = 5e-4;
 constexpr std::size_t kMostDirections = 288;
 
@@ -85,7 +85,7 @@ class Walk {
     return lost();
   }
 
-  /// Outwards until the level is crossed, without any guess.
+  /// Goes outwards until the level is crossed, without any guess.
   Outcome<End> march(const Eigen::Vector2d& ray) const {
     double reach = 0, value = -rise_, highest = -rise_;
     SurfacePoint at = summit_.point;

@@ -28,9 +28,9 @@ struct Summit {
   Eigen::Matrix2d hessian;  ///< of the value by the pixel, positive definite
 };
 
-/// Downhill from a place near a minimum by Newton's method, by differences over a tenth of the region { value < minimum + rise }.
-/// SurfaceEnded where the field is undefined around it; NotConverged where it is not convex or does not settle: no smooth single
-/// minimum is near.
+/// The minimum downhill from a place near it, by Newton's method, by differences over a tenth of the region { value < minimum +
+/// rise }. SurfaceEnded where the field is undefined around it; NotConverged where it is not convex or does not settle, so that
+/// no smooth single minimum is near.
 Outcome<Summit> summitNear(const StarField& field, const Camera& camera, const Surface& surface, const BrightestPoint& start,
                            double rise);
 
@@ -46,21 +46,21 @@ struct StarOutline {
   double relativeReach(const Pixel& p) const;
   /// A lower bound of it, faster.
   double leastRelativeReach(const Pixel& p) const { return (inverse * (p - centre)).norm() / most; }
-  /// Whether it is certainly below 1; faster.
+  /// Whether that reach is certainly below 1; faster.
   bool surelyInside(const Pixel& p) const { return (inverse * (p - centre)).squaredNorm() < least * least; }
 };
 
 /// The outline of { value < level } around a summit by walks along pixel rays in equal steps of t: starting with half of
 /// `directions`, doubled until the curve between them, checked half-way between all neighbours, is known to 0.01 % of the
-/// diameter on the average. SurfaceEnded (or the field), NotMonotonic, NotReached where a direction fails; NotConverged where
-/// the curve stays unknown: the region is then no smooth star.
+/// diameter on the average. SurfaceEnded (or the field), NotMonotonic, NotReached where a direction fails; NotConverged where the
+/// curve stays unknown, because the region is not a smooth star.
 Outcome<StarOutline> starAround(const StarField& field, const Camera& camera, const Surface& surface, const Summit& summit,
                                 double level, int directions);
 
 /// The contours of { value < level } as stars around all summits that lie below the level, as predictLevelSet would return them.
-/// Where that is not certain, why: OutsideImage (a summit, or an outline by more than the margin), what starAround says, Occluded
-/// (hidden or in shadow at an end), NotMonotonic (an outline encloses another summit), NotSupported (the surface may reach the
-/// level elsewhere).
+/// Where that is not certain, the reason: OutsideImage (a summit, or an outline by more than the margin), what starAround says,
+/// Occluded (hidden or in shadow at an end), NotMonotonic (an outline encloses another summit), NotSupported (the surface may
+/// reach the level elsewhere).
 Outcome<std::vector<PredictedHighlight>> starHighlights(const StarField& field, const Camera& camera, const Surface& surface,
                                                         const std::vector<Summit>& summits, double level,
                                                         const Settings& settings);

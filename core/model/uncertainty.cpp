@@ -141,7 +141,7 @@ Eigen::MatrixXd EllipsoidModel::bandShiftsPx(const ModelFit& fit, const Predicte
   std::vector<std::pair<Polyline, Polyline>> perturbed;
   for (Eigen::Index k = 0; k < root.cols(); ++k) {
     std::optional<Polyline> plus = predicted(kColumnStep * root.col(k)), minus = predicted(-kColumnStep * root.col(k));
-    if (!plus || !minus) return {};  // the highlight would vanish or merge within the uncertainty: no band is honest
+    if (!plus || !minus) return {};  // the highlight would vanish or merge within the uncertainty: any band would be wrong
     perturbed.emplace_back(std::move(*plus), std::move(*minus));
   }
   return polylineShiftsPx(highlight.contour, perturbed, kColumnStep);

@@ -13,16 +13,16 @@
 namespace glint {
 namespace {
 
-constexpr std::size_t kFewestViews = 4;  // fewer show no trend beside what the parameters take
+constexpr std::size_t kFewestViews = 4;  // fewer show no trend beside the parameters
 constexpr std::size_t kMostViews = 40;   // more are thinned out: the cost grows with the cube
 constexpr double kLongest = 4;           // times the extent of the views: longer ones look like one error of all
 constexpr int kIterations = 40;
-constexpr double kSettled = 1e-3;        // relative change of the variances: far below what a few views tell of them
-constexpr double kNothing = 1e-6;        // of the variance of the noise: what moves no contour visibly
+constexpr double kSettled = 1e-3;        // relative change of the variances: far finer than a few views tell them
+constexpr double kNothing = 1e-6;        // of the variance of the noise: too small to move a contour visibly
 constexpr double kOpenParameter = 1e-9;  // a parameter that moves no shape, to round-off
 constexpr double kUntold = 1e-9;         // share of an effect that the parameters do not take, to round-off
 
-/// Distance of every view to its nearest neighbour, the middle one.
+/// Median distance of a view to its nearest neighbour.
 double spacingOf(const std::vector<const ViewCoefficients*>& views) {
   std::vector<double> nearest;
   for (const ViewCoefficients* v : views) {
@@ -34,7 +34,7 @@ double spacingOf(const std::vector<const ViewCoefficients*>& views) {
   return upperMedian(nearest);
 }
 
-/// The shapes of the groups of all views below one another.
+/// The shapes of the groups of all views, one below the other.
 class Stacked {
  public:
   Stacked(const std::vector<const ViewCoefficients*>& views, const std::vector<int>& groups, double noiseVariance)
@@ -72,7 +72,8 @@ class Stacked {
             a.view == b.view ? 1 : viewCorrelation((views_[a.view]->where - views_[b.view]->where).norm(), length);
         patterns[a.group](i, k) = std::sqrt(views_[a.view]->points * views_[b.view]->points) * alike;
       }
-    // What the parameters take whole, as a shift that all views share, no residual tells: its likelihood would be round-off.
+    // No residual tells what the parameters absorb wholly, such as a shift that all views share: its likelihood would be
+    // round-off.
     const Eigen::MatrixXd open = Eigen::MatrixXd::Identity(n, n) - basis_ * basis_.transpose();
     for (Eigen::Index g = 0; g < m; ++g)
       if (!(open.cwiseProduct(patterns[std::size_t(g)]).sum() > kUntold * patterns[std::size_t(g)].trace())) variance(g) = 0;
@@ -97,7 +98,7 @@ class Stacked {
                                           std::max(projector.cwiseProduct(pattern).sum(), 1e-300));  // no division by zero
         const double before = variance(g);
         variance(g) *= factorOf;
-        // One that goes to nothing never settles, but the likelihood must be that of its last size.
+        // A variance that goes to zero never settles, but the likelihood must be that of its last size.
         if (std::max(before, variance(g)) > kNothing * noise_) change = std::max(change, std::abs(factorOf - 1));
       }
       if (change < kSettled) break;
@@ -155,7 +156,7 @@ std::vector<CorrelatedEffects> correlatedEffects(const std::vector<ViewCoefficie
   double best = -std::numeric_limits<double>::infinity(), sum = 0;
   for (const double l : likelihood)
     if (std::isfinite(l)) best = std::max(best, l);
-  if (!std::isfinite(best)) return {{0, 1, start, none}};  // no length has one: as given
+  if (!std::isfinite(best)) return {{0, 1, start, none}};  // no length has a likelihood: the variances as given
   for (std::size_t i = 0; i < result.size(); ++i)
     sum += result[i].weight = std::isfinite(likelihood[i]) ? std::exp(likelihood[i] - best) : 0;
   // Before the residuals are seen, independent errors (poses) are as likely as all lengths of bumps together.

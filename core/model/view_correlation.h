@@ -6,7 +6,7 @@
 
 namespace glint {
 
-/// How like the errors of two views are that lie this far apart: Matern's kernel of order 3/2.
+/// Correlation of the errors of two views at this distance: Matern's kernel of order 3/2.
 /// @param length  0: views are independent; infinite: all have one and the same error
 double viewCorrelation(double distance, double length);
 
@@ -19,7 +19,7 @@ struct ViewCoefficients {
   Eigen::VectorXd where;        ///< place of the view, in any unit
 };
 
-/// What the residuals say if the errors of views go together over `length`.
+/// What the residuals say if the errors of views are correlated over `length`.
 struct CorrelatedEffects {
   double length = 0;
   double weight = 1;         ///< share of the evidence; of all lengths together 1
@@ -27,12 +27,13 @@ struct CorrelatedEffects {
   Eigen::VectorXd freedom;   ///< degrees of freedom of each
 };
 
-/// Variances of the groups, and the weight of the lengths, by restricted maximum likelihood: z = J d + u + e with d free, u of covariance
-/// tau_g^2 N K(length) within a group's shape across views, e noise of known variance. The lengths tried are 0, from the distance
-/// of neighbouring views to four times the extent of all, and infinity. Only the length 0, with the variances as given, where fewer than four views or all at one place.
+/// Variances of the groups, and the weight of the lengths, by restricted maximum likelihood: z = J d + u + e with d free, u of
+/// covariance tau_g^2 N K(length) within a group's shape across views, e noise of known variance. The lengths tried are 0, from
+/// the distance of neighbouring views to four times the extent of all, and infinity. Only the length 0, with the variances as
+/// given, for fewer than four views or views at one place.
 /// @param groups  which to estimate; the others have no error. @param start  positive, one for each.
-/// @see Patterson, Thompson, Biometrika 58, 1971 (the likelihood); Zhou, Hu, Zhou, Lange, MM algorithms for variance components, 2019 (the
-/// iteration); Rasmussen, Williams, Gaussian Processes for Machine Learning, 2006, 4.17 (the kernel).
+/// @see Patterson, Thompson, Biometrika 58, 1971 (the likelihood); Zhou, Hu, Zhou, Lange, MM algorithms for variance components,
+///   2019 (the iteration); Rasmussen, Williams, Gaussian Processes for Machine Learning, 2006, 4.17 (the kernel).
 std::vector<CorrelatedEffects> correlatedEffects(const std::vector<ViewCoefficients>& views, const std::vector<int>& groups,
                                                  const Eigen::VectorXd& start, double noiseVariance);
 

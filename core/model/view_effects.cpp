@@ -21,25 +21,25 @@ namespace {
 constexpr int kHighest = 9;             // order of the harmonics: finer errors of a contour average out over it
 constexpr int kPointsPerShape = 3;      // at least: the rest of the points tells the noise
 constexpr double kSignificance = 0.05;  // at which an error of whole views is believed
-constexpr double kBorrowed =
-    4;  // degrees of freedom that offset, shift and stretch borrow from each other: few views tell little of one
-// Eigenvalues of the parameters' information, relative to the largest, in units in which a fit without prior has equal ones: what lies
-// below was held by a prior.
+// Degrees of freedom that offset, shift and stretch borrow from each other: few views tell little of one.
+constexpr double kBorrowed = 4;
+// Eigenvalues of the parameters' information, relative to the largest, in units in which a fit without prior has equal ones: a
+// prior held what lies below.
 constexpr double kHeld = 0.2;
 constexpr double kOpenDirection = 1e-9;  // a direction that moves no contour, to round-off
 constexpr double kNormal95 = 1.959964;
-constexpr double kWidthTolerance = 0.01;  // of a half width: far below what a few views tell of it
+constexpr double kWidthTolerance = 0.01;  // of a half width: far finer than a few views tell it
 constexpr double kWildSigmas = 4;
 constexpr int kGroups = ContourShapes::kGroups;
 constexpr int kLow = 3;                // groups: offset, shift, stretch
-constexpr double kLeastWeight = 1e-3;  // of the evidence: what has less changes no band
+constexpr double kLeastWeight = 1e-3;  // of the evidence: a length with less changes no band
 
 /// One part of a mixture of Student's distributions about zero.
 struct Spread {
   double weight, sigma, freedom;
 };
 
-/// What a value of the mixture exceeds, up or down, in one of twenty times.
+/// What the size of a value of the mixture exceeds in one of twenty times.
 double halfWidth95(const std::vector<Spread>& mixture) {
   double low = std::numeric_limits<double>::infinity(), high = 0;
   for (const Spread& s : mixture) {
@@ -61,7 +61,7 @@ double halfWidth95(const std::vector<Spread>& mixture) {
 
 int groupOf(int order) { return order <= 2 ? order : order <= 5 ? 3 : 4; }
 
-/// What the training views tell of the parameters, and from where on a residual is wild.
+/// What the training views tell of the parameters, and the size from which a residual is wild.
 struct Information {
   Eigen::MatrixXd matrix;   ///< sum of J' J
   Eigen::MatrixXd byNoise;  ///< covariance of the parameters for unit noise, half half'
@@ -104,9 +104,9 @@ struct Variances {
   double noise = 0;
 };
 
-/// Squares seen in every group, and what each source would make of them after the parameters took their share: with P the projector off
-/// the parameters, S_g and its expectation sum_h tau_h^2 tr(S_g' P N S_h S_h' P S_g) + noise^2 tr(S_g' P S_g), N the points of a view.
-/// The group after the last one is what no shape explains.
+/// Squares seen in every group, and the part of each source after the parameters took their share: with P the
+/// projector off the parameters, S_g and its expectation sum_h tau_h^2 tr(S_g' P N S_h S_h' P S_g) + noise^2 tr(S_g' P S_g), N
+/// the points of a view. The group after the last one holds what no shape explains.
 class GroupSquares {
  public:
   GroupSquares(const std::vector<ViewResiduals>& views, const Information& information) {
@@ -140,7 +140,7 @@ class GroupSquares {
   double noiseFreedom() const { return std::max(1.0, left(kGroups)); }
   double freedom(int g) const { return weighted_(g) > 0 ? expected(g, g) / (weighted_(g) / count_(g)) : 0; }
 
-  /// Those that make the expected squares the ones seen. A group that would need a negative one counts as none.
+  /// The variances at which the expected squares are those seen. A group that would need a negative one counts as zero.
   Variances variances() const {
     Variances v;
     v.noise = seen_(kGroups) / noiseFreedom();
@@ -163,7 +163,7 @@ class GroupSquares {
         v.noise = solution(m);
         break;
       }
-      if (solution.allFinite() && least > 0) {  // the noise came out below nothing: it is what the finest residuals show
+      if (solution.allFinite() && least > 0) {  // the noise came out negative: the finest residuals tell it
         for (Eigen::Index a = 0; a < m; ++a)
           v.group[active[std::size_t(a)]] = std::max(0.0, (squares(a) - v.noise * system(a, m)) / system(a, a));
         break;
@@ -200,7 +200,8 @@ class GroupSquares {
   double all_ = 0;
 };
 
-/// The Huber loss leaves more noise in the parameters than plain squares do where noise exceeds its scale: by this factor of the variance.
+/// The Huber loss leaves more noise in the parameters than plain squares do where noise exceeds its scale: by this factor of the
+/// variance.
 double noiseOfLoss(const std::vector<ViewResiduals>& views, double robustPx, double points, double allSquares) {
   double psi2 = 0, inside = 0;
   for (const ViewResiduals& v : views)
@@ -269,7 +270,7 @@ ViewEffects::ViewEffects(const std::vector<ViewResiduals>& views, double robustP
   if (variances.noise > 0) byNoise_ *= noiseOfLoss(views, robustPx, information.points, squares.all());
 }
 
-/// Offset, shift and stretch of neighbours may go together; finer shapes hardly move the parameters.
+/// Offset, shift and stretch of neighbours may be correlated; finer shapes hardly move the parameters.
 void ViewEffects::addCases(const std::vector<ViewCoefficients>& views, const Case& independent, double noise2) {
   std::vector<int> low;
   for (int g = 0; g < kLow; ++g)
@@ -367,7 +368,7 @@ std::vector<double> ViewEffects::sigmaPx(const Eigen::MatrixXd& byParameter, con
   const Eigen::Index n = byParameter.rows();
   std::vector<std::vector<Spread>> mixtures(static_cast<std::size_t>(n));
   for (const Case& c : cases_) {
-    // What the parameters took of a neighbour's error is in this view's error, too.
+    // The part of a neighbour's error that the parameters took is in this view's error, too.
     Eigen::VectorXd alike = Eigen::VectorXd::Zero(Eigen::Index(where_.size()));
     for (std::size_t v = 0; v < where_.size() && c.length > 0; ++v) alike(Eigen::Index(v)) = likeness(c, where, where_[v]);
     std::vector<Eigen::VectorXd> taken;

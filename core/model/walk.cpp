@@ -17,8 +17,8 @@ constexpr double kFallFraction = 0.02;  // a fall of alpha by more than this sha
 constexpr int kRootIterations = 60;     // bracketed: bisection alone needs 52
 
 /// Root of f in [a, b] with f(a) < 0 <= f(b): regula falsi with the Anderson-Bjorck weights, bisection when it stalls.
-/// `f` returns NaN to give up. Returns the last argument evaluated. (Boost's toms748_solve takes a tenth fewer steps, 2.0 for 2.2 on a
-/// sphere; other steps end at other last digits, and stored sessions replay with `--exact`.)
+/// `f` returns NaN to give up. Returns the last argument evaluated. (Boost's toms748_solve takes a tenth fewer steps, 2.0 for 2.2
+/// on a sphere; other steps end at other last digits, and stored sessions replay with `--exact`.)
 template <class F>
 double bracketedRoot(F&& f, double a, double fa, double b, double fb, double tolerance) {
   int side = 0;
@@ -262,8 +262,9 @@ std::optional<TangentWalk::Reach> TangentWalk::reachOnPatch(const Eigen::Vector3
   const double bend = k.x() * cx * cx + k.y() * cy * cy;
   const double sine = std::sin(limit), cosine = std::cos(limit), scale = 1 / (2 * sine * cosine);
   Eigen::Vector3d p, normal;
-  // sin(alpha - limit) sin(alpha + limit) / sin(2 limit): its slope at the limit is 1, and it is nearly linear in s^2. The foot of
-  // s (cx, cy) is z = -s^2 bend / (1 + r), the gradient there (k1 x, k2 y, r), r = sqrt(1 - c s^2 bend). H = L + V needs no unit vectors.
+  // sin(alpha - limit) sin(alpha + limit) / sin(2 limit): its slope at the limit is 1, and it is nearly linear in s^2. The foot
+  // of s (cx, cy) is z = -s^2 bend / (1 + r), the gradient there (k1 x, k2 y, r), r = sqrt(1 - c s^2 bend). H = L + V needs no
+  // unit vectors.
   const auto above = [&](double squared) {
     const double s = std::sqrt(squared), r = std::sqrt(1 - k.z() * squared * bend);
     p = {s * cx, s * cy, -squared * bend / (1 + r)};

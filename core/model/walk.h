@@ -53,8 +53,8 @@ class TangentWalk {
     SurfacePoint point;  ///< foot, normal towards the camera
   };
   Outcome<Reach> reachOnSurface(const Eigen::Vector3d& direction, double limit, double scale) const;
-  /// The same where a neighbouring direction's end is known: a few secant steps from the expected distance. Marches as above when
-  /// alpha there is not within a quarter of the limit, or when the steps do not settle near the expected distance.
+  /// The same where the end of a neighbouring direction is known: a few secant steps from the expected distance. Marches as above
+  /// when alpha there is not within a quarter of the limit, or when the steps do not settle near the expected distance.
   /// @param expected  distance, m; > 0.  @param neighbour  where the neighbouring walk ended: feet are searched from there.
   Outcome<Reach> reachNear(const Eigen::Vector3d& direction, double limit, double expected, const SurfacePoint& neighbour,
                            double scale) const;
@@ -74,7 +74,7 @@ class TangentWalk {
   Outcome<SurfacePoint> foot(const Eigen::Vector3d& onPlane, const SurfacePoint& previous) const;
   /// sin(alpha - limit) at a lit surface point that faces the camera, NaN elsewhere: the root's function without atan2.
   double sineAbove(const SurfacePoint& p, double sineLimit, double cosineLimit) const;
-  /// reachNear on a local quadric at P_B, by its closed forms; nothing where the general walk has to look.
+  /// reachNear on a local quadric at P_B, by its closed forms; nothing where the general walk is needed.
   std::optional<Reach> reachOnPatch(const Eigen::Vector3d& direction, double limit, double expected) const;
   /// Part of a walk: distances on T, pixels of the feet at both ends, and the last foot.
   struct Step {
@@ -115,7 +115,7 @@ class ReachGuess {
     last_[0] = ratio;
     ++count_;
   }
-  /// A direction failed: what lies behind it says nothing any more about curvature of the ratio.
+  /// A direction failed: the directions before it no longer tell how the ratio bends.
   void interrupt() { count_ = count_ > 0 ? 1 : 0; }
 
  private:

@@ -31,9 +31,9 @@ std::vector<Lobe>& known() {
   return lobes;
 }
 
-/// A central difference agrees with a derivative to so much of the function's own steepness: its own error is 1e-6 of it.
+/// By how much a central difference may differ from a derivative, as a share of the function's steepness. Its own error is 1e-6.
 constexpr double kDerivativeError = 1e-3;
-constexpr double kStep = 1e-5;  // relative, of a central difference in double precision
+constexpr double kStep = 1e-5;  // of a central difference, relative to m and t
 
 /// Why a function of (m, t) cannot be used; empty if it can.
 template <class Function>

@@ -18,14 +18,15 @@ struct ProfileValue {
 /// Up to this roughness a profile is checked when it is added; beyond it nothing relies on the check.
 inline constexpr double kCheckedRoughness = 0.8;
 
-/// A lobe beyond the four of lobe.h: a distribution of normals about N. log I = log D(m, t_h) and, for a microfacet lobe, the masking
-/// -log(1 + Lambda(L) + Lambda(V)) and the cosines -log(4 cos theta_V), as in LogRadiance. Functions are called from several threads.
+/// A lobe beyond the four of lobe.h: a distribution of normals about N. log I = log D(m, t_h) and, for a microfacet lobe, the
+/// masking -log(1 + Lambda(L) + Lambda(V)) and the cosines -log(4 cos theta_V), as in LogRadiance. Functions are called from
+/// several threads.
 class LobeProfile {
  public:
   virtual ~LobeProfile() = default;
   virtual std::string name() const = 0;  ///< as `fit.lobe` takes it: "student-t"
-  /// log D; for m <= kCheckedRoughness it may not rise with t, so that its value in the mirror direction is the largest. Any constant factor of D that does not
-  /// depend on m or t may be left out.
+  /// log D; for m <= kCheckedRoughness it may not rise with t, so that its value in the mirror direction is the largest. Any
+  /// constant factor of D that does not depend on m or t may be left out.
   virtual ProfileValue logDistribution(double roughness, double tanSquared) const = 0;
   virtual bool isMicrofacet() const { return true; }
   /// Its roughness depends on the direction: t is then stretched by the two widths (lobe.h), of log D and of Lambda, and log D leaves out the
@@ -34,11 +35,11 @@ class LobeProfile {
   virtual ProfileValue lambda(double, double) const { return {}; }  ///< Smith's Lambda, >= 0
 };
 
-/// std::invalid_argument for a name that is taken or empty, and for a profile that rises, is not finite or whose derivatives differ from its
-/// differences (at a grid of m and t).
+/// std::invalid_argument for a name that is taken or empty, and for a profile that rises, is not finite or whose derivatives
+/// differ from its differences (at a grid of m and t).
 void checkLobe(const LobeProfile& profile);
-/// One more lobe, known to `fit.lobe` and to rendering; `fit.lobe=auto` tries it after the others. Not thread-safe: before anything asks
-/// for lobes. std::invalid_argument as checkLobe().
+/// One more lobe, known to `fit.lobe` and to rendering; `fit.lobe=auto` tries it after the others. Not thread-safe: call it
+/// before anything asks for lobes. std::invalid_argument as checkLobe().
 Lobe addLobe(std::unique_ptr<const LobeProfile> profile);
 /// Null for the four of lobe.h.
 const LobeProfile* profileOf(Lobe lobe);

@@ -46,8 +46,8 @@ bool onImageBorder(const Pixel& ideal, const Camera& camera) {
   return near(p.x(), camera.width - 1) || near(p.y(), camera.height - 1);
 }
 
-/// Sides of the contour's box along which it runs straight: whoever made the contour cut it there, beyond the image for example.
-/// A level set touches its box in points. Order: left, right, top, bottom.
+/// Sides of the contour's box along which the contour runs straight: it was cut there, for example at the end of the image. A
+/// level set touches its box in points only. Order: left, right, top, bottom.
 std::array<bool, 4> cutSides(const std::vector<Pixel>& contour, const Eigen::AlignedBox2d& box) {
   constexpr double kSamePx = 1e-6, kLeastPx = 2;  // digits of a written contour; a shorter side may be one chord of a level set
   std::array<double, 4> straight{};

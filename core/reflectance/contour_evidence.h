@@ -7,7 +7,7 @@
 #include "core/reflectance/fit.h"
 #include "core/reflectance/radiance_field.h"
 
-/// What the fit of a lobe sees of the contours; internal to core/reflectance.
+/// What the fit of a lobe sees of the contours. Internal to core/reflectance.
 namespace glint::lobe {
 
 /// Largest step of the finite differences that turn log I into pixels, and the largest as a share of the highlight's radius.
@@ -39,7 +39,7 @@ struct LogAndSlopes {
   Eigen::Matrix<double, 5 + kMostShapeUnknowns, 1> slopes = Eigen::Matrix<double, 5 + kMostShapeUnknowns, 1>::Zero();
 };
 
-/// A frame's maximum under the light of the moment.
+/// A frame's maximum under the present light.
 struct FramePeak {
   Camera camera;
   const Surface* surface = nullptr;

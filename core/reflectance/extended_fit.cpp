@@ -59,7 +59,7 @@ Promise gainByLength(lobe::RadianceProblem& problem, const lobe::State& point) {
   const double length = point.lengthOf(kProbedLength);
   std::vector<lobe::RadianceProblem::ProbeColumn> columns;
   for (const Eigen::Vector3d& axis : {u, v, Eigen::Vector3d((u + v) / std::sqrt(2.0))}) {
-    // Against a segment too short to be seen: the sine of the angle to the axis is there for any length.
+    // Compared with a segment too short to be seen, because the sine of the angle to the axis is there for any length.
     columns.push_back({point, point});
     columns.back().grown.lamp.shape = SegmentShape<>{length * axis, 0};
     columns.back().plain.lamp.shape = SegmentShape<>{1e-3 * length * axis, 0};  // as good as a point
@@ -142,7 +142,7 @@ std::optional<RadianceFit> fitExtended(const LampShape& kind, const std::vector<
   double width = widthRad;
   std::vector<Lobe> order = lobes;
   if (plain && !plain->poor) {
-    // To first order, about the point light at the plain fit's place.
+    // The promise is to first order, about the point light at the plain fit's place.
     Outcome<lobe::ContourEvidence> gathered = lobe::gatherEvidence(views, options.pointsPerView);
     if (!gathered) return std::nullopt;
     lobe::RadianceProblem problem(plain->lobe, views, *std::move(gathered), options);

@@ -13,13 +13,14 @@ namespace glint {
 namespace {
 
 constexpr double kDoubtShare = 0.02;  // of the radius: a right lobe leaves less
-constexpr double kSphereGain = 0.2;   // of the sum of squares, before a size is believed
-constexpr double kProbedSize = 0.4;   // of the lobe's width, as angles of the light: it would show little
+constexpr double kSphereGain = 0.2;   // of the sum of squares: what a size must gain before it is believed
+constexpr double kProbedSize = 0.4;   // of the lobe's width, as angles of the light: a smaller size would hardly show
 // Other starts are judged by a short fit to few points; the most promising are then fitted in full.
 constexpr int kScreenPoints = 16, kScreenIterations = 15;
 constexpr std::size_t kPromising = 3;
 constexpr double kSamePlace = 1e-2;  // of a unit vector L and of log m: far less than a basin is wide
-// The peak of a wide lobe lies far from the mirror point, and the light that its reflection points to as far from the true one.
+// The peak of a wide lobe lies far from the mirror point, and the light that its reflection points to lies as far from the true
+// one.
 constexpr std::array<double, 2> kTilts{0.35, 0.8};  // rad
 constexpr int kTiltedDirections = 6;
 
@@ -38,7 +39,8 @@ RadianceFit described(RadianceProblem& problem, const Attempt& a, std::size_t vi
   return fit;
 }
 
-/// By how much the sum of squares, px^2, would fall to first order if a point became a sphere of some size; 0 where it would rise.
+/// By how much the sum of squares, px^2, would fall to first order if a point became a sphere of some size; 0 where it would
+/// rise.
 double gainBySize(RadianceProblem& problem, const State& point) {
   if (point.atInfinity()) return 0;  // there a size has no meaning, only an angle
   State grown = point;
@@ -117,9 +119,10 @@ Outcome<RadianceFit> fitRadiance(Lobe lobe, const std::vector<RadianceView>& vie
     }
   }
   if (!std::isfinite(best.cost) || !best.converged) return noMinimum(problem, best, iterations);
-  // A size that the contours do not show would only take up noise: it must promise, and then keep, a clear gain.
+  // A size that the contours do not show would only take up noise. It must promise a clear gain, and then keep the promise.
   if (options.lightSize && good(best) && gainBySize(problem, best.state) > kSphereGain * best.cost) {
-    // The width seen is that of light and lobe together: from a light that is narrower, and from one that is wider than the lobe.
+    // The width that is seen is that of light and lobe together. So the fit starts from a light narrower than the lobe, and from
+    // a wider one.
     const Attempt point = best;
     for (const auto& [radius, width] : {std::pair{1.0, 0.9}, std::pair{1.6, 0.5}}) {
       State start = point.state;

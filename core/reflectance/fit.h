@@ -46,8 +46,8 @@ struct RadianceStart {
   bool isNear(const RadianceStart& other) const;
 };
 
-/// Starts along the first guess's direction at other distances and at infinity, narrower and wider; or around it, tilted by 20 and 45
-/// degrees.
+/// Starts along the first guess's direction at other distances and at infinity, narrower and wider; or around it, tilted by 20
+/// and 45 degrees.
 enum class StartGrid { Distances, Directions };
 /// Each start of the grid after a short fit to few points; best first. Empty where fitRadiance would fail.
 std::vector<RadianceStart> screenStarts(Lobe lobe, const std::vector<RadianceView>& views, const Light& light, double roughness,
@@ -74,8 +74,8 @@ struct RadianceFit {
 
 /// Light and roughness of one lobe from contours alone (method.md section 7, `reflectance`): minimises over L = (l, w) on the
 /// unit sphere and log m the robust sum of ((g(P_ij) - sqrt(-log q)) / |d g / d pixel|)^2, g = sqrt(log I(P_peak_i) - log
-/// I(P_ij)), residuals in pixels, by Ceres. P_peak_i is the maximum of I in frame i for the light of the moment; it moves with
-/// the light, but its value's derivative is the one at a fixed point, because the gradient of I over the surface vanishes there.
+/// I(P_ij)), residuals in pixels, by Ceres. P_peak_i is the maximum of I in frame i under the present light. It moves with the
+/// light, but the derivative of its value is that at a fixed point, because the gradient of I over the surface vanishes there.
 /// The square root makes the residual nearly linear in the distance to the contour, however far it is.
 /// @param light,roughness  first guess. Other distances are tried when it converges badly.
 /// TooFewPoints; PeakOffSurface when no contour point hits the surface; NoBrightestPoint when no frame has a lit maximum;
@@ -89,7 +89,8 @@ Outcome<RadianceFit> fitRadiance(Lobe lobe, const std::vector<RadianceView>& vie
 Outcome<RadianceFit> fitLamp(Lobe lobe, const std::vector<RadianceView>& views, const Lamp& lamp, const Roughness& roughness,
                              const RadianceFitOptions& options = {});
 
-/// RMS residual of every view under a fit, px, whether it was fitted to the view or not. Not finite where a frame shows no maximum.
+/// RMS residual of every view under a fit, px, whether it was fitted to the view or not. Not finite where a frame shows no
+/// maximum.
 std::vector<double> rmsOfViews(const RadianceFit& fit, const std::vector<RadianceView>& views,
                                const RadianceFitOptions& options = {});
 

@@ -13,11 +13,13 @@
 namespace glint {
 namespace {
 
-// Of the sum of squares over their mean: three standard deviations, before a cosine power is preferred to a microfacet lobe.
+// How much smaller the sum of squares over their mean must be before a cosine power is preferred to a microfacet lobe: three
+// standard deviations.
 constexpr double kMicrofacetGain = 9;
 constexpr std::size_t kPromisingStarts = 6;  // of those that a short fit to few points likes best
-// Where one lobe's best start leaves so many times what a poor fit may leave, no lobe explains the contours: beside one that
-// does, the others' best left 3 times that at most (wide lobes, grazing views), and those of mirrored images leave 8 and more.
+// No lobe explains the contours where the best start of each leaves this many times what a poor fit may leave. Beside a lobe that
+// does, the others' best start left at most 3 times that (wide lobes, grazing views); starts from mirrored images leave 8 times
+// and more.
 constexpr double kFarFromAnyLobe = 6;
 constexpr int kMostRounds = 3;  // of lobes that start again from a better one: each round must have found a better light
 constexpr double kNarrowestGuess = 1e-4, kWidestGuess = 1.0;  // roughness of first guesses
@@ -52,7 +54,7 @@ class PointSearch {
     for (const Lobe lobe : lobes_) (void)(explains() ? follow(lobe) : tryFrom(lobe, light, roughnessFor(lobe, width)));
     if (!best_ || fit().doubtful) screen(light, width, StartGrid::Distances);
     if (!explains()) screen(light, width, StartGrid::Directions);
-    // A lobe that was tried before the best light was known starts there too. The other way round it is already so.
+    // A lobe that was tried before the best light was known starts there too. Lobes tried later did so already.
     for (int round = 0; round < kMostRounds && explains(); ++round) {
       bool better = false;
       for (const Lobe lobe : lobes_)
@@ -85,7 +87,7 @@ class PointSearch {
     return true;
   }
 
-  /// From the best fit so far: once, it would lead to the same place again.
+  /// Starts from the best fit so far. Only once: it would lead to the same place again.
   bool follow(Lobe lobe) {
     if (!followed_.insert(lobe).second) return false;
     const Light light = fit().light();
@@ -178,7 +180,7 @@ Outcome<RadianceFit> fitNear(const std::vector<Lobe>& lobes, const std::vector<R
   }
   if (found.empty()) return failure;
   if (near.lamp.isPoint()) return preferred(found);
-  // As searchRadiance, which takes the smallest residual where the lamp has a size.
+  // The same choice as in searchRadiance, which takes the smallest residual where the lamp has a size.
   const auto best =
       std::min_element(found.begin(), found.end(), [](const auto& a, const auto& b) { return isBetter(a.second, b.second); });
   return best->second;

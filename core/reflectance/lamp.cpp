@@ -57,7 +57,7 @@ std::vector<LampShape> startsLike(const SegmentShape<>&, const ExtentGuess& gues
 
 Eigen::RowVector3d row(const Eigen::Vector3d& v) { return v.transpose(); }
 
-/// Sums leave round-off behind that no file should show: what has 15 digits or fewer within it is that.
+/// Sums leave round-off behind that no file should show: the number of at most 15 digits within that round-off is what was meant.
 double withoutRoundOff(double sum) {
   const double size = std::abs(sum);
   if (!(size > 0) || !std::isfinite(sum)) return sum;

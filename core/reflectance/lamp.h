@@ -93,8 +93,8 @@ template <class T>
 using ShapeOf = std::variant<PointShape<T>, SphereShape<T>, SegmentShape<T>>;
 using LampShape = ShapeOf<double>;
 
-/// A lamp: what fits find, scenes state, and everything draws. L = (l, w) is its centre, homogeneous, any scale; w = 0 puts it at infinity, where a
-/// fitted lamp is a point. Coordinates are the world's unless a function says otherwise, lengths metres.
+/// A lamp: what fits find, scenes state, and everything draws. L = (l, w) is its centre, homogeneous, any scale; w = 0 puts it at
+/// infinity, where a fitted lamp is a point. Coordinates are the world's unless a function says otherwise, lengths metres.
 template <class T>
 struct LampOf {
   Eigen::Matrix<T, 4, 1> centre{T(0.0), T(0.0), T(1.0), T(0.0)};
@@ -107,7 +107,7 @@ struct LampOf {
 
   bool isPoint() const { return std::holds_alternative<PointShape<T>>(shape); }
   bool atInfinity() const { return centre.w() == T(0.0); }
-  /// Of the centre, l / w; not finite at infinity.
+  /// The centre's position, l / w; not finite at infinity.
   Eigen::Matrix<T, 3, 1> position() const { return centre.template head<3>() / centre.w(); }
   bool operator==(const LampOf& other) const { return centre == other.centre && shape == other.shape; }
 };
@@ -115,7 +115,7 @@ using Lamp = LampOf<double>;
 
 /// L as a unit vector; the same digits where it is one already.
 Light lightOf(const Lamp& lamp);
-/// A point, exactly where it is stated.
+/// A point lamp, exactly where the scene states it.
 Lamp lampAt(const Eigen::Vector3d& position);
 /// @param fromScene  not zero
 Lamp lampTowards(const Eigen::Vector3d& fromScene);
@@ -123,9 +123,10 @@ Lamp lampTowards(const Eigen::Vector3d& fromScene);
 Lamp sphereLamp(const Light& centre, double radius);
 /// std::invalid_argument where the ends coincide or are not finite.
 Lamp segmentLamp(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
-/// The lamp with this radius: a point becomes a sphere, a segment a tube; 0 takes it away. std::invalid_argument for a negative one.
+/// The lamp with this radius: a point becomes a sphere, a segment a tube; 0 takes it away. std::invalid_argument for a negative
+/// one.
 Lamp withRadius(Lamp lamp, double radius);
-/// m, of a sphere or a tube; else 0.
+/// Radius of a sphere or a tube, m; else 0.
 double radiusOf(const Lamp& lamp);
 /// Both ends of a segment, m; nothing for another lamp.
 std::optional<std::pair<Eigen::Vector3d, Eigen::Vector3d>> endsOf(const Lamp& lamp);
@@ -134,22 +135,22 @@ double reachOf(const LampShape& shape);
 /// Points that a surface must all hide, with the centre, before it hides the lamp.
 std::vector<Eigen::Vector3d> extremesOf(const Lamp& lamp);
 
-/// Shifted by a vector; at infinity the unit direction is, and brought to length 1 again.
+/// The lamp shifted by a vector. At infinity its unit direction is shifted and brought to length 1 again.
 Lamp moved(const Lamp& lamp, const Eigen::Vector3d& by);
-/// By x -> rotation x * scale + shift of its points.
+/// The lamp moved by x -> rotation x * scale + shift of its points.
 Lamp transformed(const Lamp& lamp, double scale, const Eigen::Matrix3d& rotation, const Eigen::Vector3d& shift);
-/// In coordinates (x - origin) / scale, |L| = 1, and back. std::invalid_argument for L = 0.
+/// The lamp in coordinates (x - origin) / scale with |L| = 1, and back. std::invalid_argument for L = 0.
 Lamp normalised(const Lamp& lamp, const Eigen::Vector3d& origin, double scale);
 Lamp fromNormalised(const Lamp& lamp, const Eigen::Vector3d& origin, double scale);
 
 /// Numbers that a fit finds of a shape, one behind the other; empty for a point.
 std::span<double> unknownsOf(LampShape& shape);
 int unknownCount(const LampShape& shape);
-/// Most of any shape.
+/// The largest such number of any shape.
 inline constexpr int kMostShapeUnknowns = 3;
 
 const char* nameOf(const LampShape& shape);
-/// One of each, from those with an extent to the point: what a search may try in turn.
+/// One lamp of each shape, from those with an extent to the point, for a search to try in turn.
 std::vector<LampShape> allLampShapes();
 /// What is known of a lamp's extent before it is fitted, in the units of its unknowns.
 struct ExtentGuess {
@@ -164,15 +165,15 @@ bool isSearched(const LampShape& kind);
 std::vector<LampShape> aliasesOf(const LampShape& shape);
 /// Shapes beside a point that a search may take where the contours show them, by their place in LampShape.
 using LampChoices = std::bitset<std::variant_size_v<LampShape>>;
-/// `auto` is all of them. None for "point" and for a name that is no shape's.
+/// `auto` means all of them. Empty for "point" and for a name that no shape has.
 LampChoices lampChoices(const std::string& name);
 template <class Shape>
 bool admits(const LampChoices& choices) {
   return choices[LampShape(Shape{}).index()];
 }
 
-/// What files, Python and pages say of a lamp, by the keys of docs/formats.md: a number (1 x 1), a vector (1 x 3), or points (n x 3).
-/// position, direction, or the points of a shape that has its place by them (segment); radius where it is not 0.
+/// What files, Python and pages say of a lamp, by the keys of docs/formats.md: a number (1 x 1), a vector (1 x 3), or points (n x
+/// 3). position, direction, or the points of a shape that has its place by them (segment); radius where it is not 0.
 struct LampField {
   std::string name;
   Eigen::MatrixXd value;
@@ -193,7 +194,8 @@ struct LampFact {
   Eigen::VectorXd value;
 };
 std::vector<LampFact> factsOf(const Lamp& lamp);
-/// Chains of points to draw, m: a segment's axis is an open one, three great circles of a sphere are closed. Empty for a point and at infinity.
+/// Chains of points to draw, m: a segment's axis is an open one, three great circles of a sphere are closed. Empty for a point
+/// and at infinity.
 std::vector<std::vector<Eigen::Vector3d>> outlineOf(const Lamp& lamp);
 
 namespace lobe {
@@ -214,24 +216,24 @@ struct State {
   bool operator==(const State&) const = default;
 };
 
-/// The quadrature over a lamp: on the unit disc of a sphere, from -1 to 1 along a segment (y = 0); the weights sum to 1. Null for a point. One rule
-/// serves a whole picture or fit, so that its radiance stays smooth.
+/// The quadrature over a lamp: on the unit disc of a sphere, from -1 to 1 along a segment (y = 0); the weights sum to 1. Null for
+/// a point. One rule serves a whole picture or fit, so that its radiance stays smooth.
 struct LampRule {
   const std::vector<DiscRule::Node>* nodes = nullptr;
   double count() const { return nodes ? double(nodes->size()) : 1; }
   bool operator==(const LampRule&) const = default;
 };
 
-/// Rules whose error in log I is below about 1e-5 down to the foot of the highlight, for lamps of at most `ratio` lobe widths: see
-/// sizeRatio(). Segments: Gauss-Legendre, beyond a ratio of 12 the largest rule (96 nodes).
+/// Rules whose error in log I is below about 1e-5 down to the foot of the highlight, for lamps of at most `ratio` lobe widths:
+/// see sizeRatio(). Segments: Gauss-Legendre, beyond a ratio of 12 the largest rule (96 nodes).
 LampRule lampRuleFor(const LampShape& shape, double ratio);
 
-/// Half the lamp's angular extent over the lobe's width at a point, as sizeRatio(); an upper bound for a segment, which may be seen
-/// slantwise. 0 for a point.
+/// Half the lamp's angular extent over the lobe's width at a point, as sizeRatio(); an upper bound for a segment, which may be
+/// seen slantwise. 0 for a point.
 double lampRatio(double roughness, const Eigen::Vector3d& position, const Eigen::Vector3d& toCamera, const Lamp& lamp);
 
-/// Of the lamp's points the nearest to a direction: the offset from `position` to it (L - w P of it), and the angle, rad, by which the lamp
-/// reaches around that.
+/// The lamp's point that is nearest to a direction: the offset from `position` to it (its L - w P), and the angle, rad, by which
+/// the lamp reaches around that direction.
 struct Nearest {
   Eigen::Vector3d offset;
   double extent = 0;

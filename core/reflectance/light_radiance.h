@@ -14,7 +14,7 @@
 namespace glint::lobe {
 
 /// log I of one lobe at a point seen from `toCamera` under a point light L = (l, w): lobe, masking, cosines and falloff, up to a
-/// constant of the light. Nothing where light or camera are below the horizon.
+/// constant of the light. Nothing where light or camera is below the horizon.
 template <class T>
 std::optional<T> logOfPointLight(Lobe lobe, const RoughnessOf<T>& roughness, const Eigen::Vector3d& position,
                                  const LobeAxes& axes, const Eigen::Vector3d& toCamera, const Eigen::Matrix<T, 4, 1>& light) {
@@ -77,7 +77,8 @@ class RadianceSum {
   T top_{0.0}, sum_{0.0};
 };
 
-/// log I of one lobe under a lamp of this shape about L = (l, w), up to a constant of the lamp; parts of it below the horizon give nothing.
+/// log I of one lobe under a lamp of this shape about L = (l, w), up to a constant of the lamp; parts of it below the horizon
+/// give nothing.
 template <class T>
 std::optional<T> logOfShape(const PointShape<T>&, Lobe lobe, const RoughnessOf<T>& roughness, const Eigen::Vector3d& position,
                             const LobeAxes& axes, const Eigen::Vector3d& toCamera, const Eigen::Matrix<T, 4, 1>& light,
@@ -112,8 +113,8 @@ std::optional<T> logOfShape(const SphereShape<T>& sphere, Lobe lobe, const Rough
   return sum.log();
 }
 
-/// A thin tube with the ends l / w -+ halfAxis: the mean along it of a point light's radiance times the sine of the angle between the axis and
-/// the direction to the point (method.md section 15). Seen end on it gives nothing at all.
+/// A thin tube with the ends l / w -+ halfAxis: the mean along it of a point light's radiance times the sine of the angle between
+/// the axis and the direction to the point (method.md section 15). Seen end on it gives nothing at all.
 template <class T>
 std::optional<T> logOfShape(const SegmentShape<T>& segment, Lobe lobe, const RoughnessOf<T>& roughness,
                             const Eigen::Vector3d& position, const LobeAxes& axes, const Eigen::Vector3d& toCamera,

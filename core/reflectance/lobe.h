@@ -9,8 +9,8 @@
 
 namespace glint {
 
-/// Specular lobes. `roughness` is m: near the mirror direction every lobe falls as exp(-theta_h^2 / m^2). Plugins add further values
-/// (added_lobe.h), so a switch over these four has a default.
+/// Specular lobes. `roughness` is m: near the mirror direction every lobe falls as exp(-theta_h^2 / m^2). Plugins add further
+/// values (added_lobe.h), so a switch over these four has a default.
 enum class Lobe { Phong, BlinnPhong, TorranceSparrow, Ggx };
 
 /// How rough a lobe is: m, and for a lobe with two widths how much wider it is across the surface's tangent than along it. m is their

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kUnexplained = 0.1;  // of the top: beyond it the lobe says nothing of this frame
 constexpr double kTrusted = 0.02;     // of the top: below it the lobe's own peak is the level's reference, else the observed one
-constexpr double kSharpPx = 0.3;      // a stronger blur lowers the observed peak: the level belongs to the blurred one
+constexpr double kSharpPx = 0.3;      // a stronger blur lowers the observed peak, and the level belongs to the blurred peak
 constexpr int kEvidenceCells = 3000;
 // A lobe that is off by a tenth over the radius then moves the contour by less than 0.02 % of the diameter.
 constexpr double kWindowShare = 1.0 / 30;  // of the radius: standard deviation of the window in which noise is averaged
@@ -70,15 +70,16 @@ Corrected corrected(const LinearPixels& pixels, const PixelPatch& patch, const s
       const std::optional<double> b = between(patch, background, x, y);
       const std::size_t i = static_cast<std::size_t>(y) * pixels.value.width + x;
       if (!b || !(pixels.usable[i] || pixels.clipped[i])) continue;
-      // Noise below the background is no broken pixel.
+      // A pixel that noise puts below the background is not broken.
       c.value.at(x - x0, y - y0) = static_cast<float>(std::max(0.0, pixels.value.data[i] - *b));
       c.mask.at(x - x0, y - y0) = 1;
     }
   return c;
 }
 
-/// Takes noise and quantisation of single pixels off: the factor I / S, constant where the lobe is right and as smooth as the highlight where it is
-/// not, is averaged over a few pixels (least squares, Gaussian window), while S keeps the shape. Clipped pixels stay out.
+/// Removes noise and quantisation of single pixels. The factor I / S is constant where the lobe is right and as smooth as the
+/// highlight where it is not; it is averaged over a few pixels (least squares, Gaussian window), while S keeps the shape. Clipped
+/// pixels stay out.
 void evenOut(Corrected& c, const LinearPixels& pixels, const PixelPatch& patch, const std::vector<double>& lobe) {
   const double sigma = std::min(kLargestWindowPx, kWindowShare * patch.radiusPx);
   if (!(sigma > kLeastWindowPx)) return;
@@ -197,7 +198,7 @@ Outcome<std::vector<Highlight>> contourWithLobe(const LinearPixels& pixels, cons
   again.separatePeaks = false;
   again.references.clear();
   again.minRelativePeak = 0;
-  again.clipValue = 0;  // values have lost their background
+  again.clipValue = 0;  // the values have lost their background
   const auto trace = [&](std::size_t k) -> std::optional<Highlight> {
     Corrected c = corrected(pixels, patches[k], (*solved)[k].background);
     evenOut(c, pixels, patches[k], (*solved)[k].lobe);

@@ -20,8 +20,8 @@ struct Terms {
 };
 
 /// tan^2 of the angle between two vectors of any length, without the cancellation of 1 / cos^2 - 1.
-/// Written out: with Eigen's cross product, copies on the stack are read in other pieces than they were written, and the processor waits
-/// for each (a third of the time of a fit to pixels).
+/// Written out without Eigen's cross product: its copies on the stack are read in other pieces than they were written, and the
+/// processor waits for each (a third of the time of a fit to pixels).
 template <class T, class U, class V>
 T tanSquared(const Eigen::MatrixBase<U>& a, const Eigen::MatrixBase<V>& b) {
   const T ax(a(0)), ay(a(1)), az(a(2)), bx(b(0)), by(b(1)), bz(b(2));
@@ -252,7 +252,7 @@ struct GgxLobe : MicrofacetLobe {
   }
 };
 
-/// One that a plugin brought.
+/// A lobe that a plugin brought.
 struct ProfileLobe : HalfVectorLobe {
   static constexpr const char* kName = "";  ///< addedLobeName() tells it
   const LobeProfile& profile;
@@ -313,7 +313,8 @@ decltype(auto) withLobe(Lobe lobe, F&& f) {
   }
 }
 
-/// The terms for unit vectors on the lit and visible side (N.L > 0, N.V > 0; the lobe reaches the camera), which the caller has checked.
+/// The terms for unit vectors on the lit and visible side (N.L > 0, N.V > 0; the lobe reaches the camera), which the caller has
+/// checked.
 template <class T>
 Terms<T> terms(Lobe lobe, const RoughnessOf<T>& roughness, const LobeAxes& axes, const Eigen::Matrix<T, 3, 1>& toLight,
                const Eigen::Vector3d& toCamera) {
@@ -338,8 +339,8 @@ Terms<T> terms(Lobe lobe, const RoughnessOf<T>& roughness, const LobeAxes& axes,
 }
 
 /// One lobe at one point seen from one side, under many lights: log I = constant() + log(over / under) + exponent. What does not
-/// depend on the light is found once, and a sum of radiances needs an exponential per light and no logarithm. The same terms as
-/// terms().
+/// depend on the light is computed once, and a sum of radiances needs one exponential per light and no logarithm. The terms are
+/// those of terms().
 template <class T>
 class LobeAt {
  public:

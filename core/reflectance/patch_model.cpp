@@ -28,7 +28,7 @@ std::vector<double> kernelOf(double variance) {
   return taps;
 }
 
-/// Beyond the grid the outermost cells go on.
+/// Beyond the grid the outermost cells are repeated.
 void blur(std::vector<double>& cells, int columns, int rows, double variance) {
   const std::vector<double> taps = kernelOf(variance);
   const int reach = static_cast<int>(taps.size()) / 2;
@@ -224,8 +224,9 @@ LinearFit linearFit(const FramePatches& frame, const LobeImage& image, const Bac
   LinearFit fit;
   fit.residual.assign(frame.used, 0);
   if (static_cast<Eigen::Index>(frame.used) < unknowns + 2) return fit;
-  // Rows in double, columns of one size each, normal equations: the residuals are as good as those of a QR, which is all that the fit
-  // of the lobe sees, at a tenth of the time. A trace of damping keeps directions that the pixels do not tell at zero.
+  // Normal equations, with rows in double precision and columns scaled to one size. Their residuals are as good as those of a QR,
+  // at a tenth of the time, and the fit of the lobe sees nothing else. A trace of damping keeps directions that the pixels do not
+  // determine at zero.
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> rows =
       Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>::Zero(static_cast<Eigen::Index>(frame.used),
                                                                                    unknowns);
@@ -269,7 +270,7 @@ LinearFit robustFit(const FramePatches& frame, const LobeImage& image, const Bac
     for (std::size_t i = 0; i < weights.size(); ++i) weights[i] = robustWeight(fit.residual[i]);
     if (before.size() > 0 && (fit.coefficients - before).norm() <= kCoefficientsSettled * fit.coefficients.norm()) break;
   }
-  // With the weights as they are left: whoever holds them and moves the lobe a little compares with this.
+  // This is the fit with the weights as they are left: a caller that keeps them and moves the lobe a little compares with it.
   return linearFit(frame, image, basis, weights);
 }
 

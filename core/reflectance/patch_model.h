@@ -42,7 +42,7 @@ struct LobeImage {
   std::size_t topPatch = 0, topCell = 0;  ///< where it is
   bool lit = false;                       ///< some used cell is
 };
-/// Not blurred: does not depend on the state's blur.
+/// Without blur: does not depend on the state's.
 LobeImage sharpImage(Lobe lobe, const FramePatches& frame, const State& at, const lobe::LampRule& rule);
 /// Blurred by the state's blur and the square of a pixel.
 LobeImage blurredImage(LobeImage sharp, const FramePatches& frame, const State& at);
@@ -53,7 +53,8 @@ inline constexpr double kPixelVariance = 1.0 / 12;
 /// Weights of iteratively reweighted least squares, per used cell of a frame; ones to begin with.
 using Weights = std::vector<double>;
 
-/// What the background's coefficients multiply at the used cells of a frame: all that the linear part takes from a state besides the lobe.
+/// What the background's coefficients multiply at the used cells of a frame: all that the linear part takes from a state besides
+/// the lobe.
 struct BackgroundBasis {
   int each = 0;                ///< coefficients of a patch
   std::vector<double> terms;   ///< per used cell, `each` of them
@@ -71,7 +72,7 @@ struct LinearFit {
 };
 LinearFit linearFit(const FramePatches& frame, const LobeImage& image, const BackgroundBasis& basis, const Weights& weights);
 
-/// Reweights until the coefficients settle. `weights` start from what they are and are left as they end.
+/// Reweights until the coefficients settle. `weights` are the start, and hold the result afterwards.
 LinearFit robustFit(const FramePatches& frame, const LobeImage& image, const BackgroundBasis& basis, Weights& weights);
 
 /// rho(r) = 2 a^2 (sqrt(1 + r^2 / a^2) - 1), a = kRobust.

@@ -14,16 +14,16 @@ namespace {
 
 using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-constexpr double kUnexplainedShare =
-    0.1;  // of the contour's radius, or of the top: what a lobe that explains the pixels never leaves
-constexpr double kPatternShare =
-    0.01;  // of the radius: right lobes, lamps and surfaces leave less than a tenth of it, but for noise
+// Share of the contour's radius, or of the top: a lobe that explains the pixels never leaves so much.
+constexpr double kUnexplainedShare = 0.1;
+// Share of the radius: right lobes, lamps and surfaces leave less than a tenth of this, but for noise.
+constexpr double kPatternShare = 0.01;
 constexpr double kInsideShare = 0.1;               // of the top: cells that show the highlight
 constexpr double kEdgeLow = 0.3, kEdgeHigh = 0.7;  // of the top: cells at the contour
 constexpr double kProbe = 0.3;  // extent whose effect is probed, in lobe widths: beyond the rounding, within the first order
 
-/// By which share the cost would fall to first order if the point became a sphere or a segment: least squares of the residuals over
-/// the point's columns and those of the extents.
+/// The share by which the cost would fall, to first order, if the point became a sphere or a segment: least squares of the
+/// residuals over the point's columns and those of the extents.
 double gainByExtent(PixelProblem& problem, const State& point, const std::vector<double>& residuals, const Rows& jacobian) {
   const Eigen::Vector3d towards = point.lamp.centre.head<3>().normalized();
   const Eigen::Vector3d u = towards.unitOrthogonal(), v = towards.cross(u);
@@ -35,8 +35,8 @@ double gainByExtent(PixelProblem& problem, const State& point, const std::vector
   };
   const double plain = left(jacobian);
   double least = plain;
-  // Two moments of a lamp across the direction to it, and the mixed one; a sphere has the first two alike. A tube's intensity goes with
-  // the sine of the angle to its axis, however short it is: what its length changes is the difference to a short one.
+  // Two moments of a lamp across the direction to it, and the mixed one; a sphere has the first two alike. A tube's intensity
+  // goes with the sine of the angle to its axis, however short it is: what its length changes is the difference to a short one.
   PixelProblem segment(problem.evidence(), problem.lobe(), problem.kind());
   State longest = point;
   longest.lamp.shape = SegmentShape<>{length * u, 0};
@@ -57,7 +57,8 @@ double gainByExtent(PixelProblem& problem, const State& point, const std::vector
   return plain > 0 && std::isfinite(least) ? 1 - least / plain : 0;
 }
 
-/// The share of the residuals that goes on from cell to cell, along rows, as root of a mean square: noise of single pixels has none.
+/// The share of the residuals that goes on from cell to cell, along rows, as root of a mean square: noise of single pixels has
+/// none.
 double patternOf(const std::vector<double>& residuals) {
   double products = 0, squares = 0;
   for (std::size_t i = 1; i < residuals.size(); ++i) {
@@ -113,8 +114,8 @@ void describeResiduals(const PixelProblem& pixels, PixelFit& fit) {
   fit.poor = fit.poor || unexplained || !(fit.rmsPx <= kUnexplainedShare * pixels.evidence().radiusPx);
 }
 
-/// Residuals of neighbouring cells go together along rows and along columns, so that the inflation that residualSpread() sees along
-/// rows counts twice.
+/// Residuals of neighbouring cells go together along rows and along columns, so that the inflation that residualSpread() sees
+/// along rows counts twice.
 void describeUncertainty(PixelProblem& pixels, const State& at, bool blur, PixelFit& fit) {
   fit.positionCovariance.setZero();
   fit.positionCovariance.diagonal().setConstant(std::numeric_limits<double>::infinity());

@@ -17,8 +17,8 @@ using patch::PixelProblem;
 constexpr double kSearchTolerance = 1e-4;   // of fits that only choose a start or a background
 constexpr double kMicrofacetMargin = 0.02;  // of the cost, by which a cosine power must be better than a microfacet lobe
 constexpr double kClearGain = 0.1;          // of the cost, before an extent or a blur is believed
-// Gain of the cost over its mean per independent cell, by up to three more parameters: noise alone exceeds this in one of a million
-// images (chi squared, three degrees of freedom).
+// Gain of the cost over its mean per independent cell, by up to three more parameters. Noise alone exceeds this in one of a
+// million images (chi squared, three degrees of freedom).
 constexpr double kBeyondNoise = 30;
 constexpr std::size_t kCoarseFrom = 400;  // cells of a patch, from which the search takes a quarter of them
 constexpr std::size_t kFewestFrom = 100;  // and below which no lamp is worth joining more
@@ -70,7 +70,7 @@ patch::State stateOf(const LobeModel& model, const patch::Normalised& n) {
   return {{normalised(model.lamp, n.origin, n.scale), std::log(model.roughness.mean), logRatio}, model.blurVariance};
 }
 
-/// Of the lobe in one look at all cells.
+/// Evaluations of the lobe in one look at all cells.
 double evaluationsOf(const LobeModel& model, const patch::Normalised& evidence) {
   PixelProblem trial(evidence, model.lobe, BackgroundKind::None);
   trial.chooseRule(stateOf(model, evidence));
@@ -89,8 +89,8 @@ class Search {
     double criterion;
   };
 
-  /// The kinds of background with the lobe that comes first; then all lobes with all kinds, each from the best so far, and once more
-  /// from the best of all: a start far off may have held one back. Nothing where no lobe reaches the pixels.
+  /// The kinds of background with the lobe that comes first; then all lobes with all kinds, each from the best so far, and once
+  /// more from the best of all: a start far off may have held one back. Nothing where no lobe reaches the pixels.
   std::optional<Candidate> run(const std::vector<Lobe>& lobes, const patch::State& start) {
     for (const Lobe lobe : lobes) {
       const Candidate* best = least([](const Candidate&) { return true; });

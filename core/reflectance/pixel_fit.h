@@ -14,8 +14,8 @@
 
 namespace glint {
 
-/// What lies under a highlight, in one patch. Cosine: albedo x N.L / r^2 of the highlight's own lamp, as a matt base would show; sloped:
-/// times 1 + a u + b v. Quadratic: any smooth shading, six coefficients in the pixel.
+/// What lies under a highlight, in one patch. Cosine: albedo x N.L / r^2 of the highlight's own lamp, as a matt base would show;
+/// sloped: times 1 + a u + b v. Quadratic: any smooth shading, six coefficients in the pixel.
 enum class BackgroundKind { None, Cosine, SlopedCosine, Quadratic };
 /// "none", "cosine", "sloped cosine", "quadratic".
 const char* nameOf(BackgroundKind kind);
@@ -25,7 +25,9 @@ struct LobeModel {
   Lobe lobe = Lobe::TorranceSparrow;
   Roughness roughness = 0.1;  ///< m
   Lamp lamp;
-  /// Of the images' blur beside the square that a pixel averages over, px^2. -1/12 where a pixel is the radiance at its centre alone.
+  /// Variance of the images' blur beside the square that a pixel averages over, px^2. -1/12 where a pixel is the radiance at
+  /// its centre
+  /// alone.
   double blurVariance = 0;
 
   double blurPx() const { return std::sqrt(std::max(0.0, blurVariance)); }
@@ -55,19 +57,20 @@ struct PixelFitOptions {
 struct PixelFit {
   LobeModel model;
   BackgroundKind background = BackgroundKind::None;
-  /// Of (L homogeneous with |L| = 1 (4), log m (1)), world, as RadianceFit::uncertainty.
+  /// Uncertainty of L (homogeneous, |L| = 1: 4 entries) and log m (1), world, as RadianceFit::uncertainty.
   std::optional<ParameterUncertainty> uncertainty;
   Eigen::Matrix3d positionCovariance;  ///< m^2; not finite for a light at infinity
   double cost = 0;                     ///< robust sum of squares over (share of the frame's top)^2: lobes are compared by it
   double rmsPx = 0;                    ///< what remains, as a displacement of the contour at half the peak, px
   std::vector<double> residualPx;      ///< the same per patch
   std::vector<double> relativeRms;     ///< per patch: what remains as a share of the frame's top
-  /// To first order, by which share the cost would fall if a point had a size or a length; 0 for other lamps and at infinity.
+  /// The share by which the cost would fall, to first order, if a point had a size or a length; 0 for other lamps and at
+  /// infinity.
   double gainByExtent = 0;
   int cells = 0, iterations = 0;
   double independentCells = 0;  ///< fewer than `cells` where the residuals of neighbours go together
-  /// What goes on from cell to cell, as noise does not, is more than a hundredth of the contours' radius: right lobes, lamps and surfaces
-  /// leave less than a thousandth.
+  /// What neighbouring cells share, unlike noise, is more than a hundredth of the contours' radius. Right lobes, lamps and
+  /// surfaces leave less than a thousandth.
   bool patterned = false;
   bool poor = false;  ///< does not explain the pixels: more than a tenth of the contours' radius, or of the top, remains
 };
@@ -75,8 +78,8 @@ struct PixelFit {
 /// Light and lobe from the pixels themselves (method.md section 15, "Pixels"): minimises over L, log m, the lamp's extent and the
 /// blur the sum of rho(w (I - K_i S(L, m) - b) / I_i,max), w = (max(I, 0.05 I_max) / I_max)^-1/2 (photon noise), rho soft L1 at
 /// 0.01. K_i of every frame and the backgrounds b are linear and eliminated in every step (variable projection). The kind of
-/// background is chosen by the Bayesian information criterion, the lobe by the cost. The lamp keeps the shape of the start: a point,
-/// a sphere or a segment.
+/// background is chosen by the Bayesian information criterion, the lobe by the cost. The lamp keeps the shape of the start: a
+/// point, a sphere or a segment.
 /// @param lobes  tried in turn; the one with the least cost wins, a microfacet lobe where the costs do not tell
 /// @param lamp,roughness  start (two widths keep their ratio, which contours find): what the contours say, which need not be close (clipped highlights)
 /// TooFewPoints; NotConverged; NoBrightestPoint where no lobe reaches the patches. Stopped.
@@ -84,12 +87,13 @@ struct PixelFit {
 Outcome<PixelFit> fitPixels(const std::vector<Lobe>& lobes, const std::vector<const PixelPatch*>& patches, const Lamp& lamp,
                             const Roughness& roughness, const PixelFitOptions& options = {});
 
-/// Whether a lamp with an extent is worth a trial beside this point: to first order it would take a tenth off the cost, or more than the
-/// noise of the independent cells explains; or what the point leaves has a pattern, as far too large a lamp makes it, where first order tells
-/// nothing.
+/// Whether a lamp with an extent is worth a trial beside this point: to first order it would take a tenth off the cost, or more
+/// than the noise of the independent cells explains; or what the point leaves has a pattern, as far too large a lamp makes it,
+/// where first order tells nothing.
 bool asksForExtent(const PixelFit& point);
-/// Whether a lamp with an extent is believed beside a point, or a segment beside a sphere: it must leave a tenth less of the cost, or so
-/// much less that the noise of the independent cells cannot be the reason. (Noise is most of the cost of a grainy image, whatever the lamp.)
+/// Whether a lamp with an extent is believed beside a point, or a segment beside a sphere: it must leave a tenth less of the
+/// cost, or so much less that the noise of the independent cells cannot be the reason. (Noise is most of the cost of a grainy
+/// image, whatever the lamp.)
 bool explainsClearlyBetter(const PixelFit& larger, const PixelFit& smaller);
 
 }  // namespace glint

@@ -22,8 +22,8 @@ double squaredRadius(const Ellipse& e, const Pixel& p) {
   return x * x + y * y;
 }
 
-/// The ellipse at half the peak that a Gaussian lobe would have with this one at `level`, `by` times as large, and no smaller than
-/// kLeastReachPx more than it was.
+/// The ellipse at half the peak that a Gaussian lobe would have with this one at `level`, `by` times as large, and no smaller
+/// than kLeastReachPx more than it was.
 Ellipse around(const Ellipse& e, double level, double by) {
   const double share = std::clamp(level, 0.01, 0.99), toHalf = std::sqrt(std::log(0.5) / std::log(share));
   Ellipse wide = e;

@@ -47,14 +47,15 @@ struct PixelPatch {
 };
 
 struct PatchOptions {
-  /// The patch reaches this many times the semi-axes of the highlight at half its peak: Gaussian lobes have fallen to 0.1 %, GGX's to
-  /// 3 %, and what remains is background.
+  /// The patch reaches this many times the semi-axes of the highlight at half its peak: Gaussian lobes have fallen to 0.1 %,
+  /// GGX's to 3 %, and what remains is background.
   double reach = 3.2;
   int cells = 3000;   ///< about as many; cells grow with the highlight
   double blurPx = 0;  ///< room for a blur of this standard deviation around the cells that are used
 };
 
-/// @param highlight  ideal pixels, with its ellipse. @param others  highlights of other lights in this frame: their surroundings are left out.
+/// @param highlight  ideal pixels, with its ellipse. @param others  highlights of other lights in this frame: their
+///                   surroundings are left out.
 /// TooFewPoints where fewer than 30 cells can be used; NotSupported without an ellipse.
 Outcome<PixelPatch> pixelPatch(const LinearPixels& pixels, const Camera& camera, const Surface& surface, int frame,
                                const Highlight& highlight, const std::vector<Highlight>& others,

@@ -98,7 +98,7 @@ class PixelCost final : public ceres::CostFunction {
   bool stopped() const { return stopped_; }
 
  private:
-  /// Ends the solver at once, without the error that it logs where an evaluation fails.
+  /// Ends the solver at once. Without it the solver would log an error where an evaluation fails.
   bool nothingLeft(double* residuals, double** jacobians) const {
     std::fill_n(residuals, num_residuals(), 0.0);
     for (std::size_t k = 0; jacobians && k < parameter_block_sizes().size(); ++k)
@@ -116,7 +116,7 @@ class PixelCost final : public ceres::CostFunction {
   mutable bool stopped_ = false;  // the solver knows functions without a state only
 };
 
-/// One run of the solver with the quadrature of the moment.
+/// One run of the solver with the present quadrature.
 bool run(PixelProblem& problem, Attempt& a, const SolveOptions& options, bool atInfinity) {
   PixelCost cost(problem, a.at, options.progress);
   ceres::Problem::Options ownership;
@@ -139,7 +139,7 @@ bool run(PixelProblem& problem, Attempt& a, const SolveOptions& options, bool at
     ceres.SetParameterBlockConstant(&s.blurVariance);
   }
   const DenseSolution solution = solveDense(ceres, options.maxIterations, options.tolerance, options.costTolerance);
-  // No exception through the solver, which is not written for it.
+  // No exception may pass through the solver, which is not written for it.
   if (cost.stopped()) throw Stopped{};
   a.iterations += solution.iterations;
   if (!solution.usable || !s.isFinite()) return false;
@@ -243,7 +243,7 @@ void PixelProblem::solveAt(std::size_t f, const State& at) {
 LinearFit PixelProblem::fitFixed(std::size_t f, const State& at) const {
   if (!solved_[f].solved) return solved_[f];
   const FramePatches& frame = evidence_.frames[f];
-  // What the step leaves as it is was computed by residualsAt().
+  // residualsAt() has computed what the step does not change.
   State withBlurOfHere = at;
   withBlurOfHere.blurVariance = here_.blurVariance;
   const LobeImage image =

@@ -10,8 +10,8 @@
 /// The least squares problem behind fitPixels; internal to core/reflectance.
 namespace glint::patch {
 
-/// All frames under one lobe and one kind of background. The strengths and backgrounds are eliminated: residuals are functions of the
-/// state alone (variable projection).
+/// All frames under one lobe and one kind of background. The strengths and backgrounds are eliminated: residuals are functions of
+/// the state alone (variable projection).
 class PixelProblem {
  public:
   PixelProblem(const Normalised& evidence, Lobe lobe, BackgroundKind kind);
@@ -23,15 +23,16 @@ class PixelProblem {
 
   /// Residuals r' with r'^2 = rho(r^2); false where no frame is lit or nothing is finite.
   bool residualsAt(const State& at, double* out);
-  /// Change of r' from the state of the last residualsAt() to `moved`, over `step`; the robust weights are held (to first order they do
-  /// not change the sum).
+  /// Change of r' from the state of the last residualsAt() to `moved`, over `step`; the robust weights are held (to first order
+  /// they do not change the sum).
   void differences(const State& moved, double step, double* column, int stride);
 
   /// The linear part at the state of the last residualsAt(), per frame.
   const std::vector<LinearFit>& solutions() const { return solved_; }
   const std::vector<LobeImage>& images() const { return images_; }
 
-  /// Chooses the quadrature over the lamp for a state: it stays while a solver moves the state, so that the residuals stay smooth.
+  /// Chooses the quadrature over the lamp for a state: it stays while a solver moves the state, so that the residuals stay
+  /// smooth.
   /// @return whether it is a finer one than before.
   bool chooseRule(const State& at);
   /// Evaluations of the lobe in one look at all cells, with the quadrature chosen.
@@ -84,14 +85,14 @@ struct SolveOptions {
   int maxIterations = 60;
   double tolerance = 1e-9;       ///< of the unknowns; contours resolve 1e-4
   double costTolerance = 1e-12;  ///< of the cost: a session replayed elsewhere comes to the same digits
-  double mostEvaluations =
-      std::numeric_limits<double>::infinity();  ///< in one look: a lamp that outgrows it is given up, with infinite cost
+  /// Evaluations in one look: a lamp that outgrows them is given up, with infinite cost.
+  double mostEvaluations = std::numeric_limits<double>::infinity();
   double work = std::numeric_limits<double>::infinity();  ///< evaluations in all; some iterations are always made
   ProgressFn progress{};                                  ///< asked at every look at all cells
 };
 
-/// The minimum that is reached from a state with all unknowns of its shape free. A light at infinity stays there; a point that the
-/// search drives beyond infinity is put there. Stopped.
+/// The minimum that is reached from a state with all unknowns of its shape free. A light at infinity stays there; a point that
+/// the search drives beyond infinity is put there. Stopped.
 Attempt solve(PixelProblem& problem, const State& start, const SolveOptions& options);
 
 /// Fills residualPx, relativeRms, rmsPx and poor of a fit from the problem's last residuals.

@@ -19,7 +19,7 @@ constexpr double kLastMovePx = 3e-4;  // Newton's next move is about the square 
 constexpr double kSamePeakPx = 0.05;
 constexpr int kMaxSteps = 80;
 constexpr double kFirstStridePx = 4, kLongestStridePx = 40;  // of steps uphill where the field is not concave
-// Of the search without derivatives; a maximum at a kink is no better known than by its last steps.
+// Steps of the search without derivatives; a maximum at a kink is known no better than its last steps.
 constexpr double kFirstPatternPx = 4, kLeastPatternPx = 1e-4, kPatternShrink = 0.25;
 constexpr double kAtBorderPx = kStencilPx;  // closer to the border of its domain a climb goes on without derivatives
 
@@ -57,8 +57,8 @@ RadianceField::RadianceField(const Surface& surface, const Camera& camera, Lobe 
   require(roughness > 0 && std::isfinite(roughness.mean), "RadianceField: roughness must be positive");
 }
 
-/// Of the visible points where the lobe may show, on a coarse grid; where none of them is near the mirror direction, of the
-/// nearest.
+/// Size ratio over the visible points where the lobe may show, on a coarse grid; where no point is near the mirror direction, at
+/// the nearest one.
 double RadianceField::largestSizeRatio() const {
   constexpr int kColumns = 12, kRows = 9;
   constexpr double kFoot = 7, kReserve = 1.25;  // log I below the lobe's top; for what lies between the grid's points

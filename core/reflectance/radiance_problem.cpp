@@ -31,7 +31,7 @@ constexpr double kSagittaPx = 0.02;        // of contours as polylines
 constexpr double kExactPx = 1e-7;          // residuals of round-off, of which no step can be told better than another
 constexpr double kNearlySettled = 1e-6;    // change by which a round may end that was cut off: far below what noise does
 constexpr double kSettled = 1e-9;          // change of the unit vector L and of log m between reweightings
-constexpr int kFirstRoundIterations = 30;  // fits that explain their contours need 3, at most 20; others creep along a valley
+constexpr int kFirstRoundIterations = 30;  // fits that explain their contours need 3 to 20; others creep along a valley
 
 /// The maxima follow the light before every evaluation.
 class PeaksFollow : public ceres::EvaluationCallback {
@@ -122,7 +122,7 @@ void RadianceProblem::updatePeaks(const State& state, bool scan) {
   updateLogs(state);
 }
 
-/// g at a point, under the state of the last updatePeaks(); NaN where it is undefined.
+/// g at a point under the state of the last updatePeaks(); NaN where it is undefined.
 double RadianceProblem::root(const Evidence& e, const Seen& s, const State& state) const {
   const std::optional<LogAndSlopes>& peak = frame(e.frame).log;
   const auto here = logOfLamp<double>(lobe_, state.roughness(), s.position, s.axes, s.toCamera, state.lamp, rule_);
@@ -261,7 +261,7 @@ Attempt RadianceProblem::solveFrom(const State& start) {
   const LampShape& shape = a.state.lamp.shape;
   const int most = std::min(std::visit([](const auto& s) { return s.kMostSteps; }, shape), options_.maxIterations);
   for (int round = 0; round < kMaxReweightings && a.iterations < most; ++round) {
-    // The weights are held while the light moves: a residual whose own weight moves gains by lights under which the field is
+    // The weights are held while the light moves: a residual whose own weight moves would prefer lights under which the field is
     // steep.
     chooseRule(a.state);
     if (tooLarge(a.state)) return Attempt{};
@@ -292,8 +292,8 @@ Attempt RadianceProblem::solveFrom(const State& start) {
       // Keeps the derivative of a square root finite.
       const double least = std::visit([](const auto& s) { return s.kLeast; }, shape);
       if (least > 0) problem.SetParameterLowerBound(blocks[2], 0, least);
-      // The frame's maximum is searched again at every step: no unknown settles below the 1e-11 or so to which it is found. The cost: of a sum
-      // of squares over hundreds of points, thousandths of a standard deviation.
+      // The frame's maximum is searched again at every step: no unknown settles below the 1e-11 or so to which it is found. The
+      // cost: of a sum of squares over hundreds of points, thousandths of a standard deviation.
       solution = solveDense(problem, round == 0 ? std::min(most, kFirstRoundIterations) : most - a.iterations, 1e-11, 1e-10,
                             options_.progress);
     }

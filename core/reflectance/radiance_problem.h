@@ -13,11 +13,11 @@
 /// The least squares problem behind fitRadiance; internal to core/reflectance.
 namespace glint::lobe {
 
-/// Of the contours' radius: a wrong lobe leaves less, a wrong start leaves more.
+/// Share of the contours' radius: a wrong lobe leaves less, a wrong start leaves more.
 inline constexpr double kPoorShare = 0.1;
-/// A start or a long first round that leaves so many times what a poor fit may leave leads nowhere. Of starts that led to an
-/// explanation the best left 0.3 at most (wide lobes, grazing views, tubes); those of mirrored images leave 8 to 30, in pictures
-/// 48 px wide 1.2 to 1.8.
+/// A start or a long first round leads nowhere if it leaves this many times what a poor fit may leave. The best starts that led
+/// to an explanation left at most 0.3 times that (wide lobes, grazing views, tubes); starts from mirrored images leave 8 to 30
+/// times, in pictures 48 px wide 1.2 to 1.8 times.
 inline constexpr double kHopeless = 1.5;
 
 struct Attempt {
@@ -46,7 +46,7 @@ class RadianceProblem {
   double excess(const Attempt& a, double share) const;
   /// Nothing that neighbours on a contour share remains.
   bool leavesNoiseOnly(const Attempt& a) const;
-  /// Plausible as a lobe: one that falls to half at 70 degrees and more is no highlight.
+  /// Whether the lobe is plausible: one that falls to half at 70 degrees and more makes no highlight.
   static bool tooWide(const State& state);
 
   /// The least squares step from a point lamp over L, log m and further columns: what `grown` changes against `plain`.

@@ -9,8 +9,8 @@
 
 #include "core/reflectance/light_radiance.h"
 
-// Left to itself the compiler calls a function for every sum of dual numbers. With a sanitizer's checks in each of them one flat
-// function takes more than 46 minutes to compile.
+// By itself the compiler calls a function for every sum of dual numbers. One flat function with a sanitizer's checks in each sum
+// takes more than 46 minutes to compile.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define GLINT_FLATTEN
 #else

@@ -31,8 +31,8 @@ struct Blocks {
   int count;
 };
 
-/// (g - sqrt(-log q)) of one contour point in pixels, with its derivatives by dual numbers; log I at the frame's peak is the problem's, of
-/// the same parameters. A point that the light does not reach has a large residual without derivatives.
+/// (g - sqrt(-log q)) of one contour point in pixels, with its derivatives by dual numbers; log I at the frame's peak is the
+/// problem's, of the same parameters. A point that the light does not reach has a large residual without derivatives.
 std::unique_ptr<ceres::CostFunction> rootCost(const LampShape& shape, const RadianceProblem& problem, const Evidence& evidence);
 
 /// log I at a point with its derivatives by the blocks' entries up to the shape's; nothing where it is undefined.

@@ -29,7 +29,7 @@ std::vector<std::string_view> wordsOf(std::string_view line, std::string& scratc
     if (c == ',' || c == ';') c = ' ';
   std::vector<std::string_view> words;
   std::string_view rest = scratch;
-  // One more than any file may hold tells that there are too many.
+  // One word more than a line may hold tells that there are too many.
   for (std::string_view word = io::takeWord(rest); !word.empty() && words.size() <= kMostCodes; word = io::takeWord(rest))
     words.push_back(word);
   return words;
@@ -84,7 +84,7 @@ std::vector<ResponseRow> inColumn(std::vector<ResponseRow> rows, const std::stri
   return column;
 }
 
-/// y of x on the polyline; x within its ends. Of a stretch where xs does not rise, its first point.
+/// y of x on the polyline; x within its ends. Where xs does not rise, the first point of the stretch.
 double interpolated(const std::vector<double>& xs, const std::vector<double>& ys, double x) {
   const auto above = std::lower_bound(xs.begin(), xs.end(), x);
   const std::size_t i = static_cast<std::size_t>(above - xs.begin());
@@ -215,8 +215,8 @@ std::string CameraResponse::doubt() const {
   if (kind_ != Kind::Gamma && kind_ != Kind::Table) return "";
   double most = 0;
   for (int c = 0; c < 3; ++c) most = std::max(most, lightOf(0.5, c));
-  constexpr double kMoreThanLinear =
-      0.55;  // half the codes hold half the light in a linear camera; noise of a measured curve is below this
+  // Half the codes hold half the light in a linear camera; noise of a measured curve is below this.
+  constexpr double kMoreThanLinear = 0.55;
   if (most <= kMoreThanLinear) return "";
   const double inverse = 1 / gamma_;
   return formatted(
@@ -232,7 +232,7 @@ CameraResponse readResponseJson(const JsonNode& camera, const fs::path& folder, 
   const std::string text = node->text();
   if (std::optional<CameraResponse> known = CameraResponse::named(text, node->file(), node->place())) return *known;
   const fs::path file = resolveInside(folder, text, rights, node->file(), node->place());
-  std::error_code ignored;  // what cannot be asked about is not there
+  std::error_code ignored;  // a file that cannot be looked at counts as missing
   if (!fs::is_regular_file(file, ignored)) node->fail("'" + text + "' is neither srgb, linear, gamma:G, nor a file");
   return CameraResponse::ofFile(file);
 }

@@ -13,9 +13,9 @@
 
 namespace glint {
 
-/// How the codes of a camera's 8- and 16-bit images become linear light (`camera.response`, docs/formats.md). Codes and light run from 0 to
-/// 1; 1 is the largest code, so that what is clipped lies at 1 whatever the response. Radiance images and float images are linear by
-/// themselves.
+/// How the codes of a camera's 8- and 16-bit images become linear light (`camera.response`, docs/formats.md). Codes and light run
+/// from 0 to 1; 1 is the largest code, so that clipped values lie at 1 whatever the response. Radiance images and float images
+/// are linear by themselves.
 class CameraResponse {
  public:
   enum class Kind {
@@ -27,34 +27,34 @@ class CameraResponse {
   };
   static constexpr double kLeastGamma = 0.1, kMostGamma = 10;  ///< beyond, an 8-bit image has no more than a few shades
 
-  /// As if nothing were stated.
+  /// The response where nothing is stated.
   CameraResponse() = default;
   /// "srgb", "linear", "gamma:G". Nothing for another text, which then names a file.
   /// InputError (file, place) for a gamma that is not a number of the range above.
   static std::optional<CameraResponse> named(const std::string& text, const std::string& file, const std::string& place);
-  /// A measured response. One line per code, in rising order: `light` (codes equally spaced from 0), `code light`, `red green blue`, or
-  /// `code red green blue`; or one line of all lights. Separated by blanks, commas or semicolons; '#' begins a comment; the first line may name
-  /// the columns. Codes run from 0 to the largest one (1, 255, 1023, 4095, 16383 or 65535). Light is in any unit, at least 0, and never falls;
-  /// each colour is divided by its light at the largest code, which changes the white balance and no highlight.
-  /// InputError (file, line) where the text is anything else.
+  /// A measured response. One line per code, in rising order: `light` (codes equally spaced from 0), `code light`, `red green
+  /// blue`, or `code red green blue`; or one line of all lights. Separated by blanks, commas or semicolons; '#' begins a comment;
+  /// the first line may name the columns. Codes run from 0 to the largest one (1, 255, 1023, 4095, 16383 or 65535). Light is in
+  /// any unit, at least 0, and never falls; each colour is divided by its light at the largest code, which changes the white
+  /// balance and no highlight. InputError (file, line) for any other text.
   static CameraResponse ofFile(const std::filesystem::path& file);
-  /// The same of its text.
+  /// The same from the file's text.
   static CameraResponse ofText(const std::string& text, const std::filesystem::path& file);
 
   Kind kind() const { return kind_; }
   bool isStated() const { return kind_ != Kind::ByFileType; }
-  /// Of Kind::Table; absolute. Empty otherwise.
+  /// The file of Kind::Table, absolute; else empty.
   const std::filesystem::path& file() const { return file_; }
   /// Light of a code of this colour channel (0 to 2). `isLinear`: what a response that is not stated becomes.
   double lightOf(double code, int channel, bool isLinear = false) const;
   /// Code of a light; both are clamped to [0, 1]. The inverse of `lightOf`; the smallest code where several have this light.
   double codeOf(double light, int channel, bool isLinear = false) const;
-  /// "srgb", "linear", "gamma:2.2"; of a table its file's path as it stands in `file`; "" where nothing is stated.
+  /// "srgb", "linear", "gamma:2.2", or the path of a table's file as it stands in `file`; "" where nothing is stated.
   std::string text() const;
   /// For people: "the sRGB curve", "code to the power of 2.2", "the curve in response.csv".
   std::string words(bool isLinear = false) const;
-  /// What is strange about it, a sentence; "" = nothing. A camera's codes spend more than their share on dark light: a response that
-  /// gives more than half of the light at half of the codes is the other way round.
+  /// What is strange about the response, one sentence; "" = nothing. Cameras spend more than their share of codes on dark light:
+  /// a response that gives more than half of the light at half of the codes is the wrong way round.
   std::string doubt() const;
 
   friend bool operator==(const CameraResponse& a, const CameraResponse& b) {

@@ -94,8 +94,8 @@ std::vector<std::string> idsOf(const std::vector<CaptureView>& views) {
   return ids;
 }
 
-/// Every file that was found for the capture lies where a capture may name files: in its project's folder or in one that a person named.
-/// A name that looks harmless may be a link that leads out, as may one of the folders that programs look into (`images`).
+/// Checks that every file found for the capture lies where a capture may name files: in its project's folder or in one that a
+/// person named. A harmless name may be a link that leads out, and so may a folder that programs look into (`images`).
 class InsideCapture {
  public:
   InsideCapture(const Capture& capture, const ReadOptions& options)
@@ -109,8 +109,8 @@ class InsideCapture {
   /// @throw OutsidePath (place) for a file that lies elsewhere; says nothing about what is there
   void require(const fs::path& file, const std::string& place, const char* option) {
     if (anywhere_ || file.empty() || file == file_ || isPhotographNamed(file)) return;
-    std::error_code ignored;  // what cannot be asked about is no link
-    // Of thousands of photographs in one folder only the folder is looked at, and those that are links.
+    std::error_code ignored;  // a path that cannot be looked at counts as no link
+    // For thousands of photographs in one folder, only the folder and the links in it are looked at.
     const bool known = !fs::is_symlink(file, ignored) && !folders_.insert(file.parent_path()).second;
     if (known || liesIn(allowed_, file)) return;
     throw OutsidePath(file_.string(), place,
@@ -120,7 +120,7 @@ class InsideCapture {
   }
 
  private:
-  /// In a folder that a person named for photographs links may lead anywhere: people collect photographs so.
+  /// In a folder that a person named for photographs, links may lead anywhere: people collect photographs like that.
   bool isPhotographNamed(const fs::path& file) const {
     return std::any_of(photographs_.begin(), photographs_.end(), [&](const fs::path& folder) {
       const fs::path below = file.lexically_relative(fs::absolute(folder).lexically_normal());
@@ -146,7 +146,7 @@ void requireInside(const Capture& capture, const fs::path& mesh, const ReadOptio
   if (options.choices.surface != InputChoices::Surface::File) inside.require(mesh, "surface", "--surface FILE");
 }
 
-/// The capture's own sparse points, for `--surface points`. In units of its poses.
+/// The capture's own sparse points, for `--surface points`, in units of its poses.
 std::shared_ptr<const PointCloud> sparsePoints(const Capture& capture, const ReadOptions& options) {
   const std::vector<CaptureTrack> tracks = [&]() -> std::vector<CaptureTrack> {
     const CaptureReader* reader = captureReaderNamed(capture.kind);

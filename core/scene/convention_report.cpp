@@ -48,7 +48,7 @@ std::optional<double> depthAt(const Image& depth, const Pixel& p) {
   return (1 - v) * ((1 - u) * a + u * b) + v * ((1 - u) * c + u * d);
 }
 
-/// Whether one of 17 x 17 pixels looks at a triangle: a large one fills the image with all its corners outside.
+/// Whether one of 17 x 17 pixels looks at a triangle: a large triangle fills the image while all its corners lie outside.
 bool looksAtATriangle(const TriangleMesh& mesh, const Camera& camera) {
   constexpr int kSteps = 16;
   for (int i = 0; i <= kSteps; ++i)
@@ -145,10 +145,11 @@ double medianSide(const TriangleMesh& mesh) {
   return quantile(sides, 0.5);
 }
 
-/// Vertices that were rounded when they were stored, far from the origin for their size: facets and highlights are off.
+/// Finds vertices that were rounded when they were stored, because they are far from the origin for their size: facets and
+/// highlights are then off.
 void concludeGrids(const Scene& scene, ConventionReport& report) {
   // Rounding turns facets by about spacing / side. A mesh of 20,480 triangles without normals of its own loses a tenth of a
-  // percent of the highlight's diameter at 1/2000 of a side; what moves a vertex by a hundredth of a pixel moves the contour as
+  // percent of the highlight's diameter at 1/2000 of a side. A shift of a vertex by a hundredth of a pixel moves the contour as
   // much.
   constexpr double kOfSide = 5e-4, kOfPixel = 0.01;
   constexpr double kFar = 4;  // times its size from the origin; nearer, a shape's own round numbers look the same
@@ -175,13 +176,13 @@ double nearestDepthScale(double metresPerUnit) {
   constexpr double kNear = 0.02;
   for (const double usual : kUsual)
     if (std::abs(metresPerUnit / usual - 1) < kNear) return usual;
-  // What somebody chose has few digits; a measured one that is so near to such a number was it.
+  // A chosen factor has few digits; a measured one that is so near to such a number stands for it.
   constexpr double kAsNear = 5e-4;
   const double round = numberFrom(formatted("%.3g", metresPerUnit)).value_or(metresPerUnit);
   return std::abs(metresPerUnit / round - 1) < kAsNear ? round : metresPerUnit;
 }
 
-/// Depth maps that contradict the surface: by one factor for all, which is their scale, or otherwise.
+/// Finds depth maps that contradict the surface: by one factor for all, which is their scale, or otherwise.
 void concludeDepth(const Scene& scene, int depthOff, double worstDepth, ConventionReport& report) {
   constexpr double kSame = 0.03;  // of the factor, from frame to frame: vertices and pixels differ by less than a percent
   constexpr double kMost = 0.5;   // of a frame's samples at that factor: where the scale alone is wrong, all that are visible
@@ -209,7 +210,7 @@ void concludeDepth(const Scene& scene, int depthOff, double worstDepth, Conventi
                                         worstDepth));
 }
 
-/// Numbers have 16 digits: far from the origin few of them are left for the object.
+/// Finds objects far from the origin: numbers have 16 digits, and few of them are left for the object.
 void concludeDistance(ConventionReport& report) {
   constexpr double kCoarse = 1e-8;  // of the object's size: its normals are then uncertain by more than a fit leaves
   for (const auto& s : report.surfaces) {
@@ -284,8 +285,8 @@ void conclude(const Scene& scene, const SightCheck& sight, ConventionReport& rep
   if (scene.frames.size() == 1) report.findings.push_back("only one frame: nothing can be held out");
 }
 
-/// Triangles of the surfaces: meshes of files for as long as the report takes; those that stand for analytic surfaces are soon
-/// made again, so that a scene of thousands of them, a line of JSON each, does not take a GB.
+/// Triangles of the surfaces. Meshes of files are kept as long as the report takes. Those that stand for analytic surfaces are
+/// quickly made again, so that a scene with thousands of them (a line of JSON each) does not take a GB.
 class Triangles {
  public:
   Triangles(const Scene& scene, ConventionReport& report) : scene_(scene), report_(report) {}
@@ -302,7 +303,7 @@ class Triangles {
   }
 
  private:
-  /// Where no surface can be made, the points alone: whether the cameras see them is worth knowing.
+  /// The points alone where no surface can be made: whether the cameras see them is worth knowing.
   TriangleMesh read(const std::string& id, const SurfaceSource& source) {
     SurfaceTriangles triangles = source.triangles();
     if (!triangles.of.empty()) report_.facts.push_back("surface '" + id + "' is made of points: " + triangles.of);

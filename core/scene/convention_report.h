@@ -12,14 +12,14 @@
 
 namespace glint {
 
-/// The steps in which coordinates lie because of how they were written.
+/// The grid on which coordinates lie because of how they were written.
 struct CoordinateGrid {
   double spacing = 0;            ///< units of the coordinates: the widest of the three axes
   bool singlePrecision = false;  ///< the spacing of floats there; else decimal places of a text
 };
-/// Whether all coordinates lie on the grid of single precision, or of a text with few digits, and use it: also its last digit
-/// varies, as it does when numbers were rounded to it and does not when a shape has round coordinates. Nothing for doubles
-/// written in full, and for an axis along which nothing varies.
+/// Whether all coordinates lie on the grid of single precision, or of a text with few digits, and use it: its last digit varies,
+/// too, as it does where numbers were rounded and does not where a shape has round coordinates. Nothing for doubles written in
+/// full, or for an axis along which nothing varies.
 std::optional<CoordinateGrid> coordinateGrid(const std::vector<Eigen::Vector3d>& vertices);
 
 /// What the highlights say about images and intrinsics that cannot be seen in a single frame: mirrored images, a principal point
@@ -28,16 +28,16 @@ struct CameraCheck {
   /// The light and lobe that explain the contours best if the images or cameras were changed so.
   struct Hypothesis {
     std::string change;           ///< "as given", "images mirrored left-right", ...
-    std::optional<double> rmsPx;  ///< of the contours' residuals; none where no light explains them
+    std::optional<double> rmsPx;  ///< of the contours' residuals; nothing where no light explains them
   };
   int views = 0;
   std::vector<Hypothesis> hypotheses;  ///< the first one is "as given"; empty where the check did not run
-  std::string whyNot;                  ///< why it did not
-  std::optional<double>
-      missDeg;  ///< by which mirrored rays of the highlights pass the lamp that they share best, in three quarters of the views
+  std::string whyNot;                  ///< why it did not run
+  /// The angle by which mirrored rays of the highlights miss the lamp that they share best, in three quarters of the views.
+  std::optional<double> missDeg;
   std::optional<double> focalPct;        ///< the change of the focal length that fits best, percent
   std::optional<double> shiftPx;         ///< the shift of the principal point, the same along x and y, that fits best
-  std::vector<std::string> findings;     ///< what is clear, one line each; mostly none
+  std::vector<std::string> findings;     ///< what is clear, one line each; mostly empty
   std::optional<Correction> correction;  ///< that undoes the last finding
 };
 
@@ -76,17 +76,17 @@ struct ConventionReport {
   std::vector<FrameFacts> frames;
   int lights = 0;
   std::optional<TrackCheck> tracks;    ///< of a capture with sparse points
-  std::optional<CameraCheck> cameras;  ///< by its highlights, where they were asked
+  std::optional<CameraCheck> cameras;  ///< by its highlights, where that check ran
   std::vector<std::string> findings;   ///< what looks wrong, one line each, with the likely cause; empty = nothing found
   struct Proposal {
     std::size_t finding = 0;  ///< index in `findings`
     Correction correction;
   };
-  std::vector<Proposal> corrections;  ///< in the order of the findings; not every one has one
+  std::vector<Proposal> corrections;  ///< in the order of the findings; some findings have no correction
 
   void take(CameraCheck check);  ///< with its findings
   void add(std::string finding, std::optional<Correction> correction = {});
-  /// What is said where there is no finding: no more than what was checked.
+  /// What is said without a finding: no more than what was checked.
   std::string cleanBill() const;
   bool anyFrameSeesSurface() const;
   bool everyFrameSeesSurface() const;
@@ -95,15 +95,15 @@ struct ConventionReport {
 /// Reads every surface and every image once. InputError when a mesh cannot be read; Stopped.
 ConventionReport conventionReport(const Scene& scene, const ProgressFn& progress = {});
 
-/// Where the sparse points put a mesh through which most of them do not pass: adds to their finding, or makes one where another place explains
-/// them. Not where a correction of the unit or place of the mesh is known already. InputError, Stopped.
+/// Where the sparse points put a mesh through which most of them do not pass: adds to their finding, or makes one where another
+/// place explains them. Does nothing where a correction of the mesh's unit or place is known already. InputError, Stopped.
 void placeMesh(const Scene& scene, const ProgressFn& progress, ConventionReport& report);
 
 std::string toText(const ConventionReport& report);  ///< for a terminal, ends with a line break
 std::string findingsText(
     const ConventionReport& report);  ///< a line for each, with the command that corrects it; empty without findings
 std::string toJson(const ConventionReport& report);  ///< {"glint_info": 1, ...}, laid out, no NaN
-/// Another document, an object in JSON, with `findings` and `fixes` of the report as toJson() writes them.
+/// Another document (an object in JSON) with `findings` and `fixes` of the report as toJson() writes them.
 std::string withFindings(const std::string& json, const ConventionReport& report);
 
 }  // namespace glint

@@ -31,7 +31,7 @@ std::optional<double> floatGrid(const std::vector<double>& values) {
     largest = std::max(largest, std::abs(v));
   }
   const double share = double(odd) / double(values.size());
-  // All odd: one value, such as the height of a plane.
+  // All are odd: one value, such as the height of a plane.
   return share > kUsedBits && share < 1 - kUsedBits ? std::optional<double>(floatStep(largest)) : std::nullopt;
 }
 

@@ -49,7 +49,8 @@ std::string plyOf(const TriangleMesh& mesh) {
   return ply;
 }
 
-/// Area that the eyes see from its front minus that from behind. What hides what is not asked: an open mesh hides little of itself.
+/// Area that the eyes see from its front, minus the area seen from behind. Occlusion is ignored: an open mesh hides little of
+/// itself.
 double areaFacing(const TriangleMesh& mesh, const std::vector<Eigen::Vector3d>& eyes) {
   double facing = 0;
   for (const Eigen::Vector3i& t : mesh.triangles) {
@@ -63,7 +64,7 @@ double areaFacing(const TriangleMesh& mesh, const std::vector<Eigen::Vector3d>& 
 
 /// Writes one mesh; a file that is not one of these stays. @return whether the file is new
 bool writeMesh(const fs::path& file, const TriangleMesh& mesh) {
-  std::error_code ignored;  // what cannot be asked about is not there; writing tells
+  std::error_code ignored;  // a file that cannot be looked at counts as missing; writing fails then
   const bool there = fs::exists(file, ignored);
   if (there && firstBytes(file, kHeaderBytes).find(kOwnMesh) == std::string::npos)
     throw InputError(file.string(), "", "exists, and is no mesh that --fix flip-faces wrote; choose another output");
@@ -83,7 +84,7 @@ void flipFaces(Scene& scene, const fs::path& output, std::vector<fs::path>& writ
     for (const Frame& f : scene.frames)
       if (f.surface == id) eyes.push_back(f.camera.centreInWorld() / given->metresPerUnit);
     const fs::path file = output.parent_path() / (output.stem().string() + "." + fileNameOf(id) + ".ply");
-    std::error_code ignored;  // what cannot be asked about is not the same
+    std::error_code ignored;  // a path that cannot be looked at counts as another file
     if (fs::equivalent(file, given->file, ignored))
       throw InputError(file.string(), "--fix flip-faces", "is an input file; choose another output");
     if (writeMesh(file, withSidesRight(std::move(mesh), eyes))) written.push_back(file);

@@ -27,7 +27,7 @@ struct ValuedCorrection {
 };
 
 constexpr ValuedCorrection kValued[] = {
-    {kPrincipalPoint, -10, 10, "px, added to cx and cy"},  // more is no other origin of pixels but another image
+    {kPrincipalPoint, -10, 10, "px, added to cx and cy"},  // more than that is another image, not another origin of pixels
     {kFocalLength, 0.1, 10, "a factor of fx and fy"},      // beyond that it is another camera
     {kDepthScale, 1e-9, 1e9, "metres per unit of depth"},  // as scene files: more is a typing error
     {kCameraScale, 1.0 / 64, 64, "a factor of fx, fy and of the principal point's distance from the image's corner"},
@@ -75,7 +75,8 @@ Lens turned(const Frame& f, const Eigen::Matrix2d& turn) {
   return lens;
 }
 
-/// Cameras of the stored pictures become those of the pictures as they are shown, turned clockwise by `degrees`; their size is that of the shown ones.
+/// Cameras of the stored pictures become those of the pictures as they are shown, turned clockwise by `degrees`; their size is
+/// that of the shown ones.
 void turnCameras(Scene& scene, double degrees) {
   const auto refuse = [](const std::string& why) { throw InputError("--fix", std::string(kTurnCameras), why); };
   if (degrees != 90 && degrees != 180 && degrees != 270) refuse("expected 90, 180 or 270 degrees");

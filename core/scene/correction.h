@@ -34,7 +34,7 @@ Correction focalLengthCorrection(double factor);
 /// @param metresPerUnit  > 0, of integer depth maps (scene.json's depth_scale)
 Correction depthScaleCorrection(double metresPerUnit);
 
-/// "Turn the cameras by 90 degrees, as the photographs are": poses and intrinsics are those of pictures that were turned since.
+/// "Turn the cameras by 90 degrees, as the photographs are": poses and intrinsics belong to pictures that were turned since.
 /// @param degrees  clockwise: 90, 180 or 270
 Correction turnCamerasCorrection(int degrees);
 /// "Move the cameras into the frame of the mesh": the mesh stays as it is, poses take over its frame and its unit.
@@ -42,7 +42,8 @@ Correction turnCamerasCorrection(int degrees);
 Correction meshSimilarityCorrection(const Similarity& camerasFromMesh);
 
 /// The scene with the correction made; images, meshes and measured highlights stay as they are.
-/// @throws InputError("--fix", ...)  where there is no such correction, its value is out of range, or the scene has what it cannot change
+/// @throws InputError("--fix", ...)  where there is no such correction, its value is out of range, or the scene has what it
+///   cannot change
 Scene corrected(Scene scene, std::string_view fix);
 /// "invert-poses, turn-axes, ..., depth-scale=VALUE": for messages and help.
 std::string correctionNames();

@@ -33,18 +33,18 @@ struct FileVersion {
   std::int64_t changedNs = 0;  ///< when content or name last changed, by the system's clock; no program can set it
   friend bool operator==(const FileVersion&, const FileVersion&) = default;
 };
-std::optional<FileVersion> versionOf(const std::filesystem::path& file);  ///< none where it cannot be looked at
+std::optional<FileVersion> versionOf(const std::filesystem::path& file);  ///< nothing where it cannot be looked at
 
-/// Decoded images by file. Where there is no room, a random one goes: passes over more frames than there is room for find some of them again, where
-/// the rule "the one that was not used for longest" would find none. Thread-safe.
+/// Decoded images by file. Where there is no room, a random one is dropped. Passes over more frames than there is room for then
+/// find some of them again; the rule "the one unused for longest" would find none. Thread-safe.
 class DecodedImages {
  public:
   explicit DecodedImages(std::size_t mostBytes) : mostBytes_(mostBytes) {}
   void setMostBytes(std::size_t bytes);
   bool keepsAny() const;
   std::optional<DecodedImage> find(const std::filesystem::path& file, const FileVersion& now);
-  /// @param read  the file's version from before it was read. One that changed within the last second is not kept: a change after it might bear
-  ///              the same time
+  /// @param read  the file's version from before it was read. One that changed within the last second is not kept: a change
+  ///              after it might bear the same time
   void keep(const std::filesystem::path& file, const FileVersion& read, const DecodedImage& image);
   std::size_t bytes() const;
 
@@ -64,7 +64,7 @@ class DecodedImages {
   std::uint64_t random_ = 1;
 };
 
-/// Those of this process; none are kept before keepDecodedImages().
+/// The images of this process; none is kept before keepDecodedImages().
 DecodedImages& decodedImages();
 
 }  // namespace glint

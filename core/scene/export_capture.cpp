@@ -17,7 +17,7 @@ std::string below(const fs::path& file, const fs::path& folder) {
 }
 
 void requireNew(const fs::path& file) {
-  std::error_code ignored;  // what cannot be asked about cannot be written either
+  std::error_code ignored;  // a path that cannot be looked at cannot be written either
   if (fs::exists(file, ignored))
     throw InputError(file.string(), "--out", "already exists; nothing is overwritten: choose another place or remove this file");
 }
@@ -42,7 +42,7 @@ std::vector<std::string> leftOutOf(const Scene& scene) {
   return lines;
 }
 
-/// The photograph, else the radiance image. A picture of a video is no file that others read.
+/// The photograph, else the radiance image. Other programs cannot read a picture of a video as a file.
 fs::path pictureOf(const Frame& frame) {
   if (frame.ofVideo) return {};
   return frame.image.empty() ? frame.radiance : frame.image;

@@ -9,7 +9,7 @@
 
 namespace glint {
 
-/// Nothing in a folder is recognised, but a folder inside it is: who stands one level too high can be led there.
+/// Nothing in a folder is recognised, but a folder inside it is: a person who is one level too high can be led there.
 class FolderBelow : public InputError {
  public:
   /// @param folder  inside `input`. @param what  "COLMAP model"

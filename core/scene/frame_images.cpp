@@ -39,8 +39,8 @@ std::string wrongSize(std::uint64_t width, std::uint64_t height, const Camera& c
          (scale ? formatted(" (resized photographs: glint convert INPUT --fix image-scale=%.10g fits the cameras)", *scale) : "");
 }
 
-/// The EXIF orientation with which the picture has the camera's size, where that takes a quarter turn; 1 = none. OpenCV, which calibrates,
-/// turns such pictures; COLMAP does not, and its cameras have the size of the stored pixels.
+/// The EXIF orientation with which the picture has the camera's size, where that takes a quarter turn; 1 = none. OpenCV, which
+/// calibrates, turns such pictures; COLMAP does not, and its cameras have the size of the stored pixels.
 int orientationThatFits(const std::string& bytes, const ImageHeader& header, const Camera& camera) {
   constexpr int kFirstOfQuarterTurns = 5;
   if (header.width != static_cast<std::uint64_t>(camera.height) || header.height != static_cast<std::uint64_t>(camera.width) ||
@@ -97,7 +97,7 @@ Outcome<DecodedImage> decodeFile(const fs::path& file, const Camera& camera) {
                       header.severalChannels};
 }
 
-/// What an earlier read of the same file found. Nothing beyond a limit that was lowered since.
+/// The result of an earlier read of the same file. Nothing if it is beyond a limit that was lowered since.
 std::optional<DecodedImage> keptImage(const fs::path& file, const FileVersion& version) {
   std::optional<DecodedImage> kept = decodedImages().find(file, version);
   if (!kept || double(version.bytes) / kMega > limitOf(Limit::ImageMegabytes) ||
@@ -122,7 +122,7 @@ Outcome<DecodedImage> decode(const fs::path& file, const Camera& camera) {
   return *std::move(image);
 }
 
-/// The picture of a frame. Of a video all decoders give 8 bits.
+/// The picture of a frame. Decoders give 8 bits for every video.
 Outcome<DecodedImage> decode(const Frame& frame, const fs::path& file) {
   if (!frame.ofVideo || file != frame.image) return decode(file, frame.camera);
   const Outcome<cv::Mat> pixels = videoPicture(file, *frame.ofVideo);
@@ -195,7 +195,7 @@ Image notZero(const cv::Mat& codes) {
   return mask;
 }
 
-/// Where no response is stated.
+/// The values where no response is stated.
 bool takenAsLinear(const DecodedImage& d) { return d.pixels->depth() == CV_16U && d.saysLinear; }
 
 std::string howLinear(const Frame& frame, const DecodedImage& d) {
@@ -238,7 +238,8 @@ Image toneMapped(const Image& linear) {
 }  // namespace
 
 namespace {
-/// A cut-out: what colour its transparent pixels have is arbitrary, so they are outside. Nothing where all is opaque.
+/// The mask of a cut-out: the colour of its transparent pixels is arbitrary, so they are outside. Nothing where all pixels are
+/// opaque.
 std::optional<Image> opaquePart(const Frame& frame) {
   if (frame.image.empty() || frame.ofVideo || !frame.radiance.empty()) return std::nullopt;
   std::string bytes;
@@ -250,7 +251,7 @@ std::optional<Image> opaquePart(const Frame& frame) {
     if (!mayHaveAlpha || header.format == ImageFormat::Jpeg || !headerProblem(bytes, header, frame.camera).empty())
       return std::nullopt;
   } catch (const InputError&) {
-    return std::nullopt;  // who reads the photograph says so
+    return std::nullopt;  // the reader of the photograph says so
   }
   Outcome<cv::Mat> alpha = decodeAlpha(bytes);
   if (alpha) *alpha = turnedBy(orientationThatFits(bytes, header, frame.camera), *alpha);
@@ -313,8 +314,8 @@ std::string fileProblem(const fs::path& file, const Camera& camera) {
   return {};
 }
 
-/// The frame's own; else, of a depth map of lower or higher resolution, that of the photograph in that resolution. Nothing: depth is as
-/// of the photograph's camera, or cannot be read.
+/// The frame's own depth camera; else, for a depth map of lower or higher resolution, the photograph's camera in that resolution.
+/// Nothing where the depth is that of the photograph's camera, or cannot be read.
 std::optional<Camera> depthCameraOf(const Frame& frame) {
   if (frame.depthCamera || frame.depth.empty()) return frame.depthCamera;
   try {
@@ -360,8 +361,8 @@ Outcome<std::optional<Image>> readMask(const Frame& frame) {
 }
 
 namespace {
-/// The depth of a picture: its only channel; that of depth of an EXR file with colours; one of three that are equal, as programs write that have
-/// pictures only.
+/// The depth in a picture: its only channel, the depth channel of an EXR file with colours, or one of three equal channels
+/// (programs that can only write pictures write those).
 Outcome<cv::Mat> depthChannel(const fs::path& file, const DecodedImage& image) {
   const cv::Mat& picture = *image.pixels;
   std::string reason = "a depth image has one channel; this one has " + std::to_string(picture.channels());

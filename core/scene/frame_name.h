@@ -9,16 +9,16 @@
 
 namespace glint {
 
-// How a person is told of a frame: always by its id. Its place in the sequence would read like the id of another frame ("0004" is not
-// frame 4 where frames were left out of a capture).
+// How a person is told of a frame: always by its id. Its place in the sequence would read like the id of another frame ("0004" is
+// not frame 4 where frames were left out of a capture).
 
-/// The frame's id. "at position N" for a number that names no frame of this scene, as a file of another scene may hold.
+/// The frame's id. "at position N" for a number that names no frame of this scene, for example in a file of another scene.
 inline std::string frameName(const Scene& scene, int frame) {
   return frame >= 0 && frame < static_cast<int>(scene.frames.size()) ? scene.frames[static_cast<std::size_t>(frame)].id
                                                                      : "at position " + std::to_string(frame);
 }
 
-/// Of all, in the same order.
+/// The names of all frames, in the same order.
 inline std::vector<std::string> frameIds(const Scene& scene, const std::vector<int>& frames) {
   std::vector<std::string> ids;
   for (const int frame : frames) ids.push_back(frameName(scene, frame));

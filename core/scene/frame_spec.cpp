@@ -22,7 +22,8 @@ std::optional<int> wholeNumber(const std::string& text) {
 
 bool isRule(const std::string& text) { return text.rfind("first:", 0) == 0 || text.rfind("spread:", 0) == 0; }
 
-/// The words of a SPEC between its commas. Frame ids win over numbers: "0003" may be an id or the number 3. Numbers are positions in the input.
+/// The words of a SPEC between its commas. Frame ids win over numbers: "0003" may be an id or the number 3. Numbers are positions
+/// in the input.
 class FrameWords {
  public:
   explicit FrameWords(const Scene& scene) {

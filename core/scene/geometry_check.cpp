@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kSightSample = 300;  // vertices: shares to a few percent
 
-/// What is said of each of geometryCorrections(), in their order.
+/// The words for each of geometryCorrections(), in their order.
 constexpr std::array<const char*, 6> kMistakeWords{
     "poses are camera to world: invert them",
     "camera axes are OpenGL's, y up and z backwards: turn the y and z axes",

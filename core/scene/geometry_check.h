@@ -11,8 +11,8 @@
 
 namespace glint {
 
-/// Which mistake explains that cameras do not see their surface: each one is undone and the cameras that see it are counted (at
-/// least half of the surface's vertices inside the image).
+/// Which mistake explains that cameras do not see their surface. Each mistake is undone, and the cameras that see it are counted
+/// (at least half of the surface's vertices inside the image).
 struct SightHypothesis {
   std::string mistake;  ///< for a person, with what to do: "poses are camera to world (invert them)"
   Correction undoing;
@@ -30,9 +30,9 @@ SightCheck checkSight(const Scene& scene, const std::function<const TriangleMesh
 /// What is wrong with the sides of a mesh; "" = nothing. Facets of a closed mesh look inwards, or normals of vertices point
 /// against their facets.
 std::string sidesOf(const TriangleMesh& mesh);
-/// Every edge belongs to two triangles that run along it in opposite directions.
+/// Whether every edge belongs to two triangles that run along it in opposite directions.
 bool isClosed(const TriangleMesh& mesh);
-/// Six times the volume between the facets and a vertex: of a closed mesh negative where they look inwards.
+/// Six times the volume between the facets and a vertex: negative for a closed mesh whose facets look inwards.
 double signedVolume(const TriangleMesh& mesh);
 /// Whether most facets have normals of their vertices on the other side. False without normals.
 bool normalsAgainstFacets(const TriangleMesh& mesh);

@@ -48,7 +48,7 @@ void readPngBytes(png_structp png, png_bytep out, png_size_t count) {
 
 void ignorePngWarning(png_structp, png_const_charp) {}  // such as an unusual colour profile: the pixels are not touched
 
-/// Header and transformations. False = job.error.
+/// Reads the header and sets the transformations. False = job.error.
 bool startPng(PngJob& job, png_structp png, png_infop info, int& channels, int& bits) {
   if (setjmp(job.back)) return false;
   png_set_read_fn(png, &job, readPngBytes);
@@ -120,7 +120,7 @@ struct JpegJob {
   std::longjmp(job.back, 1);
 }
 
-/// A warning says that pixels are not what was stored; those that touch no pixel pass.
+/// A warning says that pixels are not what was stored. Warnings about other things pass.
 void judgeJpeg(j_common_ptr info, int level) {
   if (level >= 0) return;  // traces
   switch (info->err->msg_code) {
@@ -133,7 +133,7 @@ void judgeJpeg(j_common_ptr info, int level) {
 }
 
 void countScans(j_common_ptr info) {
-  constexpr int kMostScans = 200;  // encoders write about ten; each of a hostile file's thousands costs as much as an image
+  constexpr int kMostScans = 200;  // encoders write about ten; a hostile file has thousands, each as costly as an image
   const auto* decompress = reinterpret_cast<j_decompress_ptr>(info);
   if (decompress->input_scan_number <= kMostScans) return;
   auto& job = *reinterpret_cast<JpegJob*>(info->err);
@@ -188,8 +188,8 @@ Outcome<cv::Mat> decodeJpeg(const std::string& bytes, const ImageHeader& header)
 
 // ---- The others, with OpenCV, which writes what goes wrong to std::cerr.
 
-/// While one lives, std::cerr goes nowhere. Glint itself does not use it. Narrower than QuietLibraries on purpose: images are decoded on
-/// several threads, and what another thread says meanwhile must be heard.
+/// While one lives, std::cerr goes nowhere. Glint itself does not use it. Narrower than QuietLibraries on purpose: images are
+/// decoded on several threads, and messages of other threads must still be seen.
 class QuietCerr {
  public:
   QuietCerr() {
@@ -225,7 +225,7 @@ class QuietCerr {
   }
 };
 
-/// As one of the functions of core/codecs gives it.
+/// The picture as a function of core/codecs gives it.
 Outcome<cv::Mat> decodeBy(cv::Mat (*decoder)(const std::string&, std::string&), const std::string& bytes) {
   static const bool quiet = [] {
     cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);

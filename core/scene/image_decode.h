@@ -14,10 +14,10 @@ class Mat;
 
 namespace glint {
 
-/// 1 or 3 channels in the order red, green, blue, and the file's own depth (8 or 16 bits, float); alpha is dropped. Writes nothing to
-/// standard error, whatever the decoders find.
+/// 1 or 3 channels in the order red, green, blue, and the file's own depth (8 or 16 bits, float); alpha is dropped. Writes
+/// nothing to standard error, whatever the decoders find.
 /// @param header  of these bytes, without a problem
-/// @return FrameUnreadable: damaged data, where a decoder would go on with grey or wrong pixels; CMYK.
+/// @return FrameUnreadable for damaged data, where a decoder would go on with grey or wrong pixels, and for CMYK.
 /// @throws CodecsMissing  neither PNG nor JPEG, and libglint-codecs is not there
 Outcome<cv::Mat> decodeImage(const std::string& bytes, const ImageHeader& header);
 
@@ -25,7 +25,8 @@ Outcome<cv::Mat> decodeImage(const std::string& bytes, const ImageHeader& header
 /// @throws CodecsMissing  libglint-codecs is not there
 Outcome<cv::Mat> decodeAlpha(const std::string& bytes);
 
-/// The channel of depth (Z or V) of an EXR file that may have colours, too: floats. FrameUnreadable where there is none, or several.
+/// The channel of depth (Z or V) of an EXR file that may have colours, too: floats. FrameUnreadable for no such channel, or
+/// several.
 /// @throws CodecsMissing  libglint-codecs is not there
 Outcome<cv::Mat> decodeDepth(const std::string& bytes);
 

@@ -25,7 +25,7 @@ std::optional<std::array<int, 2>> pictureSize(const Frame& frame) {
       return std::nullopt;
     return std::array<int, 2>{int(header.width), int(header.height)};
   } catch (const InputError&) {
-    return std::nullopt;  // it is said where the picture is read
+    return std::nullopt;  // the reader of the picture reports it
   }
 }
 

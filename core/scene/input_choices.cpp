@@ -37,7 +37,7 @@ std::string surfaceText(const InputChoices& c) {
   return "";
 }
 
-/// Nothing is wrong, or what is.
+/// What is wrong, or nothing.
 std::string problemOfCamera(const std::vector<double>& v) {
   if (v.size() != 4 && v.size() != 8 && v.size() != 9) return kCameraForm;
   if (!(v[0] > 0) || !(v[1] > 0)) return "focal lengths must be positive";
@@ -66,14 +66,14 @@ void setSurface(InputChoices& c, const std::string& text) {
               : text == "points" ? InputChoices::Surface::Points
                                  : InputChoices::Surface::File;
   if (c.surface != InputChoices::Surface::File) return;
-  std::error_code ignored;  // what cannot be asked about is not there
+  std::error_code ignored;  // a file that cannot be looked at counts as missing
   if (!std::filesystem::is_regular_file(text, ignored))
     throw InputError("", "--surface " + text, "no such file; expected a mesh or a cloud, depth, or points");
   c.surfaceFile = std::filesystem::absolute(text).lexically_normal();
 }
 
 void setPoses(InputChoices& c, const std::string& text) {
-  std::error_code ignored;  // what cannot be asked about is not there
+  std::error_code ignored;  // a file that cannot be looked at counts as missing
   if (!std::filesystem::is_regular_file(text, ignored))
     throw InputError("", "--poses " + text, "no such file; expected TUM or JSON lines");
   c.poses = std::filesystem::absolute(text).lexically_normal();
@@ -86,7 +86,7 @@ void setPosesBy(InputChoices& c, const std::string& text) {
 
 void setResponse(InputChoices& c, const std::string& text) {
   const std::string place = "--response " + text;
-  std::error_code ignored;  // what cannot be asked about is not there
+  std::error_code ignored;  // a file that cannot be looked at counts as missing
   const bool isFile = !CameraResponse::named(text, "", place);
   if (isFile && !std::filesystem::is_regular_file(text, ignored))
     throw InputError("", place, "is neither srgb, linear, gamma:G, nor a file");

@@ -13,7 +13,7 @@
 
 namespace glint {
 
-/// What the files of other programs do not say about themselves: how they are to be read (docs/formats.md, "Captures of other
+/// What the files of other programs do not say about themselves: how to read them (docs/formats.md, "Captures of other
 /// programs"). From the command line or the inspector; sessions keep it. A scene file says everything itself.
 struct InputChoices {
   std::string as;  ///< which reading of several is meant: "colmap", "scene", ...; "" = the only one
@@ -39,14 +39,14 @@ struct ChoiceOption {
   const char* help;
   /// InputError (place: flag and text).
   void (*set)(InputChoices& choices, const std::string& text);
-  /// What `set` would have to be given; "" = not set.
+  /// The text that `set` would need; "" = not set.
   std::string (*textOf)(const InputChoices& choices);
 };
 const std::vector<ChoiceOption>& choiceOptions();
 
 /// Metres of "m", "cm", "mm" or a number above 0. InputError (place: the option) for another text.
 double metresOfUnit(const std::string& unit, const std::string& option);
-/// "m", "cm" or "mm" of 1, 0.01, 0.001; another number as text with all its digits.
+/// "m", "cm" or "mm" for 1, 0.01 or 0.001; another number as text with all its digits.
 std::string unitOfMetres(double metres);
 
 /// The numbers of "fx,fy,cx,cy[,k1,k2,p1,p2,k3]". InputError (place: the option).
@@ -54,7 +54,7 @@ std::vector<double> cameraNumbers(const std::string& text, const std::string& op
 /// Intrinsics of these numbers, without a size. @pre as cameraNumbers returns them
 Camera cameraOfNumbers(const std::vector<double>& numbers);
 
-/// InputError (place: the option), also where the file that it names is no response.
+/// The response of this text. InputError (place: the option), also where the file that it names is not a response.
 CameraResponse responseOf(const InputChoices& choices);
 /// The file that it names; "" = none.
 std::filesystem::path responseFileOf(const InputChoices& choices);

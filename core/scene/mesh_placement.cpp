@@ -42,12 +42,12 @@ bool movesBox(const TriangleMesh& mesh, const Similarity& s) {
 struct MeshPlacement {
   std::string words;                     ///< for the finding: what was found, or why nothing was
   bool moves = false;                    ///< by more than noise of the points would
-  std::optional<Correction> correction;  ///< that moves the cameras to the mesh; none where the points do not determine it
+  std::optional<Correction> correction;  ///< moves the cameras to the mesh; nothing where the points do not determine it
 };
 
 /// @param mesh    the scene's only surface, in metres
 /// @param points  that the cameras saw, in metres
-/// A place from which not every camera that saw points would see the mesh is none. Stopped.
+/// A place where some camera that saw points would not see the mesh does not count. Stopped.
 MeshPlacement placementOf(const Scene& scene, const TriangleMesh& mesh, const std::vector<SeenPoint>& points,
                           const ProgressFn& progress) {
   const Outcome<Registration> found = registerMesh(mesh, points, progress);
@@ -62,7 +62,7 @@ MeshPlacement placementOf(const Scene& scene, const TriangleMesh& mesh, const st
   try {
     const Scene moved = corrected(scene, correction.fix);
     const int seeing = framesThatSee(moved, mesh), all = static_cast<int>(moved.frames.size());
-    if (2 * seeing < all)  // cameras that look elsewhere are no harm, but most are there for the object
+    if (2 * seeing < all)  // cameras that look elsewhere do no harm, but most look at the object
       return {formatted("the sparse points put the mesh where %d of %d cameras see it", seeing, all), false, {}};
     return {formatted("moved to where the sparse points show it, the mesh is %.4g times as large and %d of %d cameras see it: ",
                       found->pointsFromMesh.scale, seeing, all) +
@@ -80,7 +80,7 @@ bool startsWith(const ConventionReport::Proposal& p, const char* text) { return 
 void placeMesh(const Scene& scene, const ProgressFn& progress, ConventionReport& report) {
   const auto ofUnit = [](const auto& p) { return startsWith(p, "mesh-") || startsWith(p, "poses-"); };
   if (!report.tracks || report.tracks->sample.empty() || scene.surfaces.size() != 1) return;
-  if (std::any_of(report.corrections.begin(), report.corrections.end(), ofUnit)) return;  // then it is known what is wrong
+  if (std::any_of(report.corrections.begin(), report.corrections.end(), ofUnit)) return;  // the mistake is known then
   const auto& [id, source] = *scene.surfaces.begin();
   const TriangleMesh mesh = std::get_if<MeshFile>(&source) ? source.triangles().mesh : TriangleMesh{};
   if (mesh.triangles.empty()) return;

@@ -56,7 +56,7 @@ OutputKind OutputKind::movie() { return {Form::Movie, "", "a movie", {}}; }  // 
 OutputKind OutputKind::lightPositions() { return {Form::LightPositions, "", "a list of light positions (.lp)", {".lp"}}; }
 
 bool OutputKind::mayBeNamed(const fs::path& file) const {
-  // What programs choose by the name alone; other endings promise nothing.
+  // Endings by which programs choose a format; other endings promise nothing.
   static const std::set<std::string> promises{".bmp", ".csv",  ".exr", ".gif", ".glint", ".htm", ".html", ".jpeg",
                                               ".jpg", ".json", ".lp",  ".mp4", ".obj",   ".pdf", ".ply",  ".png",
                                               ".ppm", ".stl",  ".svg", ".tif", ".tiff",  ".webp"};
@@ -65,7 +65,7 @@ bool OutputKind::mayBeNamed(const fs::path& file) const {
 }
 
 bool OutputKind::holds(const fs::path& file) const {
-  std::error_code ignored;  // what cannot be asked about is not empty
+  std::error_code ignored;  // a folder that cannot be looked at counts as not empty
   if (fs::file_size(file, ignored) == 0) return true;
   constexpr std::size_t kHead = 400;  // the title of a page stands within it
   const std::string head = firstBytes(file, std::max(kHead, key_.size()));
@@ -84,12 +84,12 @@ Outputs::Outputs(const std::vector<fs::path>& inputs) : inputs_(inputs) {}
 
 Outputs::Outputs(const std::string& input, const Scene& scene) : inputs_(filesOf(scene)) {
   inputs_.emplace_back(input);
-  std::error_code ignored;                                                         // what cannot be asked about is no folder
+  std::error_code ignored;                                                         // unreadable counts as no folder
   if (fs::is_directory(input, ignored)) inputs_.push_back(recognisedFile(input));  // a session is no file of its scene
 }
 
 void Outputs::requireNoInput(const fs::path& file, const std::string& flag) const {
-  std::error_code ignored;  // what cannot be asked about is another file
+  std::error_code ignored;  // a path that cannot be looked at counts as another file
   for (const fs::path& input : inputs_)
     if (!input.empty() && fs::equivalent(file, input, ignored))
       throw InputError(file.string(), flag, "is an input file and is never overwritten; choose another file");
@@ -123,7 +123,7 @@ void Outputs::inFolder(const std::string& folder, const std::string& flag, const
   if (folder.empty()) return;
   const fs::path place = fs::absolute(folder);
   const auto isThere = [place](const std::string& name) {
-    std::error_code ignored;  // what cannot be asked about is not there
+    std::error_code ignored;  // a file that cannot be looked at counts as missing
     return fs::exists(place / name, ignored);
   };
   const auto isOurs = [place, marker, documentKey] { return documentKind(place / marker) == documentKey; };

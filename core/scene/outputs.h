@@ -10,7 +10,7 @@
 
 namespace glint {
 
-/// What a file holds that a program writes.
+/// What a file that a program writes holds.
 class OutputKind {
  public:
   static OutputKind document(const std::string& key);  ///< JSON with this key at its top, "glint_scene"
@@ -22,7 +22,7 @@ class OutputKind {
 
   /// Whether the file may be replaced by one of this kind: empty, or of this kind.
   bool holds(const std::filesystem::path& file) const;
-  /// Whether a file of this name may hold it: the ending of another format would say what it is not.
+  /// Whether a file of this name may hold it: the ending of another format would be wrong.
   bool mayBeNamed(const std::filesystem::path& file) const;
   const std::string& words() const { return words_; }
   const std::vector<std::string>& endings() const { return endings_; }
@@ -46,8 +46,8 @@ class Outputs {
 
   /// InputError (file, flag). An empty `file` was not asked for.
   void file(const std::string& file, const std::string& flag, const OutputKind& kind);
-  /// Files with these names in a folder: where one of them exists, the folder must hold `marker`, a document of this kind, so that an
-  /// earlier run wrote them.
+  /// Files with these names in a folder: where one of them exists, the folder must hold `marker`, a document of this kind, so
+  /// that an earlier run wrote them.
   void inFolder(const std::string& folder, const std::string& flag, const std::vector<std::string>& names,
                 const std::string& marker, const std::string& documentKey);
 
@@ -57,9 +57,10 @@ class Outputs {
   std::vector<std::filesystem::path> asked_;
 };
 
-/// The name of a frame's picture: its id, with what no file name may hold replaced, the part, ".png". "0012.png", "0012_diffuse.png".
+/// The name of a frame's picture: its id, with what no file name may hold replaced, the part, ".png". "0012.png",
+/// "0012_diffuse.png".
 std::string pictureName(const Frame& frame, const std::string& part = "");
-/// Of these frames.
+/// The names for these frames.
 std::vector<std::string> picturesOf(const Scene& scene, const std::vector<int>& frames);
 
 }  // namespace glint

@@ -52,7 +52,7 @@ std::vector<Reading> readingsOf(const fs::path& input) {
   return all;
 }
 
-/// Those that only who names poses (`--poses`) asks: a folder of images alone is no capture.
+/// Readers that are asked only where poses are named (`--poses`): a folder of images alone is no capture.
 const std::vector<std::unique_ptr<const SceneReader>>& posedReaders() {
   static const std::unique_ptr<const CaptureReader> images = makeImagesReader(), video = makeVideoReader();
   static const std::vector<std::unique_ptr<const SceneReader>> readers = [] {
@@ -74,7 +74,7 @@ const SceneReader& readerNamed(const std::string& name) {
   throw InputError("", "--as " + name, "is not one of: " + known + kPluginHint);
 }
 
-/// In few words: a message has one line.
+/// The readings in few words: a message has one line.
 std::string whatIsUnderstood() {
   std::string all;
   for (const auto& reader : sceneReaders()) {
@@ -137,7 +137,7 @@ void lookBelow(const fs::path& folder, const std::string& what) {
   throw InputError(input.string(), "", what + "; supported: " + whatIsUnderstood());
 }
 
-/// Of images or a video, because poses are given.
+/// The capture of images or a video, because poses are given.
 Reading posedReading(const fs::path& input, const std::string& as) {
   std::vector<Reading> readings;
   for (const auto& reader : posedReaders())
@@ -190,7 +190,7 @@ const std::vector<std::unique_ptr<const SceneReader>>& sceneReaders() {
 }
 
 namespace {
-/// How much memory a frame takes is known from here on, before any loop over frames begins.
+/// From here on it is known how much memory a frame takes, before any loop over frames begins.
 Scene withExpectedImages(Scene scene) {
   constexpr double kMega = 1e6;
   for (const Frame& f : scene.frames)

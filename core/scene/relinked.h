@@ -12,7 +12,8 @@
 
 namespace glint {
 
-/// Where inputs are now that are not where a session or scene says; what is empty is where it says. And how a capture is read.
+/// Where inputs are now that are not where a session or scene says (an empty member: they are where it says), and how a capture
+/// is read.
 struct Relinked {
   std::filesystem::path scene = {};                          ///< of a session
   std::map<std::string, std::filesystem::path> meshes = {};  ///< by the path that the scene file writes
@@ -22,7 +23,7 @@ struct Relinked {
   bool any() const { return !scene.empty() || !meshes.empty() || !meshFolders.empty(); }
 };
 
-/// A mesh of a scene is not where the scene says, nor where it was relinked to: a person can mend it by pointing at it.
+/// A mesh of a scene is not where the scene says, nor where it was relinked to: a person can mend it by pointing at the mesh.
 /// `what()` names the scene file, the place in it, and the path.
 class MissingMesh : public InputError {
  public:

@@ -32,8 +32,8 @@ bool isJsonObjectWith(const fs::path& file, const std::string& key) {
   const std::size_t at = start.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
   if (at == std::string::npos || start[at] != '{') return false;
   constexpr double kMegabyte = 1e6;
-  const double most =
-      std::min(double(size), limitOf(Limit::JsonMegabytes) * kMegabyte);  // what is longer is refused by its reader
+  // The reader refuses a longer file.
+  const double most = std::min(double(size), limitOf(Limit::JsonMegabytes) * kMegabyte);
   return firstBytes(file, static_cast<std::size_t>(most)).find("\"" + key + "\"") != std::string::npos;
 }
 
@@ -94,7 +94,7 @@ class SessionSceneReader final : public SceneReader {
                        "is a session, which keeps how its input is read: --as, --surface, --camera, --units and "
                        "the like are not for sessions");
     SessionInput input = readSessionInput(root, fs::absolute(file).lexically_normal().parent_path());
-    for (const auto& given : options.meshes) input.meshes.erase(given.first);  // what the caller says comes first
+    for (const auto& given : options.meshes) input.meshes.erase(given.first);  // the caller's choice comes first
     std::vector<fs::path> named = options.folders;
     named.insert(named.end(), options.meshFolders.begin(), options.meshFolders.end());
     ReadOptions own = options;
@@ -104,7 +104,7 @@ class SessionSceneReader final : public SceneReader {
     own.choices = input.choices;
     for (const FilesFolder& f : input.folders)
       if (f.kind == FrameFile::Photograph) own.photographs.push_back(f.folder);
-    std::error_code ignored;  // what cannot be asked about is not there
+    std::error_code ignored;  // a file that cannot be looked at counts as missing
     if (!fs::exists(input.scene, ignored))
       root.at("input").at("path").fail("the scene " + input.scene.string() + " does not exist");
     requireSceneFile(input.scene, file.string());

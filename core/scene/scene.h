@@ -67,7 +67,7 @@ struct Scene {
   std::vector<Frame> frames;
   std::map<std::string, SurfaceSource> surfaces;
   std::vector<TrueLight> lights;
-  InputChoices choices;  ///< as it was read with; none of a scene file
+  InputChoices choices;  ///< as it was read with; empty for a scene file
   std::vector<std::filesystem::path>
       sources;                        ///< files besides `file` that say what a capture is (COLMAP's images.bin); absolute
   std::vector<std::string> facts;     ///< what was recognised in a capture and converted, one line each
@@ -77,7 +77,7 @@ struct Scene {
 
   /// The formula of a surface; null where there is no such surface (a frame's own depth map) or it has no formula.
   const AnalyticSpec* formulaOf(const std::string& surface) const;
-  /// There is such a surface, and its normals may be off because it is made of triangles.
+  /// Whether there is such a surface and its normals may be off because it is made of triangles.
   bool hasTriangles(const std::string& surface) const { return surfaces.count(surface) && !formulaOf(surface); }
 };
 
@@ -100,7 +100,7 @@ struct ReadOptions {
 Scene readScene(const std::filesystem::path& input, const ReadOptions& options = {});
 /// The same for the input of a session, which must not be a session again.
 Scene readSceneOfSession(const std::filesystem::path& input, const ReadOptions& options = {});
-/// The file that `readScene` reads first for this input: of a folder the scene file, capture or session in it; "" = nothing is
+/// The file that `readScene` reads first for this input: for a folder the scene file, capture or session in it; "" = nothing is
 /// recognised.
 std::filesystem::path recognisedFile(const std::filesystem::path& input);
 /// Writes scene.json version 1 with relative paths, atomically. InputError when it cannot be written.
@@ -109,24 +109,27 @@ void writeScene(const Scene& scene, const std::filesystem::path& file);
 enum class FrameSource { Radiance, Image };
 /// Linear image of a frame: the float radiance as stored, or the 8/16-bit image through the camera's response (where none is
 /// stated, 16-bit is taken as linear only if the file says so; else sRGB). Three channels stay three.
-/// @param how  takes in words how the values became linear: "8-bit codes through the sRGB curve (default: no response is stated)"
+/// @param how  receives, in words, how the values became linear: "8-bit codes through the sRGB curve (default: no response is
+///             stated)"
 /// FrameUnreadable (missing, empty, truncated, another size than the camera's), with the file in the detail.
 Outcome<Image> readLinear(const Frame& frame, FrameSource source, std::string* how = nullptr);
 /// The display image, 3 channels, sRGB 0..1: the codes as they are where they are sRGB, else their light in sRGB; tone-mapped
 /// radiance when there is no photograph.
 Outcome<Image> readPhotograph(const Frame& frame);
-/// For a program's start: from now on this process keeps decoded image files, up to so many bytes of pixels in all, for the next time that a frame is
-/// looked at. A file that changes is read again. 0, as at the start of every process: none is kept.
+/// For a program's start: from now on this process keeps decoded image files, up to this many bytes of pixels in all, for the
+/// next look at a frame. A file that changes is read again. 0, the value at the start of every process, keeps nothing.
 void keepDecodedImages(std::size_t mostBytes);
-/// 1 on the glossy object, 0 elsewhere; without a mask, 0 where the photograph is transparent. Nothing when the frame has neither. FrameUnreadable.
+/// 1 on the glossy object, 0 elsewhere; without a mask, 0 where the photograph is transparent. Nothing when the frame has
+/// neither. FrameUnreadable.
 Outcome<std::optional<Image>> readMask(const Frame& frame);
-/// Depth along the optical axis in metres, 0 = none (non-finite and negative values too); nothing when the frame has none. That of a depth camera of
-/// its own is registered to the frame's camera (registeredDepth).
-/// FrameUnreadable, also for an integer image without `depth_scale`.
+/// Depth along the optical axis in metres, 0 = none (non-finite and negative values too); nothing when the frame has none. The
+/// depth of a separate depth camera is registered to the frame's camera (registeredDepth). FrameUnreadable, also for an integer
+/// image without `depth_scale`.
 Outcome<std::optional<Image>> readDepth(const Frame& frame);
-/// The depth as a trial wants it: with the policy's noise, whose stream is the frame's id's. As readDepth.
+/// The depth for a trial: with the policy's noise, whose stream depends on the frame's id. Otherwise as readDepth.
 Outcome<std::optional<Image>> readDepth(const Frame& frame, const DepthPolicy& policy);
-/// World normals, 3 channels (x y z), not normalised: as stored, or v / 65532 * 2 - 1 of a 16-bit image; nothing when the frame has none.
+/// World normals, 3 channels (x y z), not normalised: as stored, or v / 65532 * 2 - 1 of a 16-bit image; nothing when the frame
+/// has none.
 Outcome<std::optional<Image>> readNormals(const Frame& frame);
 
 /// Loads surfaces once per (source, policy) and shares them; of the frames' own depth maps only the last few stay (others are
@@ -142,10 +145,11 @@ class SurfaceCache {
   Outcome<std::shared_ptr<const Surface>> surfaceOf(int frame, MeshPolicy policy) const;
   /// A key that is equal for frames that see the same surface ("body"; "depth:0004" for a frame's own depth).
   std::string keyOf(int frame) const;
-  /// What the fusion of depth maps (DepthPolicy::fusedFrames) left out of these frames, in words; "" = nothing, or they were not loaded.
+  /// What the fusion of depth maps (DepthPolicy::fusedFrames) left out of these frames, in words; "" = nothing, or they were not
+  /// loaded.
   std::string fusionRemark(const std::vector<int>& frames) const;
 
-  /// Depth maps kept for the next question, beside those that somebody holds. One of 1920 x 1080 takes several hundred MB.
+  /// Number of depth maps that are kept for the next question, beside those in use. One of 1920 x 1080 takes several hundred MB.
   static constexpr int kDepthMapsKept = 2;
   struct Statistics {
     int loads = 0;          ///< surfaces built so far

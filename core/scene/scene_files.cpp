@@ -82,7 +82,7 @@ fs::path placeOfMesh(const std::string& named, const std::function<fs::path()>& 
   const auto moved = options.meshes.find(named);
   const bool isMoved = moved != options.meshes.end();
   const fs::path first = isMoved ? fs::absolute(moved->second).lexically_normal() : place();
-  std::error_code ignored;  // what cannot be asked about is not there
+  std::error_code ignored;  // a file that cannot be looked at counts as missing
   fs::path found = fs::is_regular_file(first, ignored) ? first : fs::path();
   for (const fs::path& folder : options.meshFolders)
     if (found.empty()) found = sameUnder(fs::absolute(folder), first);
@@ -107,7 +107,7 @@ std::string withoutFolder(std::string sentence, const Scene& scene) {
 }
 
 namespace {
-/// The paths of one kind, the one that counts first where both could be the same file.
+/// The paths of one kind. The path that counts where both could be the same file comes first.
 std::vector<fs::path*> filesOfKind(Frame& frame, FrameFile kind) {
   switch (kind) {
     case FrameFile::Photograph: return {&frame.image, &frame.radiance};

@@ -53,7 +53,7 @@ std::set<std::string> lightKeys() {
   return keys;
 }
 
-// As the keys of cameras and frames (core/geometry/camera_json.cpp): they would move a surface, or all of the scene.
+// Like the keys of cameras and frames (core/geometry/camera_json.cpp): they would move a surface, or the whole scene.
 const std::set<std::string> kSurfaceGeometry = {"world_from_surface",
                                                 "world_from_mesh",
                                                 "surface_from_world",
@@ -141,7 +141,7 @@ Highlight readHighlight(const JsonNode& node, const Camera& camera) {
     h.contour.points.push_back(ideal(contour.at(i)));
   }
   h.peak = ideal(node.at("peak"));
-  // One orientation for all contours, whoever wrote them; the first point stays first.
+  // One orientation for all contours, whatever program wrote them; the first point stays first.
   const double area = signedArea(h.contour);
   if (area < 0) std::reverse(h.contour.points.begin() + 1, h.contour.points.end());
   h.areaPx2 = std::abs(area);

@@ -15,7 +15,7 @@ namespace glint {
 class SceneReader {
  public:
   virtual ~SceneReader() = default;
-  /// As InputChoices::as names it: "scene", "colmap"; "session".
+  /// The name that InputChoices::as gives it: "scene", "colmap"; "session".
   virtual std::string name() const = 0;
   /// For a person: "scene file (scene.json, version 1)".
   virtual std::string describe() const = 0;
@@ -34,16 +34,17 @@ std::unique_ptr<const SceneReader> makeSessionSceneReader();  ///< the scene tha
 /// A capture of another program; the reader lives as long as the program.
 std::unique_ptr<const SceneReader> makeCaptureSceneReader(const CaptureReader& reader);
 
-/// The scene of a capture: lengths in metres, a surface, ids of frames (the image's name without folder and ending; with the folder
-/// where names repeat). InputError where no surface, or more than one, is named or found, or a choice does not fit the capture.
+/// The scene of a capture: lengths in metres, a surface, ids of frames (the image's name without folder and ending; with the
+/// folder where names repeat). InputError where no surface, or more than one, is named or found, or a choice does not fit the
+/// capture.
 ///
 /// The surface is `choices.surfaceFile`, else the mesh that the capture names, else the only mesh in its folder (`mesh.*` before
-/// others; a PLY without faces is none), else the frames' own depth maps.
+/// others; a PLY without faces does not count), else the frames' own depth maps.
 Scene sceneOfCapture(const Capture& capture, const ReadOptions& options);
 
-/// What a capture is read with.
+/// The options with which a capture is read.
 CaptureOptions captureOptionsOf(const ReadOptions& options);
-/// The same of a scene that was read: for its sparse points.
+/// The same for a scene that was read: for its sparse points.
 CaptureOptions captureOptionsOf(const Scene& scene);
 
 }  // namespace glint

@@ -93,7 +93,7 @@ Json toJson(const TrueLight& light) {
 }  // namespace
 
 std::string sceneToJson(const Scene& scene, const fs::path& folder) {
-  // Of our own making: its limits were checked when the scene was read, and the grouping nests it a level deeper.
+  // Written by this program: its limits were checked when the scene was read, and the grouping nests it one level deeper.
   const Json kept = scene.unknownJson.empty() ? Json::object() : Json::parse(scene.unknownJson);
   std::map<std::pair<std::string, std::string>, const Json*> keptById;  // the JSON library looks through all ids for one
   for (const auto& group : kept.items())

@@ -62,7 +62,7 @@ SessionInput readSessionInput(const JsonNode& root, const fs::path& folder) {
 std::vector<fs::path> foldersOfSession(const fs::path& session, const fs::path& scene, const std::vector<fs::path>& named) {
   std::vector<fs::path> folders = named;
   if (!session.empty()) folders.push_back(fs::absolute(session).lexically_normal().parent_path());
-  std::error_code ignored;  // what cannot be asked about is a file
+  std::error_code ignored;  // a path that cannot be looked at counts as a file
   folders.push_back(fs::is_directory(scene, ignored) ? scene : scene.parent_path());
   for (fs::path& folder : foldersOfCapture(scene)) folders.push_back(std::move(folder));
   return folders;
@@ -80,7 +80,7 @@ void require(bool lies, const fs::path& path, const std::string& file, const std
 }  // namespace
 
 void requireSceneFile(const fs::path& scene, const std::string& session) {
-  std::error_code ignored;  // what cannot be asked about is no folder
+  std::error_code ignored;  // a path that cannot be looked at counts as no folder
   if (fs::is_directory(scene, ignored))
     throw InputError(session, "input.path", "'" + scene.string() + "' is a folder; name the scene file");
 }

@@ -11,13 +11,13 @@
 
 namespace glint {
 
-/// 1: the first. 2: `tradeoff` may stand in it; a file of version 1 reads as one without. 3: `input.folders` for every kind of file and
-/// `view.more_cameras`; the one folder of photographs that older ones name (`input.photographs`) is the first of them.
-/// 4: `input.reading`, how a capture of another program is read.
+/// Version 1 was the first. 2: `tradeoff` may stand in it; a file of version 1 reads as one without. 3: `input.folders` for every
+/// kind of file and `view.more_cameras`; the one folder of photographs that older ones name (`input.photographs`) is the first of
+/// them. 4: `input.reading`, how a capture of another program is read.
 inline constexpr int kSessionVersion = 4;
 
-/// The version of a session's document. InputError when the document is no session (a scene is named as such), or of a version newer than
-/// this program's, or of one that never existed.
+/// The version of a session's document. InputError when the document is no session (a scene is named as such), or its version is
+/// newer than this program's or never existed.
 int readSessionVersion(const JsonNode& root);
 
 /// A path that a session writes, relative to its folder. InputError for an empty one and one with a zero byte.

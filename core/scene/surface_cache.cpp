@@ -17,7 +17,7 @@ namespace {
 
 using SharedSurface = std::shared_ptr<const Surface>;
 
-/// Equal for equal policies alone.
+/// A text that is equal only for equal policies.
 std::string textOf(const DepthPolicy& p) {
   return formatted("|%d %d %.17g %d %d %.17g %d", static_cast<int>(p.smoothing), static_cast<int>(p.normals), p.radius,
                    p.largestHolePx, p.fusedFrames, p.noise, p.seed);
@@ -62,7 +62,7 @@ struct SurfaceCache::Impl {
     return future.get();
   }
 
-  /// Marks a depth map as used and drops those used longest ago. Whoever holds a surface keeps it alive.
+  /// Marks a depth map as used and drops those used longest ago. A surface in use stays alive.
   void touch(const std::string& key) const {
     const std::lock_guard<std::mutex> lock(mutex);
     recentDepthMaps.remove(key);

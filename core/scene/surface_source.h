@@ -32,7 +32,7 @@ struct SurfaceTriangles {
 /// A file from which a surface is read.
 struct SurfaceFile {
   std::filesystem::path file;  ///< absolute
-  std::string named = {};      ///< its path as the scene file writes it; "" = no scene file can name it, or has written it yet
+  std::string named = {};      ///< its path as the scene file writes it; "" = no scene file names it, or none can
   double metresPerUnit = 1;    ///< of its coordinates: 0.001 where it is in millimetres
 };
 struct MeshFile : SurfaceFile {
@@ -51,7 +51,7 @@ struct CapturePoints : SurfaceFile {
   SurfaceTriangles triangles() const;
 };
 
-/// Where a surface comes from. What depends on the alternative is asked here and answered in surface_source.cpp; callers ask
+/// Where a surface comes from. What depends on the alternative is declared here and defined in surface_source.cpp; callers ask
 /// for one alternative only to edit it.
 struct SurfaceSource : std::variant<AnalyticSpec, MeshFile, PointsFile, CapturePoints> {
   using variant::variant;
@@ -59,17 +59,17 @@ struct SurfaceSource : std::variant<AnalyticSpec, MeshFile, PointsFile, CaptureP
   AnalyticSpec* analytic() { return std::get_if<AnalyticSpec>(this); }
   const SurfaceFile* file() const;  ///< null where it needs none
   SurfaceFile* file() { return const_cast<SurfaceFile*>(std::as_const(*this).file()); }
-  /// Its triangles take seconds to read and have normals that may be off; else it is exact.
+  /// Whether its triangles take seconds to read and have normals that may be off; else the surface is exact.
   bool hasTriangles() const { return !analytic(); }
 
   /// Reads its triangles, or makes them; fails for a formula. InputError when the file cannot be read.
   SurfaceTriangles triangles() const;
-  /// As `triangles`, perhaps from memory.
+  /// The same as `triangles`, perhaps from memory.
   using Triangles = std::function<SurfaceTriangles(const SurfaceSource&)>;
   /// The surface that rays meet. The failure of its triangles; InputError as `read`, or for a mesh that cannot be used;
   /// std::invalid_argument for a formula that makes no surface.
   Outcome<std::shared_ptr<const Surface>> load(MeshPolicy policy, const Triangles& read = &SurfaceSource::triangles) const;
-  /// Both have triangles, and the same ones (of a file that did not change).
+  /// Whether both have triangles, and the same ones (of a file that did not change).
   bool hasTrianglesOf(const SurfaceSource& other) const;
 
   std::string kind() const;                                                     ///< "mesh", "points", "analytic sphere"
@@ -82,14 +82,14 @@ struct ReadSurface {
   std::map<std::string, std::set<std::string>> known;
 };
 /// {one of "mesh" | "points" | "analytic", "units"} (docs/formats.md, "Surfaces"). InputError with file, place and reason.
-/// @param find  the file that a text names; throws where there is none
+/// @param find  the file that a text names; throws for a missing file
 /// @param keys  that the document reads
 ReadSurface readSurfaceJson(const JsonNode& node, const std::function<std::filesystem::path(const JsonNode&)>& find,
                             const std::vector<std::string>& keys = {"mesh", "points", "analytic", "units"});
 
-/// Reads a PLY, OBJ, STL or glTF mesh, recognised by content, in the precision of the file (io/mesh_reader.h says what is understood).
-/// Polygons are split into triangles. Normals are the file's (brought to length 1) when every vertex of a triangle has one, else
-/// empty.
+/// Reads a PLY, OBJ, STL or glTF mesh, recognised by content, in the precision of the file (io/mesh_reader.h says what is
+/// understood). Polygons are split into triangles. Normals are the file's (brought to length 1) when every vertex of a triangle
+/// has one, else empty.
 /// @throw InputError (file, place) when the file is missing, empty, not one of the four formats, truncated or longer than its
 ///        header promises, has no triangle, a coordinate that is not finite, or a face with a vertex that does not exist.
 TriangleMesh readMesh(const std::filesystem::path& file);

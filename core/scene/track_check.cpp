@@ -42,14 +42,15 @@ void compareObservations(const Scene& scene, const std::vector<CaptureTrack>& tr
   check.shiftPx = {quantile(shiftX, 0.5), quantile(shiftY, 0.5)};
 }
 
-/// A point of the sample and the frames that saw it. Where the program does not say which did: that have it in their image, the nearest
-/// camera first, from where the point's own side of the object is seen best.
+/// A point of the sample and the frames that saw it. Where the program does not say which did, those that have it in their image,
+/// the nearest camera first, because it sees the point's own side of the object best.
 struct Sighting {
   Eigen::Vector3d point;
   std::vector<int> frames;
 };
 
-/// The nearest one and others spread over the distances: nearest ones alone stand side by side, and one thing hides a point from all.
+/// The nearest frame and others spread over the distances: the nearest ones stand side by side, and one thing may hide a point
+/// from all of them.
 std::vector<int> framesWithInView(const Scene& scene, const Eigen::Vector3d& point) {
   constexpr std::size_t kMost = 8;  // frames: who sees a point of the object is then among them, and each takes a ray
   std::vector<std::pair<double, int>> having;
@@ -88,8 +89,8 @@ std::vector<Sighting> sightingsOf(const Scene& scene, const std::vector<CaptureT
   return sightings;
 }
 
-/// @return whether there is a surface to compare with: one that is made of these very points agrees with them, and where none can be made of
-/// points, the report says why
+/// @return whether there is a surface to compare with. One that is made of these very points agrees with them; where no surface
+///   can be made of points, the report says why
 bool compareSurface(const Scene& scene, const std::vector<Sighting>& sightings, TrackCheck& check) {
   constexpr double kAgree = 0.01;  // of the distance: sparse points scatter by some tenths of a percent
   const SurfaceCache surfaces(scene);
@@ -146,7 +147,7 @@ void concludeCameras(TrackCheck& check) {
   }
 }
 
-/// Points of which it is not known who saw them: each one was in at least two images, or it would not be there.
+/// Checks points without a record of which images show them: each one was in at least two images, or it would not exist.
 void concludeView(TrackCheck& check) {
   if (2 * check.inView >= check.sampled) return;
   check.findings.push_back(
@@ -205,7 +206,7 @@ std::optional<TrackCheck> checkTracks(const Scene& scene, const ProgressFn& prog
     concludeCameras(check);
   else
     concludeView(check);
-  if (check.findings.empty()) {  // what the cameras get wrong moves the surface as well
+  if (check.findings.empty()) {  // an error of the cameras moves the surface as well
     if (compareSurface(scene, sightings, check)) concludeSurface(check);
     if (check.surfaceElsewhere) check.sample = sampleOf(scene, sightings);
   }

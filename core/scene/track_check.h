@@ -14,9 +14,9 @@
 namespace glint {
 
 /// Cameras and surface of a capture against the sparse points that the other program measured itself (COLMAP, NVM, Bundler): a
-/// convention that is read wrongly moves every point from where the photographs show it, and a mesh of another frame or unit does
-/// not pass through them. nerfstudio's points come without the photographs that show them: cameras that have a point in their image stand for
-/// those that saw it.
+/// wrongly read convention moves every point away from where the photographs show it, and a mesh in another frame or unit does
+/// not pass through them. nerfstudio's points come without a list of photographs that show them: cameras that have a point in
+/// their image stand for those that saw it.
 struct TrackCheck {
   int points = 0, observations = 0;
   bool withTracks = true;                ///< the program says which photographs show a point; else there are no observations
@@ -33,8 +33,8 @@ struct TrackCheck {
   std::optional<Correction> correction;  ///< that undoes the last finding
 };
 
-/// Nothing where the scene is no capture with sparse points. A finding where these cannot be read. InputError where the cameras cannot
-/// be read again; Stopped.
+/// Nothing where the scene is no capture with sparse points. A finding where these cannot be read. InputError where the cameras
+/// cannot be read again; Stopped.
 std::optional<TrackCheck> checkTracks(const Scene& scene, const ProgressFn& progress = {});
 
 }  // namespace glint

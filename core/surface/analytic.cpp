@@ -37,7 +37,7 @@ class AnalyticSurface : public Surface {
         bounds_(shape_->bounds(worldFromLocal_)) {
     const Matrix3d r = worldFromLocal_.linear();
     require(
-        // A rotation to single precision: readPoseJson lets nothing else in (docs/formats.md, "Frames").
+        // A rotation to single precision: readPoseJson accepts nothing else (docs/formats.md, "Frames").
         worldFromLocal_.matrix().allFinite() && (r * r.transpose() - Matrix3d::Identity()).norm() < 1e-6 && r.determinant() > 0,
         "analytic surface: world_from_surface must be rigid and finite");
   }
@@ -101,7 +101,7 @@ class AnalyticSurface : public Surface {
     const Vector3d o = localFromWorld_ * from.position, offset = localFromWorld_ * to - o;
     const double length = offset.norm();
     if (!(length > 0)) return false;
-    // Surface::occluded names the millionth: the start lies on the surface, to round-off of a hit.
+    // The millionth that Surface::occluded names: the start lies on the surface, to round-off of a hit.
     const double ignored = 1e-6 * std::min(length, shape_->size());
     const LineRoots roots = lineRoots(o, offset / length);
     for (int i = 0; i < roots.count; ++i)

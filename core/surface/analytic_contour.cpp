@@ -15,9 +15,9 @@ using CellEdge = unsigned char;
 /// The triangles of a cell, by the edges on which their vertices lie.
 using CellTriangles = std::vector<std::array<CellEdge, 3>>;
 
-/// Those of a cell whose corners of the set bits are inside. No table of cases: the polygons are traced round the cell's faces,
-/// on each of which what is inside is walked round as in two dimensions (iso_contour.cpp), so that two cells agree about the face
-/// between them.
+/// The triangles of a cell whose corners of the set bits are inside. Without a table of cases: the polygons are traced round the
+/// cell's faces. On each face the inside is walked round as in two dimensions (iso_contour.cpp), so that two cells agree about
+/// the face between them.
 CellTriangles trianglesOf(unsigned inside) {
   constexpr CellEdge kNone = 0xff;
   const auto in = [&](unsigned corner) { return (inside >> corner & 1) != 0; };

@@ -27,7 +27,7 @@ std::string shown(double x) { return formatted("%.6g", x); }
 /// Box of { c + diag(e) u : |u| <= 1 } style shapes whose world half extents are known.
 AlignedBox3d around(const Vector3d& centre, const Vector3d& half) { return {centre - half, centre + half}; }
 
-/// f(p) = p^T A p + 2 b.p + c. All of plane, sphere, ellipsoid, cylinder, sheet and quadric.
+/// f(p) = p^T A p + 2 b.p + c: plane, sphere, ellipsoid, cylinder, sheet and quadric.
 class QuadricShape : public AnalyticShape {
  public:
   QuadricShape(const Matrix3d& a, const Vector3d& b, double c) : a_(a), b_(b), c_(c) {}
@@ -40,7 +40,7 @@ class QuadricShape : public AnalyticShape {
     LineRoots found;
     const double a = d.dot(a_ * d);
     double half = d.dot(a_ * o + b_), c = value(o), shift = 0;
-    // A tangent-like ray: both roots are close to the vertex -half/a, and half^2 - a c cancels. Seen from the vertex
+    // A ray that is nearly a tangent: both roots are close to the vertex -half/a, and half^2 - a c cancels. Seen from the vertex
     // the linear term is round-off and f there is computed directly, so the discriminant keeps its digits.
     if (a != 0 && std::abs(half * half - a * c) < 0.5 * half * half) {
       const double vertex = -half / a;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// For core/surface and for plugins that add a shape (added_shape.h): one analytic shape in its own frame, as the zero set of an implicit
-// function on a domain.
+// For core/surface and for plugins that add a shape (added_shape.h): one analytic shape in its own frame, as the zero set of an
+// implicit function on a domain.
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>

@@ -29,7 +29,8 @@ using Basis = Eigen::Matrix<double, 3, 2>;
 
 /// Below this angle the reflection law holds: two decades above round-off for well-placed cameras, far below any pixel.
 constexpr double kZeroAngle = 1e-8;
-/// Far from the origin the coordinates themselves are rounded; beyond this angle (a hundredth of a pixel of a long lens) no point can be told.
+/// Far from the origin the coordinates themselves are rounded; beyond this angle (a hundredth of a pixel of a long lens) no point
+/// can be told.
 constexpr double kMostRoundOff = 1e-4;
 constexpr double kLeastMarginPx = 1e-3;  // round-off of a projection is far below it
 /// Cells of the seed grid along one side: 16 px apart over 7,200 px.
@@ -75,7 +76,7 @@ struct Sighting {
     s.cosine = p.normal.dot(s.h);
     return s;
   }
-  /// What rounded coordinates make of an angle of 0 here: they turn both directions and, on a curved surface, the normal.
+  /// The angle that rounded coordinates make of 0 here: they turn both directions and, on a curved surface, the normal.
   double roundOff(const SurfacePoint& p) const {
     constexpr double kSteps = 4;  // roundings on the way
     const Shading s = shade(p);
@@ -219,8 +220,9 @@ std::optional<Vector3d> mirrorPointOfPlane(const Sighting& sighting, const Surfa
   return at.allFinite() ? std::optional<Vector3d>(at) : std::nullopt;
 }
 
-/// Facets: from facet to facet, each time to the mirror point of the plane stood on, until that lies inside its own facet. Grazing
-/// views make a valley of the merit that is far too narrow for a search without derivatives; a plane has its answer in closed form.
+/// Facets: goes from facet to facet, each time to the mirror point of the present facet's plane, until that point lies inside its
+/// own facet. Grazing views make a valley of the merit that is far too narrow for a search without derivatives; a plane has its
+/// answer in closed form.
 void hopOverFacets(const Sighting& sighting, Search& search) {
   constexpr int kMostHops = 20;
   SurfacePoint p = search.point;
@@ -281,7 +283,7 @@ Window windowOf(const Surface& surface, const Camera& camera, Window window) {
   return window;
 }
 
-/// Zeros of a linear interpolation of g over a triangle: barycentric weights, accepted a little outside as well.
+/// The zero of a linear interpolation of g over a triangle: barycentric weights, accepted a little outside as well.
 std::optional<Vector3d> linearZero(const Vector2d& a, const Vector2d& b, const Vector2d& c) {
   constexpr double kSlack = 0.35;  // the field is not linear over a cell; Newton decides
   Matrix2d m;
@@ -420,7 +422,7 @@ class Finder {
     if (search.jacobian) lookForTwin(search);
   }
 
-  /// From the best place on; those that a solution before explains lead to it again.
+  /// Searches from the best place on, without places that an earlier solution explains: they would lead to it again.
   void polishPlaces(std::vector<SurfacePoint> places) {
     std::vector<std::pair<double, std::size_t>> order;
     for (std::size_t i = 0; i < places.size(); ++i) {
@@ -464,8 +466,8 @@ class Finder {
     return search.alpha <= kZeroAngle || (search.alpha <= kMostRoundOff && search.alpha <= sighting_.roundOff(search.point));
   }
 
-  /// The tangential part of H here is what the Jacobian at a solution says, to half of its length: a second solution close to
-  /// this point would need it to point elsewhere. Hidden solutions count as well.
+  /// Whether the tangential part of H here is what the Jacobian at a solution says, to half of its length: a second solution
+  /// close to this point would need it to point elsewhere. Hidden solutions count as well.
   bool explained(const SurfacePoint& p) const {
     const Shading s = sighting_.shade(p);
     const Vector3d tangential = s.h - s.cosine * p.normal;
@@ -516,7 +518,7 @@ class Finder {
     const std::optional<Pixel> pixel = sighting_.camera.project(p.position);
     const double distance = (sighting_.eye - p.position).norm();
     for (const BrightestPoint& b : found_)
-      // A ten-millionth of the distance is below a pixel: the same point, found twice.
+      // A ten-millionth of the distance is below a pixel: the same point was found twice.
       if ((b.point.position - p.position).norm() < 1e-7 * distance || (pixel && (b.pixel - *pixel).norm() < mergePx(search)))
         return false;
     if (!pixel || !(p.normal.dot(sighting_.eye - p.position) > 0) || sighting_.surface.occluded(p, sighting_.eye))
@@ -577,8 +579,7 @@ Outcome<std::vector<BrightestPoint>> predictedBrightestPoints(const Surface& sur
     }
   }
   if (!options.hintsOnly) {
-    // A surface that can rule out most of itself is asked first. Where that finds nothing the grid has the last word, and says
-    // why.
+    // A surface that can rule out most of itself is asked first. Where that finds nothing the grid decides, and says why.
     if (const auto* mirror = dynamic_cast<const MirrorPlaces*>(&surface))
       if (std::optional<std::vector<SurfacePoint>> places =
               mirror->mirrorPlaces({sighting.eye, light.homogeneous(), sidesOf(camera, image.min, image.max)})) {

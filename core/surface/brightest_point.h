@@ -22,8 +22,8 @@ struct BrightestPointOptions {
   double seedStepPx = 16;       ///< spacing of the coarse ray grid that seeds the search
   double marginFraction = 0.1;  ///< the grid reaches this far beyond the image, as a fraction of its size
   int maxIterations = 50;
-  std::vector<Eigen::Vector3d>
-      hints;  ///< world points tried first (last frame's answers); when `hintsOnly` nothing else is tried
+  /// World points tried first (last frame's answers); when `hintsOnly` nothing else is tried.
+  std::vector<Eigen::Vector3d> hints;
   bool hintsOnly = false;
 };
 

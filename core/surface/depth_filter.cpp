@@ -46,8 +46,8 @@ SmoothDepth bilateralDepth(const Image& depth, const Camera& camera, double radi
 namespace {
 
 constexpr int kTerms = 6, kMoments = 15;
-constexpr int kFirstReachPx =
-    12;  // farther neighbours are sampled more coarsely: the first round only says which points lie in a ball
+// Farther neighbours are sampled more coarsely: the first round only says which points lie in a ball.
+constexpr int kFirstReachPx = 12;
 constexpr int kLastReachPx = 16;      // there are enough of them
 constexpr int kLeastQuadratic = 18;   // neighbours: three for each term
 constexpr int kLeastLinear = 9;       // the same for the three of a plane
@@ -176,7 +176,7 @@ Eigen::Vector3d normalOf(const LocalFit& fit, int x, int y, const Camera& camera
 
 SmoothDepth fittedDepth(const Image& depth, const Camera& camera, double radius) {
   require(depth.channels == 1 && radius > 0, "fittedDepth: one channel and a positive radius expected");
-  // First about the points as measured, whose noise decides which of them lie in a ball; then about the smoothed ones.
+  // First about the measured points, whose noise decides which of them lie in a ball; then about the smoothed ones.
   SmoothDepth result{depth, {}};
   std::vector<double> inverse;
   for (const float z : depth.data) inverse.push_back(z > 0 ? 1 / double(z) : 0);

@@ -19,7 +19,7 @@ constexpr int kLeastInPatch = 64;       // pixels: a quarter of a patch
 constexpr int kLeastPatches = 8;        // fewer say little about a whole object
 constexpr double kStill = 1e-3;         // of the depth: what calibrated poses and a renderer's depth leave between frames
 constexpr double kSlanted = 0.3;        // cosine: a surface seen more slantwise has more error than it adds
-constexpr double kMostWeight = 4;       // of another view against the own one: beyond it the noise model is not to be trusted
+constexpr double kMostWeight = 4;       // of another view over that of the own one: beyond it the noise model cannot be trusted
 constexpr double kSigmaOfMad = 1.4826;  // standard deviation of a Gaussian over its median absolute deviation
 
 /// A point of the view with its normal, world frame.
@@ -60,7 +60,7 @@ std::optional<Shift> shiftAt(const FusionSeed& seed, const DepthView& other, dou
   if (!(x >= 0 && y >= 0 && x < other.depth.width && y < other.depth.height)) return std::nullopt;
   const double z = other.depth.at(static_cast<int>(x), static_cast<int>(y));
   if (!(std::isfinite(z) && z > 0)) return std::nullopt;
-  // The measured point at the pixel's centre lies on the surface; its distance from the tangent plane is what is asked for.
+  // The measured point at the pixel's centre lies on the surface. Its distance from the tangent plane is wanted.
   const Pixel centre = other.camera.undistorted(Pixel(x, y));
   if (!centre.allFinite()) return std::nullopt;
   const Ray ray = other.camera.ray(centre);

@@ -8,8 +8,8 @@
 #include <pcl/search/organized.h>
 
 // clang-format off
-// With their code: to load libpcl_features, which has it for all types of points, is a third of the start of `glint` (0.23 s of the processor,
-// without it 0.15 s).
+// Included with their code: to load libpcl_features, which has it for all types of points, takes a third of the start of `glint`
+// (0.23 s of the processor, without it 0.15 s).
 #include <pcl/features/impl/feature.hpp>
 #include <pcl/features/impl/integral_image_normal.hpp>
 #include <pcl/features/impl/normal_3d.hpp>
@@ -58,7 +58,8 @@ FilledDepth withoutSmallHoles(const Image& depth, int largestHolePx, double inpa
   }
   if (std::none_of(small.begin(), small.end(), [](char s) { return s != 0; })) return result;
   // All missing pixels are unknown to the filling, so that the zeros of large holes do not leak into small ones.
-  // OpenCV adds up to 1.4 of whatever unit the image has, for the slope (a direction without a length): metres of depth, if they were the unit.
+  // OpenCV adds up to 1.4 of the image's unit for the slope (a direction without a length). With metres as the unit that would be
+  // 1.4 m of depth.
   constexpr double kUnits = 1e6;  // in a median depth, so that this is below the single precision
   const double unit = medianDepth(result.depth) / kUnits;
   cv::Mat1f painted;
@@ -78,8 +79,8 @@ namespace {
 
 using Cloud = pcl::PointCloud<pcl::PointXYZ>;
 
-/// The points of a depth map in the camera's frame: double for the mesh, float and in units of the median depth for PCL, whose single precision and
-/// radius then mean the same at every scale.
+/// The points of a depth map in the camera's frame: double for the mesh, float and in units of the median depth for PCL, whose
+/// single precision and radius then mean the same at every scale.
 struct Points {
   std::vector<int> vertexOf;  ///< of each pixel; -1 = none
   std::vector<int> pixelOf;   ///< of each vertex
@@ -141,7 +142,7 @@ std::vector<Eigen::Vector3i> cells(const Points& points, int width, int height, 
   return triangles;
 }
 
-/// One per vertex, camera frame, towards the camera; 0 where there are too few neighbours.
+/// One normal per vertex, camera frame, towards the camera; 0 where there are too few neighbours.
 std::vector<Eigen::Vector3d> planeNormals(const Points& points, bool onPixelGrid, double radius) {
   pcl::NormalEstimation<pcl::PointXYZ, pcl::Normal> estimation;
   pcl::search::Search<pcl::PointXYZ>::Ptr search;
@@ -219,7 +220,7 @@ Outcome<std::shared_ptr<const Surface>> makeDepthMap(const Image& depth, const C
       mesh.normals = integralNormals(points, camera, radius, options.jump);
     else
       mesh.normals = planeNormals(points, !camera.hasDistortion(), radius);
-    // Those that are 0 stay so: the mesh then takes them from the triangles.
+    // Normals that are 0 stay so: the mesh then takes them from the triangles.
     const Eigen::Matrix3d worldFromCam = camera.camFromWorld.linear().transpose();
     for (Eigen::Vector3d& n : mesh.normals) n = worldFromCam * n;
   }

@@ -14,7 +14,7 @@ namespace {
 constexpr double kDisparityPerInverse = 351.3;  // px m: focal length times baseline of the device, as published
 constexpr double kDisparitySigma = 1.0 / 6;     // px, published
 constexpr double kShufflePx = 0.5;              // published: standard deviation of where a pixel's depth is taken from
-constexpr int kEdgePx = 2;                      // pattern and camera look from two places: at edges one of them is hidden
+constexpr int kEdgePx = 2;                      // projector and camera look from two places: at edges one of them is hidden
 constexpr double kEdgeJump = 0.05;              // of the depth, as where a depth map is cut
 constexpr double kLost = 0.5;                   // of the pixels at edges: about what a real map shows there
 

@@ -9,7 +9,7 @@ namespace glint {
 class FilledParts {
  public:
   virtual ~FilledParts() = default;
-  /// The point lies on what was filled: a good enough place for a contour to pass, but no evidence of where a peak is.
+  /// Whether the point lies on what was filled: a contour may pass there, but it is no evidence of where a peak is.
   virtual bool filledAt(const SurfacePoint& p) const = 0;
 };
 

@@ -28,7 +28,7 @@ class Region {
     if (!value || !std::isfinite(*value)) return std::nullopt;
     return *value - level_;
   }
-  /// Many at once, perhaps at reduced precision.
+  /// Many pixels at once, perhaps at reduced precision.
   std::vector<std::optional<double>> roughlyAt(const std::vector<Pixel>& pixels) const {
     if (!batch_) {
       std::vector<std::optional<double>> values(pixels.size());
@@ -265,10 +265,10 @@ class Grid {
       if (!here && following) in[ins++] = k;
     }
     if (outs == 1) return link(edge[out[0]], edge[in[0]]);
-    // Two opposite corners inside: connected through the cell or not, whatever the field says on a finer grid.
+    // Two opposite corners inside: a finer grid decides whether they are connected through the cell.
     const bool joined = diagonalJoined(corner[out[0]], corner[out[1]]);
     for (int k = 0; k < 2; ++k) {
-      // Separate corners: from the edge after the corner back to the edge before it. Joined: across to the other corner.
+      // Separate corners: from the edge after the corner back to the edge before it. Joined corners: across to the other corner.
       const int before = (out[k] + 3) % 4, after = (out[k] + 1) % 4;
       link(edge[out[k]], edge[joined ? after : before]);
     }

@@ -12,7 +12,7 @@ namespace glint {
 
 /// A scalar field over the image; empty where it is undefined (no surface, unlit). Inside = value < level.
 using PixelField = std::function<std::optional<double>(const Pixel&)>;
-/// The same for many pixels at once and at reduced precision: used to find the topology only. May be empty.
+/// The same for many pixels at once and at reduced precision. Finds the topology only. May be empty.
 using PixelFieldBatch = std::function<std::vector<std::optional<double>>(const std::vector<Pixel>&)>;
 
 struct LevelSetOptions {
@@ -37,7 +37,7 @@ struct LevelSetComponent {
 /// @param window  of the image, with the outer edges of its pixels (seenWindow, core/geometry/seen_window.h)
 std::vector<LevelSetComponent> traceLevelSets(const PixelField& field, const PixelFieldBatch& batch, double level,
                                               const Eigen::AlignedBox2d& window, const LevelSetOptions& options = {});
-/// In an image without distortion.
+/// The same in an image without distortion.
 std::vector<LevelSetComponent> traceLevelSets(const PixelField& field, const PixelFieldBatch& batch, double level, int width,
                                               int height, const LevelSetOptions& options = {});
 

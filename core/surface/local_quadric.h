@@ -10,7 +10,7 @@ namespace glint {
 ///   Eq. (quadric):  k1 x^2 + k2 y^2 + c z^2 + 2 z = 0,   1 + c z > 0,   c = the one of k1, k2 with the larger absolute value.
 /// It has the surface's position, normal and curvatures at P; the term c z^2 is of fourth order and makes the patch exact on
 /// planes, spheres and cylinders, where a paraboloid (c = 0) is not. All queries are closed forms: no ray is cast.
-/// It is one sheet, the one through P, and ends where its normal turns orthogonal to N.
+/// The patch is the one sheet through P, and ends where its normal is orthogonal to N.
 class LocalQuadric final : public Surface {
  public:
   /// @param curvature  of the surface at `at`, with its signs for at.normal. std::invalid_argument unless all is finite.
@@ -24,7 +24,7 @@ class LocalQuadric final : public Surface {
   Outcome<SurfacePoint> foot(const Eigen::Vector3d& point, const Eigen::Vector3d& direction,
                              const SurfacePoint& previous) const override;
   Outcome<Curvature> curvatureAt(const SurfacePoint& p) const override;
-  /// Never: the patch knows only itself, and no part of a highlight on it hides another.
+  /// Always false: the patch knows only itself, and no part of a highlight on it hides another.
   bool occluded(const SurfacePoint&, const Eigen::Vector3d&) const override { return false; }
   /// Infinite: the patch is used near P only.
   Eigen::AlignedBox3d bounds() const override;

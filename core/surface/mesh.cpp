@@ -27,10 +27,11 @@ using Eigen::Vector3i;
 namespace {
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
-/// Barycentric slack: a line through an edge must lie inside one of its two triangles despite round-off.
+/// Slack of barycentric weights: a line through an edge must lie inside one of its two triangles despite round-off.
 constexpr double kInside = 1e-12;
 
-/// Of the mesh's size or the way, the shorter: what lies nearer to a point does not hide it (Surface::occluded).
+/// Share of the mesh's size or of the way, whichever is shorter: what lies nearer to a point does not hide it
+/// (Surface::occluded).
 constexpr double kOcclusionStart = 1e-6;
 
 /// A foot this many triangles away is found sooner by a ray. Measured on a mesh of 1 million triangles: a step over an edge costs
@@ -231,10 +232,10 @@ class MeshSurface : public Surface, public ManyOcclusions, public MirrorPlaces, 
       if (place.u < -1 || place.v < -1 || place.u + place.v > 2) return i > 0 || size < 10;
       last = size;
     }
-    return last < 1e-9;  // a place that close serves; farther off it is none
+    return last < 1e-9;  // close enough to be a place
   }
 
-  /// From triangle to neighbour until the line passes through one. Nothing at a border or after `most` triangles.
+  /// Walks from triangle to neighbour until the line passes through one. Nothing at a border or after `most` triangles.
   /// Gives up at once when the first triangle's weights say that the place is more than `far` triangles away.
   std::optional<Place> walk(int triangle, const Vector3d& o, const Vector3d& d, int most, double far = kInf) const {
     Place best;
@@ -257,8 +258,8 @@ class MeshSurface : public Surface, public ManyOcclusions, public MirrorPlaces, 
       before = triangle;
       triangle = next;
     }
-    // Round and round a corner, to and fro over an edge: the line meets the mesh there, but round-off (or two patches' different
-    // slopes) puts it just outside of each triangle.
+    // The walk goes round a corner, or to and fro over an edge: the line meets the mesh there, but round-off (or two patches'
+    // different slopes) puts it just outside of each triangle.
     if (bestLowest > (policy_ == NormalPolicy::Curved ? -1e-7 : -1e-9)) {
       best.u = std::clamp(best.u, 0.0, 1.0);
       best.v = std::clamp(best.v, 0.0, 1.0 - best.u);
@@ -304,7 +305,7 @@ class MeshSurface : public Surface, public ManyOcclusions, public MirrorPlaces, 
     return std::nullopt;
   }
 
-  /// Built by the first search; null where normals are no help, or searches too few to pay for it.
+  /// Built by the first search; null where normals do not help, or there are too few searches to pay for it.
   const NormalTree* normalTree() const;
   /// Where the reflection law holds on a triangle to first order; false when that is well outside of it.
   bool mirrorPlaceOn(const MirrorQuery& query, Place& place) const;
@@ -335,7 +336,7 @@ class MeshSurface : public Surface, public ManyOcclusions, public MirrorPlaces, 
   bool single_;  // Embree's own hits serve
   bool manySearches_;
   TriangleMesh mesh_;
-  std::vector<char> filled_;  ///< of vertices; empty = none is
+  std::vector<char> filled_;  ///< per vertex; empty = no vertex was filled
   MeshTopology topology_;
   AlignedBox3d bounds_;
   Vector3d centre_{0, 0, 0};
@@ -449,7 +450,7 @@ std::vector<char> MeshSurface::occlusions(const std::vector<SurfacePoint>& from,
                                           bool oneIsEnough) const {
   std::vector<char> result(from.size(), 0);
   rays_->obstacles(from, to, kOcclusionStart, asks, [&](std::size_t i, bool certain) {
-    // Where single precision may be wrong double decides, as for a single point.
+    // Double precision decides where single precision may be wrong, as for a single point.
     result[i] = certain || occluded(from[i], to);
     return !(result[i] && oneIsEnough);
   });

@@ -9,9 +9,10 @@
 namespace glint {
 
 /// A triangle mesh behind the Surface interface. Ray queries go through Embree in float32 on a centred and scaled copy;
-/// every hit is then polished in double, moving to the neighbour triangle where the double hit lies outside (RayPrecision::Double).
-/// With RayPrecision::Single Embree's hit is the answer: good to about 1e-7 of the mesh's size along the ray. Feet reached by
-/// walking over neighbouring triangles are in double either way. Curved patches need the polishing and ignore Single.
+/// every hit is then polished in double, moving to the neighbour triangle where the double hit lies outside
+/// (RayPrecision::Double). With RayPrecision::Single Embree's hit is the answer: good to about 1e-7 of the mesh's size along the
+/// ray. Feet reached by walking over neighbouring triangles are in double either way. Curved patches need the polishing and
+/// ignore Single.
 ///
 /// Normal policies (method.md section 2):
 /// - Facet: flat positions, one normal per triangle (side of its winding after orientation). No curvature.
@@ -27,11 +28,11 @@ namespace glint {
 /// than two triangles connect none of them.
 /// curvatureAt: from the derivatives of the normal field inside the triangle; its sign refers to p.normal.
 /// @param manySearches  the first search for brightest points builds a tree of normals (70 ms for a million triangles), which
-/// makes each
-///   of them several times faster and surer; not worth it for a surface that one photograph uses.
+///                      makes each search several times faster and surer; not worth it for a surface of one photograph
+///
 /// std::invalid_argument (with the index) for a vertex that is not finite or a corner out of range, when there is no
 /// triangle with an area, or when the mesh's normals are neither empty nor one per vertex.
-/// @param filled  one per vertex: not 0 = nobody measured it (FilledParts); empty = all were measured.
+/// @param filled  one per vertex: not 0 = it was not measured (FilledParts); empty = all were measured.
 std::shared_ptr<const Surface> makeMesh(TriangleMesh mesh, MeshPolicy policy, bool manySearches = true,
                                         std::vector<char> filled = {});
 

@@ -21,11 +21,11 @@ using Eigen::Vector3f;
 namespace {
 
 constexpr int kPacket = 8;
-/// Embree asserts that no coordinate of a ray exceeds 1.8e18. What is that far from the mesh never meets it.
+/// Embree asserts that no coordinate of a ray exceeds 1.8e18. A ray that far from the mesh never meets it.
 constexpr double kRange = 1e18;
-constexpr float kAside =
-    2e-6f;  // some ten units of single precision: far enough from a vertex, and double decides about the true ray
-constexpr float kClear = 1e-3f;  // of the unit: what is met this far from both ends is none of single precision's making
+// About ten units of single precision: far enough from a vertex, and double decides about the true ray.
+constexpr float kAside = 2e-6f;
+constexpr float kClear = 1e-3f;  // of the unit: a hit this far from both ends is real, whatever single precision does
 
 void setRay(RTCRayHit8& packet, int k, const Vector3f& o, const Vector3f& d, float from, float to) {
   packet.ray.org_x[k] = o.x();
@@ -44,7 +44,7 @@ void setRay(RTCRayHit8& packet, int k, const Vector3f& o, const Vector3f& d, flo
 
 RTCDevice newDevice() {
   reserveTaskMemory();
-  return rtcNewDevice(std::getenv("GLINT_EMBREE"));  // null: as it is built
+  return rtcNewDevice(std::getenv("GLINT_EMBREE"));  // null: Embree's own defaults
 }
 
 }  // namespace
@@ -117,7 +117,7 @@ std::optional<MeshRays::Hit> MeshRays::Search::next() {
     rtcInitIntersectContext(&context);
     rtcIntersect1(rays_.scene_, &context, &query);
     if (query.hit.geomID != RTC_INVALID_GEOMETRY_ID) {
-      near_ = std::max(query.ray.tfar, near_) * 1.000001f + 2e-7f;  // behind it, by what single precision can tell
+      near_ = std::max(query.ray.tfar, near_) * 1.000001f + 2e-7f;  // behind it by the least that single precision can tell
       return Hit{static_cast<int>(query.hit.primID), query.hit.u, query.hit.v, query.ray.tfar / rays_.scale_};
     }
     // Seen once in 1e4 pixel rays of a depth map, which all meet vertices.
@@ -138,7 +138,7 @@ std::vector<MeshRays::Hit> MeshRays::hits(const std::vector<Ray>& rays) const {
       valid[k] = 0;
       if (first + k >= rays.size()) continue;
       const Ray& ray = rays[first + k];
-      // From about the mesh: the sphere around its box.
+      // Starts near the mesh: at the sphere around its box.
       const double enter = std::max(0.0, (centre_ - ray.origin).dot(ray.direction) - 0.5 * size_);
       const Vector3d o = (ray.origin + enter * ray.direction - centre_) * scale_;
       if (!(o.cwiseAbs().maxCoeff() < kRange) || !ray.direction.allFinite()) continue;

@@ -14,8 +14,8 @@ struct RTCSceneTy;
 
 namespace glint {
 
-/// The triangles of a mesh in Embree's tree, with the mesh's box moved to the origin and scaled to a diagonal of 2: single precision is
-/// then good to 1e-7 of the size, wherever in the world the mesh is.
+/// The triangles of a mesh in Embree's tree, with the mesh's box moved to the origin and scaled to a diagonal of 2: single
+/// precision is then good to 1e-7 of the size, wherever in the world the mesh is.
 class MeshRays {
  public:
   /// @param alive  triangles with 0 are never met. @param bounds  of the vertices, not empty.
@@ -36,8 +36,8 @@ class MeshRays {
    public:
     /// @param start  near the mesh's box. @param d  unit. @param length  hits up to there; a few just beyond may come, too.
     Search(const MeshRays& rays, const Eigen::Vector3d& start, const Eigen::Vector3d& d, double length);
-    /// Behind the one before; nothing at the end. A ray that meets nothing is asked once more, a little to the side: through the middle of
-    /// a vertex it can slip between the triangles.
+    /// The next hit; nothing at the end. A ray that meets nothing is asked once more, a little to the side: through the
+    /// middle of a vertex it can slip between the triangles.
     std::optional<Hit> next();
 
    private:
@@ -51,9 +51,9 @@ class MeshRays {
   /// The first hit of every ray, without `t`. Rays may start far from the mesh.
   std::vector<Hit> hits(const std::vector<Ray>& rays) const;
 
-  /// Calls `met(i, certain)` for every point i between which and `to` something lies, until it returns false. Certain: what lies there is
-  /// farther from both ends than single precision is wrong.
-  /// @param start  share of the mesh's size or of the way, the shorter, from where on things count
+  /// Calls `met(i, certain)` for every point i between which and `to` something lies, until it returns false. Certain: what lies
+  /// there is farther from both ends than single precision is wrong.
+  /// @param start  share of the mesh's size or of the way, whichever is shorter, from where on things count
   /// @param asks   2: a ray that meets nothing is asked once more, as in Search
   void obstacles(const std::vector<SurfacePoint>& from, const Eigen::Vector3d& to, double start, int asks,
                  const std::function<bool(std::size_t, bool)>& met) const;

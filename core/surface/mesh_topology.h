@@ -24,10 +24,10 @@ MeshTopology topologyOf(const TriangleMesh& mesh);
 /// the position; (0, 0, 0) where no triangle with an area is near.
 std::vector<Eigen::Vector3d> vertexNormals(const TriangleMesh& mesh, const MeshTopology& topology);
 
-/// Of a mesh all of whose parts are closed: the largest angle between the outward normal of a triangle and the normal at one of its
+/// For a mesh whose parts are all closed: the largest angle between the outward normal of a triangle and the normal at one of its
 /// corners, rad. Outward is away from the volume that a connected part encloses. From outside of the mesh's box a triangle is
-/// seen only where its outward normal faces the eye, unless the part turns inside out where it passes through itself.
-/// Nothing for a mesh with a border, an edge of more than two triangles, or no orientation.
+/// seen only where its outward normal faces the eye, unless the part turns inside out where it passes through itself. Nothing for
+/// a mesh with a border, an edge of more than two triangles, or no orientation.
 /// @param normals  unit, of the vertices
 std::optional<double> outwardDeviation(const TriangleMesh& mesh, const MeshTopology& topology,
                                        const std::vector<Eigen::Vector3d>& normals);

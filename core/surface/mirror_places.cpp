@@ -35,7 +35,7 @@ struct Keyed {
   int triangle;
 };
 
-/// Least significant digit first, three digits of ten bits.
+/// Sorts by radix, least significant digit first, three digits of ten bits.
 void sortByKey(std::vector<Keyed>& items) {
   std::vector<Keyed> other(items.size());
   for (int digit = 0; digit < 3; ++digit) {
@@ -88,7 +88,7 @@ class NormalTree::Builder {
     return block;
   }
 
-  /// Of the triangles [first, end), which share the key's first `depth` digits.
+  /// Node of the triangles [first, end), which share the key's first `depth` digits.
   Node node(std::size_t first, std::size_t end, int depth) {
     if (end - first <= most_ && depth > 0) return part(first, end);
     // Children: the next digit of the key. Beyond the last digit (many triangles in one cell) runs of equal length.
@@ -164,7 +164,7 @@ class NormalTree::Builder {
       sum += children[k].axis;
     }
     parent.centre = parent.box.center();
-    // Axes that cancel leave any axis as good as another; the cone is then wide.
+    // Where the axes cancel any axis is as good as another; the cone is then wide.
     parent.axis = sum.norm() > 1e-3 ? Vector3d(sum.normalized()) : children[0].axis;
     for (int k = 0; k < count; ++k) {
       const Node& c = children[k];
@@ -304,8 +304,8 @@ std::optional<std::vector<std::pair<int, double>>> NormalTree::partsThatMay(cons
     const Eight coneCosine = b.cosine * h.cosine - b.sine * h.sine, coneSine = b.sine * h.cosine + b.cosine * h.sine;
     const Eight along = h.between.abs().min(1.f), across = (1.f - along * along).sqrt();
     const Eight apartSine = (across * coneCosine - along * coneSine - kCosineMargin).max(0.f);
-    const Eight apartCosine =
-        (along * coneCosine + across * coneSine + kCosineMargin).max(1e-3f);  // 1e-3: an angle near 90 degrees
+    // The bound 1e-3 is an angle near 90 degrees.
+    const Eight apartCosine = (along * coneCosine + across * coneSine + kCosineMargin).max(1e-3f);
     const Eigen::Array<bool, 8, 1> overlap = along + kCosineMargin >= coneCosine || coneCosine <= 0.f;
     bounds.tanSquared = overlap.select(Eight::Zero(), (apartSine / apartCosine).square());
     // The angle between axis and V, plus both cones.

@@ -19,8 +19,8 @@ namespace glint {
 class MirrorPlaces {
  public:
   virtual ~MirrorPlaces() = default;
-  /// One surface point from every part inside the view in which N may be parallel to H = unit(L + V), on either side: everywhere
-  /// else it is proven not to be. Nothing where the surface has no continuous normals, or is so rough that most parts remain.
+  /// One surface point from every part inside the view in which N may be parallel to H = unit(L + V), on either side; elsewhere
+  /// it is proven that N is not. Nothing where the surface has no continuous normals, or is so rough that most parts remain.
   virtual std::optional<std::vector<SurfacePoint>> mirrorPlaces(const MirrorQuery& query) const = 0;
 };
 
@@ -34,7 +34,7 @@ class NormalTree {
 
   /// A triangle from every part in which N may be parallel to H. Nothing when they are more than `most`.
   std::optional<std::vector<int>> candidates(const MirrorQuery& query, std::size_t most) const;
-  /// The same for what BoundedParts::partsThatMay asks, with the radii of the parts' balls, world units.
+  /// The same for the test of BoundedParts::partsThatMay, with the radii of the parts' balls, world units.
   /// @param fromOutside  parts are left out in which every normal points away from the eye by more than this angle (rad) beyond a
   ///   right one: outwardDeviation, for an eye outside of the box.
   std::optional<std::vector<std::pair<int, double>>> partsThatMay(const MirrorQuery& query, double lightReach,

@@ -13,10 +13,10 @@ namespace glint {
 class ManyOcclusions {
  public:
   virtual ~ManyOcclusions() = default;
-  /// Surface::occluded of every point towards the same one: 1 where it holds.
+  /// Surface::occluded for every point towards one other point: 1 where it holds.
   virtual std::vector<char> occludedMany(const std::vector<SurfacePoint>& from, const Eigen::Vector3d& to) const = 0;
-  /// Whether it holds for any of many points that lie close together. Faster where it holds for none: a ray that slips through
-  /// a vertex of what hides them is not asked again, its neighbours meet it.
+  /// Whether any of many points that lie close together is occluded. Faster where none is: a ray that slips through a
+  /// vertex is not asked again, because its neighbours hit.
   virtual bool anyOccluded(const std::vector<SurfacePoint>& from, const Eigen::Vector3d& to) const = 0;
 };
 
@@ -34,8 +34,8 @@ inline bool anyOccluded(const Surface& surface, const std::vector<SurfacePoint>&
   return std::any_of(from.begin(), from.end(), [&](const SurfacePoint& p) { return surface.occluded(p, to); });
 }
 
-/// A world point beyond everything that could hide a light at infinity from `point`: twice the surface's size away; for an unbounded
-/// surface, which has no size of its own, a thousand times `viewDistance`, the distance it is looked at from.
+/// A world point beyond everything that could hide a light at infinity from `point`: twice the surface's size away. For an
+/// unbounded surface, which has no size of its own, a thousand times `viewDistance`, the distance that it is seen from.
 inline Eigen::Vector3d beyondSurface(const Surface& surface, const Eigen::Vector3d& point, const Eigen::Vector3d& direction,
                                      double viewDistance) {
   const Eigen::Vector3d extent = surface.bounds().sizes();

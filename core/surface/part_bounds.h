@@ -27,8 +27,8 @@ struct PartBounds {
   Eight lightSquared;  ///< |l - w P|^2 for the homogeneous light (l, w): at least this
 };
 
-/// From the bounds of eight parts, an upper bound of what a field can reach above its level in each: parts with less than 0
-/// cannot reach it.
+/// Makes, from the bounds of eight parts, an upper bound of what a field can reach above its level in each: parts with less than
+/// 0 cannot reach it.
 using PartTest = std::function<Eight(const PartBounds&)>;
 
 /// A part of a surface that may reach a field's level.
@@ -41,7 +41,7 @@ struct SurfacePart {
 class BoundedParts {
  public:
   virtual ~BoundedParts() = default;
-  /// All parts inside the view that the test does not rule out and that the eye can see; also some that it cannot.
+  /// All parts inside the view that the test does not rule out and that the eye can see, and some that it cannot see.
   /// @param lightReach  how far the points of an extended light lie from query.light.head<3>(), in its homogeneous units.
   /// Nothing where the surface has no continuous normals, or when more than `most` parts remain.
   virtual std::optional<std::vector<SurfacePart>> partsThatMay(const MirrorQuery& query, double lightReach, const PartTest& test,

@@ -46,7 +46,7 @@ double circumradius(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
   return area2 > 0 ? (b - a).norm() * (c - b).norm() * (a - c).norm() / (2 * area2) : std::numeric_limits<double>::infinity();
 }
 
-/// The triangles around one point: pairs of neighbours that follow each other.
+/// The triangles around one point: pairs of consecutive neighbours.
 void addStar(int centre, const std::vector<Vector3d>& points, const Vector3d& normal, const std::vector<int>& neighbours,
              double largest, std::vector<std::array<int, 3>>& found) {
   const Eigen::Matrix<double, 3, 2> axes = tangentBasis(normal);

@@ -12,7 +12,7 @@ namespace glint {
 /// neighbours after an inversion about it; a triangle is in up to three stars. Triangles of most stars come first, of those the
 /// smallest; one that would be the third at an edge, or lie over one that is there, is left out.
 /// @param normals     unit, one per point; their sides need not agree
-/// @param neighbours  of every point: indices, the nearest first, without itself
+/// @param neighbours  of every point: indices, the nearest first, without the point itself
 /// @param largest     of every point: the largest radius of a triangle's circumcircle
 /// @return corners; the winding of neighbours may differ
 /// @see Adamy, Giesen and John, Surface reconstruction using umbrella filters, Computational Geometry 21, 2002.

@@ -26,11 +26,12 @@ using Eigen::Vector3d;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
-constexpr std::array<int, 6> kFitSizes{12, 18, 27, 40, 60, 90};  // the least determines 6 unknowns twice; each 1.5 times the last
+// The smallest determines 6 unknowns twice; each is 1.5 times the one before.
+constexpr std::array<int, 6> kFitSizes{12, 18, 27, 40, 60, 90};
 constexpr double kAsGood = 1.05;            // a larger fit that predicts within 5 % of the best one has the better normal
 constexpr int kProbes = 2000;               // points by which the size of the fits is chosen: the median is then known to 2 %
 constexpr double kReach = 1.2;              // h over the distance of the last neighbour, so that it still counts
-constexpr double kFar = 5;                  // standard deviations off its neighbours' fit: a point of something else
+constexpr double kFar = 5;                  // standard deviations off its neighbours' fit: the point is of something else
 constexpr double kFarShare = 0.5;           // of the spacing; at edges a fit misses points by less
 constexpr int kStar = 32;                   // neighbours among which a point's triangles are looked for; a star has 6 on average
 constexpr int kChunk = 512;                 // points of one piece of parallel work
@@ -58,7 +59,7 @@ class Neighbours {
     int index;
     double distance;
   };
-  /// The `count` nearest, itself not among them; of a cloud with normals only those of its own side.
+  /// The `count` nearest points without the point itself; in a cloud with normals only those of its own side.
   std::vector<Near> of(int index, int count) const {
     const bool sided = !cloud_.normals.empty();
     pcl::Indices found;
@@ -143,11 +144,11 @@ Fit fitAt(const PointCloud& cloud, int index, const std::vector<Neighbours::Near
 
 /// A point as its neighbours see it.
 struct LeftOut {
-  double off = std::numeric_limits<double>::quiet_NaN();  ///< from their fit, along its normal; NaN where there is none
+  double off = std::numeric_limits<double>::quiet_NaN();  ///< from its neighbours' fit, along the fit's normal; NaN without a fit
   double spacing = 0;                                     ///< see spacingOf
 };
 
-/// The side of the square that a point has for itself on a surface, by the distance of its nearest kFitSizes.front().
+/// The side of the square that a point has for itself on a surface, by the distance of the nearest kFitSizes.front() points.
 double spacingOf(const std::vector<Neighbours::Near>& near) {
   const std::size_t n = std::min(near.size(), static_cast<std::size_t>(kFitSizes.front()));
   return n == 0 ? 0 : near[n - 1].distance * std::sqrt(M_PI / double(n));
@@ -171,7 +172,7 @@ std::vector<LeftOut> leftOut(const PointCloud& cloud, const Neighbours& tree, in
   return all;
 }
 
-/// Standard deviation of the points across the surface; nothing where no point has a fit.
+/// Standard deviation of the points across the surface; nothing if no point has a fit.
 std::optional<double> sigmaOf(const std::vector<LeftOut>& all) {
   std::vector<double> off;
   for (const LeftOut& one : all)
@@ -240,7 +241,7 @@ TriangleMesh agreeing(TriangleMesh mesh) {
   return out;
 }
 
-/// From the cloud to the surface, step by step.
+/// The steps from the cloud to the surface.
 class SurfaceOfPoints {
  public:
   SurfaceOfPoints(const PointCloud& cloud, const PointSurfaceOptions& options, const ProgressFn& progress)
@@ -325,7 +326,8 @@ class SurfaceOfPoints {
     return {near.begin(), near.begin() + std::min<std::ptrdiff_t>(count, std::ssize(near))};
   }
 
-  /// The fit of the chosen size, or of the next larger whose neighbours determine the slopes: those of the least may lie on a conic.
+  /// The fit of the chosen size, or of the next larger one whose neighbours determine the slopes: the neighbours of the smallest
+  /// may lie on a conic.
   Fit steadyFit(int i, const std::vector<Neighbours::Near>& near) const {
     constexpr double kSteady = 4;  // leverage; a dozen neighbours all around have 0.5 to 1
     Fit fit = fitAt(cloud_, i, first(near, facts_.neighbours), true);
@@ -335,8 +337,8 @@ class SurfaceOfPoints {
     return fit;
   }
 
-  /// Standard deviation of a normal, rad: by the noise, and by how it differs from that of a fit of another size, where the surface
-  /// is no quadric as far as the fits reach. (Nested fits differ by noise, too, at most by that of the smaller one.)
+  /// Standard deviation of a normal, rad: by the noise, and by how it differs from that of a fit of another size, where the
+  /// surface is no quadric as far as the fits reach. (Nested fits differ by noise, too, at most by that of the smaller one.)
   double doubtOf(int i, const std::vector<Neighbours::Near>& near, const Fit& fit) const {
     if (!fit.fitted) return 0;
     const int other = facts_.neighbours == kFitSizes.front() ? kFitSizes[1] : std::max(kFitSizes.front(), facts_.neighbours / 2);

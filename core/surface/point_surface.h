@@ -20,7 +20,7 @@ struct PointCloud {
 struct PointSurfaceOptions {
   /// Points of a local fit; 0 = chosen by leaving points out: the more noise, the more points.
   int neighbours = 0;
-  double largestHole = 3;  ///< radius of the largest circle without points that is closed, in units of their distance there
+  double largestHole = 3;  ///< radius of the largest circle without points that is closed, in units of the points' distance there
   double mostNormalSigmaDeg = 5;  ///< median over the points; beyond, a reflection is off by twice that: refused
 };
 
@@ -40,14 +40,15 @@ struct PointSurface {
   PointSurfaceFacts facts;
 };
 
-/// A surface from points: every point is moved onto a quadric that is fitted to its neighbours (moving least squares, one projection),
-/// whose normal it takes; triangles join points that are neighbours in each other's tangent planes. Holes stay holes: no triangle is
-/// larger than `largestHole` says. Noise below the distance of the points is smoothed away; sides of the surface need not be told apart
-/// by normals, but where the cloud has them, points of the other side of a thin sheet are left out of a fit.
+/// A surface from points: every point is moved onto a quadric that is fitted to its neighbours (moving least squares, one
+/// projection), whose normal it takes; triangles join points that are neighbours in each other's tangent planes. Holes stay
+/// holes: no triangle is larger than `largestHole` says. Noise below the distance of the points is smoothed away; the cloud needs
+/// no normals; where it has them, points of the other side of a thin sheet are left out of a fit.
 ///
 /// Fit: in the frame of the neighbours' plane, z = a + b x + c y + d x^2 + e x y + f y^2 by weighted least squares with
 /// w = (1 - (r/h)^2)^2, h the distance of the last neighbour; the point becomes (0, 0, a), its normal (-b, -c, 1).
-/// @see Alexa et al., Computing and Rendering Point Set Surfaces, IEEE TVCG 9(1), 2003. Levin, Mesh-independent surface interpolation, 2004.
+/// @see Alexa et al., Computing and Rendering Point Set Surfaces, IEEE TVCG 9(1), 2003. Levin, Mesh-independent surface
+///   interpolation, 2004.
 /// @return TooFewPoints: fewer than kFewestPoints, or too few that have neighbours; NotFinite; NoSurface: the normals are more
 ///         uncertain than `mostNormalSigmaDeg` (sparse points of a rough or noisy object), or nothing can be joined. Stopped.
 Outcome<PointSurface> surfaceOfPoints(const PointCloud& cloud, const PointSurfaceOptions& options = {},

@@ -34,7 +34,7 @@ constexpr int kShortRounds = 14, kLongRounds = 40;
 constexpr double kStill = 1e-10;                            // radii of the mesh: a step that changes nothing
 constexpr int kCoarseSamples = 4000, kFineSamples = 10000;  // of the mesh, for starts and for its nearest triangles
 constexpr int kNearest = 3;                // samples whose triangles are asked: the nearest sample may lie on a neighbour
-constexpr double kFirstScale = 0.1;        // radii of the mesh: what a start is off by
+constexpr double kFirstScale = 0.1;        // radii of the mesh: the error of a start
 constexpr double kWorstSigma = 0.02;       // of the mesh's size: points that scatter more show no surface
 constexpr double kSigmaOfMedian = 1.4826;  // standard deviation of a normal distribution over its median absolute deviation
 constexpr double kOn = 2.5;                // standard deviations: 99 % of the mesh's points are nearer, few of another place are
@@ -43,7 +43,7 @@ constexpr double kElsewhere = 0.02;        // of the mesh's size, that another s
 constexpr double kSameSurface = 0.005;     // of the mesh's size, from one to the other: no highlight tells them apart
 constexpr double kNearlyAsMany = 0.8;      // of the explained points: noise could turn the order
 constexpr double kMostHidden = 0.1;        // of the explained points; edges and noise hide a few
-constexpr double kAlong = 0.999;           // cosine of 2.6 degrees, from the normal: facets have none that is more exact
+constexpr double kAlong = 0.999;           // cosine of 2.6 degrees, from the normal: facets' normals are no more exact
 constexpr double kElsewherePoint = 1e100;  // the distance of a point beside the border
 constexpr double kSlides = 1e-3;           // mean square of the motion across the surface over that of the motion
 constexpr double kMostUncertain = 0.02;    // of the mesh's size, standard deviation of a corner
@@ -91,7 +91,7 @@ class NearestOnMesh {
   struct Foot {
     Vector3d point, normal;  ///< normal: of the triangle, unit; zero where it has no area
     bool onBorder = false;   ///< the mesh ends there
-    /// Of a point at this offset from the foot: it lies on what the mesh does not show, beside its border.
+    /// Whether a point at this offset from the foot lies on what the mesh does not show, beside its border.
     bool isBeside(const Vector3d& away, const Vector3d& turnedNormal) const {
       return onBorder && std::abs(away.dot(turnedNormal)) < kAlong * away.norm();
     }
@@ -120,7 +120,7 @@ class NearestOnMesh {
   }
 
  private:
-  /// On a corner of the border, or between two of them: an edge from border to border is taken for one of it.
+  /// Whether the place is on a corner of the border, or between two of them: an edge between border corners counts as border.
   bool isOnBorder(const Vector3d& p, int triangle) const {
     constexpr double kOnEdge = 1e-9;  // of the edge's length: nearestOnTriangle is as exact
     const std::array<Vector3d, 3> corners = cornersOfTriangle(triangle);
@@ -185,11 +185,11 @@ class Refinement {
       std::vector<double> distances;
       if (equations(used, s, 3 * scale, scale, normal, right, &distances) <= 0) return {};
       const Vector7 step = stepOf(normal, right);
-      if (!step.allFinite() || step.norm() > 1) return {};  // more than its own size: nothing holds it
+      if (!step.allFinite() || step.norm() > 1) return {};  // more than the mesh's own size: nothing holds it
       s = moved(s, step, s * samples_.mean(), s.scale * samples_.radius());
       const double next = std::max(kOn * sigmaOf(distances, 3 * scale), kRounding * sizeOf(s));
       if (std::abs(next - scale) < 0.02 * scale && step.norm() < kStill) break;
-      scale = std::max(next, 0.6 * scale);  // not at once: another part of the points could hold it
+      scale = std::max(next, 0.6 * scale);  // gradually: another part of the points could hold it
     }
     solution.pointsFromMesh = s;
     const Similarity back = s.inverse();
@@ -308,7 +308,7 @@ bool sameSurface(const Similarity& a, const Similarity& b, const NearestOnMesh& 
   return true;
 }
 
-/// Points that the mesh hides from the camera that saw them; of several that may have, from all.
+/// Points that the mesh hides from the camera that saw them, or from all that may have seen them.
 std::size_t hiddenPoints(const TriangleMesh& mesh, const Refinement& r, const Solution& s, double tolerance) {
   const std::shared_ptr<const Surface> surface = makeMesh(mesh, MeshPolicy{NormalPolicy::Facet}, false);
   const Similarity back = s.pointsFromMesh.inverse();
@@ -359,7 +359,7 @@ std::optional<double> uncertaintyOf(const Refinement& r, const Solution& best, c
   return sigma;
 }
 
-/// What the solutions that put the mesh elsewhere explain.
+/// Points that the solutions explain which put the mesh elsewhere.
 void compareOthers(const Refinement& r, const MeshSamples& coarse, const MeshSamples& fine, const TriangleMesh& mesh,
                    const std::vector<Solution>& solutions, Registration& result) {
   const NearestOnMesh nearest(mesh, fine);
@@ -427,7 +427,7 @@ Outcome<Registration> judged(const TriangleMesh& mesh, const Refinement& r, cons
   return result;
 }
 
-/// The best first; those that end nowhere are left out.
+/// Solutions, the best first; starts that end nowhere are left out.
 std::vector<Solution> refinedAll(const Refinement& refinement, const std::vector<Similarity>& starts, int rounds,
                                  std::size_t points, const ProgressFn& progress) {
   std::vector<Solution> solutions(starts.size());

@@ -35,22 +35,23 @@ struct Registration {
   std::string text() const;   ///< one line
 };
 
-/// The similarity that lays a mesh onto the points that show it: many starts over all rotations and over the sizes of the parts of
-/// the cloud around what the cameras look at, each improved by trimmed iterated closest points with scale; the best ones by robust
-/// least squares of the distances to the triangles. Solutions are compared by the likelihood of the points if those on the mesh scatter
-/// about it evenly over its area and the others lie anywhere in the cloud's box: a mesh that is too large or too small explains less.
+/// The similarity that lays a mesh onto the points that show it: many starts over all rotations and over the sizes of the parts
+/// of the cloud around what the cameras look at, each improved by trimmed iterated closest points with scale; the best ones by
+/// robust least squares of the distances to the triangles. Solutions are compared by the likelihood of the points if those on the
+/// mesh scatter about it evenly over its area and the others lie anywhere in the cloud's box: a mesh that is too large or too
+/// small explains less.
 ///
-/// A mesh of a part of the object: points whose nearest place is its border lie on what it does not show, and do not draw it. Points off
-/// the object are no harm as long as 20 points, and a tenth, lie on the mesh. The answer does not depend on the order of anything
-/// and is the same at every call.
+/// The mesh may be a part of the object: points whose nearest place is its border lie on what it does not show, and do not pull
+/// it. Points off the object do no harm as long as 20 points, and a tenth, lie on the mesh. The answer does not depend on any
+/// order and is the same at every call.
 ///
-/// @return TooFewPoints: fewer than 20, given or explained. NotConverged: no place explains the points, or the mesh would hide them
-///         from their cameras. RankDeficient, "ambiguous ...": another place explains nearly as many, or the points let the mesh slide
-///         or turn (a sphere, a cylinder, a plane). NotFinite. Stopped.
-/// @see Umeyama, Least-squares estimation of transformation parameters between two point patterns, IEEE TPAMI 13(4), 1991. Chetverikov
-///      et al., Robust Euclidean alignment of 3D point sets: the trimmed iterative closest point algorithm, IVC 23(3), 2005. Turk and Levoy,
-///      Zippered polygon meshes from range images, SIGGRAPH 1994, sec. 4 (points beside the border). Gelfand et al., Geometrically stable
-///      sampling for the ICP algorithm, 3DIM 2003 (directions in which a shape slides).
+/// @return TooFewPoints: fewer than 20, given or explained. NotConverged: no place explains the points, or the mesh would hide
+///         them from their cameras. RankDeficient, "ambiguous ...": another place explains nearly as many, or the points let the
+///         mesh slide or turn (a sphere, a cylinder, a plane). NotFinite. Stopped.
+/// @see Umeyama, Least-squares estimation of transformation parameters between two point patterns, IEEE TPAMI 13(4), 1991.
+///      Chetverikov et al., Robust Euclidean alignment of 3D point sets: the trimmed iterative closest point algorithm, IVC
+///      23(3), 2005. Turk and Levoy, Zippered polygon meshes from range images, SIGGRAPH 1994, sec. 4 (points beside the border).
+///      Gelfand et al., Geometrically stable sampling for the ICP algorithm, 3DIM 2003 (directions in which a shape slides).
 Outcome<Registration> registerMesh(const TriangleMesh& mesh, const std::vector<SeenPoint>& points,
                                    const ProgressFn& progress = {});
 

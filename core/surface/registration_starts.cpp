@@ -23,9 +23,9 @@ namespace glint {
 namespace {
 using Eigen::Vector3d;
 
-// Lengths of this file are in radii of the mesh (root mean square) about its mean, but where said.
+// Lengths in this file are in radii of the mesh (root mean square) about its mean, unless stated.
 constexpr int kCells = 40;     // of the grid along each side: a fifteenth of a radius, less than a start is off
-constexpr int kPatches = 100;  // of the mesh: as many places can be told apart by points that hit them
+constexpr int kPatches = 100;  // of the mesh: so many places can be told apart by points that hit them
 constexpr int kTurns = 360;    // over all rotations: each is then within 30 degrees of one, from where closest points converge
 constexpr int kPointsOfStart = 250;      // of a part of the cloud
 constexpr int kSteps = 10;               // of closest points; the rest is done by registerMesh
@@ -128,8 +128,8 @@ std::vector<Vector3d> centresOf(const std::vector<SeenPoint>& points) {
   return centres;
 }
 
-/// Points of the inner half of the cloud, each as far as it can be from those before: where the mesh is a part of the object only, or the
-/// points are, the middle of the one is elsewhere on the other.
+/// Points of the inner half of the cloud, each as far as possible from those before. Where the mesh or the points show only a
+/// part of the object, the middle of one lies elsewhere on the other.
 std::vector<Vector3d> placesOf(const std::vector<SeenPoint>& points, const Vector3d& centre) {
   constexpr int kPlaces = 6;  // as the faces of a cube
   std::vector<std::pair<double, std::size_t>> order;
@@ -177,8 +177,8 @@ std::vector<Part> partsOf(const std::vector<SeenPoint>& points) {
   return parts;
 }
 
-/// x -> scale rotation x + shift from corresponding points, by their sums. The scale is the ratio of the spreads (Horn 1987), which
-/// closest points shrink less than least squares would.
+/// x -> scale rotation x + shift from corresponding points, by their sums. The scale is the ratio of the spreads (Horn 1987),
+/// which closest points shrink less than least squares would.
 class Correspondences {
  public:
   void add(const Vector3d& from, const Vector3d& to) {
@@ -212,7 +212,7 @@ struct Start {
 
 /// Closest points; the score counts places of the mesh that are hit, so that a cloud that shrinks onto one place gains nothing.
 Start improved(const NearestGrid& grid, const Part& part, const std::vector<Vector3d>& cloud, Similarity t) {
-  constexpr double kFewest = 8;  // correspondences: fewer fit anything
+  constexpr double kFewest = 8;  // correspondences: fewer would fit anything
   for (int step = 0; step < kSteps; ++step) {
     const double reach = kFirstReach * std::pow(kLastReach / kFirstReach, double(step) / (kSteps - 1));
     Correspondences pairs;
@@ -237,7 +237,7 @@ Start improved(const NearestGrid& grid, const Part& part, const std::vector<Vect
   return {t, places * std::sqrt(double(on) / double(cloud.size()))};
 }
 
-/// The best, each unlike those before it.
+/// The best starts, each unlike those before it.
 std::vector<Similarity> chosen(std::vector<Start> starts, const MeshSamples& mesh) {
   constexpr double kUnlike = 0.15;  // radii that some corner of the mesh's box moves
   std::stable_sort(starts.begin(), starts.end(), [](const Start& a, const Start& b) { return a.score > b.score; });
@@ -263,7 +263,7 @@ std::vector<Similarity> chosen(std::vector<Start> starts, const MeshSamples& mes
 
 }  // namespace
 
-/// In single precision: what it finds is where the search of the exact nearest point begins.
+/// In single precision: the search for the exact nearest point begins at its result.
 struct MeshSamples::Tree : pcl::KdTreeFLANN<pcl::PointXYZ> {};
 
 MeshSamples::MeshSamples(const TriangleMesh& mesh, int count) {

@@ -10,7 +10,7 @@
 
 namespace glint {
 
-/// Points spread evenly over the area of a mesh, with what finds the nearest ones. Always the same ones.
+/// Points spread evenly over the area of a mesh, with a search for the nearest ones. The points are always the same.
 class MeshSamples {
  public:
   /// @pre some triangle has an area

@@ -46,7 +46,7 @@ enum class NormalPolicy { Facet, Interpolated, Curved };
 /// Double: single precision finds the triangle, double decides where on it. Single: the ray tracer's own answer.
 enum class RayPrecision { Double, Single };
 
-/// How a mesh answers, whatever it was made from. Analytic surfaces need neither.
+/// How a mesh answers, whatever it was made from. Analytic surfaces do not need it.
 struct MeshPolicy {
   NormalPolicy normals = NormalPolicy::Interpolated;
   RayPrecision rays = RayPrecision::Double;

@@ -25,8 +25,8 @@ struct ExactOptions {
 
 /// Contours and peaks of one light in one frame, traced on the analytic field itself, not on pixels; ideal pixels, strongest
 /// first. Vertices lie on the level set to 1e-9 px, peaks to about 1e-7 px (the finite differences of their Newton steps).
-/// A contour cut by the image or by the end of the surface runs along that border (`touchesBorder` for the image's, `marginPx`
-/// beyond it). `peakValue` is the specular radiance for unit intensity (0 for LimitAngle).
+/// A contour cut by the image or by the end of the surface runs along that border (`touchesBorder` for the image's border,
+/// `marginPx` beyond it). `peakValue` is the specular radiance for unit intensity (0 for LimitAngle).
 /// @return NoHighlight when nothing is lit and visible; NotSupported for LimitAngle with a tube or a sphere of non-zero radius.
 Outcome<std::vector<Highlight>> exactHighlights(const Surface& surface, const Camera& camera, const TrueLight& light,
                                                 const Material& material, const ExactOptions& options);

@@ -40,7 +40,7 @@ std::vector<LightSample> sampleSphere(const Eigen::Vector3d& centre, double radi
   return samples;
 }
 
-/// Errors of log I below 1e-7 down to a thousandth of the peak, to three lobe widths.
+/// A rule whose errors of log I are below 1e-7 down to a thousandth of the peak, for lamps of up to three lobe widths.
 std::vector<LightSample> samplesOf(const SphereShape<>& sphere, const Eigen::Vector3d& centre, const Eigen::Vector3d& point,
                                    double lobeWidth) {
   const double radius = sphere.reach();
@@ -103,7 +103,7 @@ std::vector<Sampled> reaching(const Surface& surface, const SurfacePoint& p, con
   const Eigen::Vector3d toCamera = (eye - p.position) / distance;
   const LobeAxes axes = axesAt(material.lobe, surface, p);
   std::vector<Sampled> result;
-  // H turns by half of what L turns, and across the plane of incidence by more at slanted incidence.
+  // H turns by half as much as L, and by more across the plane of incidence at slanted incidence.
   double lobeWidth = 2 * material.roughness;
   if (!light.lamp.atInfinity())
     lobeWidth *= std::max(0.05, 0.5 * ((light.lamp.position() - p.position).normalized() + toCamera).norm());

@@ -37,8 +37,8 @@ struct LightSample {
 /// a point or direction is one sample; a sphere of uniform radiance is the cone that it fills (Gauss-Legendre in the cosine,
 /// equal steps around); a tube of uniform radiance is Gauss-Legendre along its axis and across its width, with the sine of the
 /// angle to its axis. Total intensity is 1 in every case, so all agree as the radius goes to 0 (and the tube's length).
-/// @param lobeWidth  rad, of what the samples are weighted with, as an angle of the light's direction: a sphere wide against it takes
-///                   more samples.
+/// @param lobeWidth  rad, of the lobe that weighs the samples, as an angle of the light's direction: a sphere that is wide
+///                   beside it takes more samples.
 /// @return no samples where the point lies inside the light.
 std::vector<LightSample> sampleLight(const Lamp& lamp, const Eigen::Vector3d& point, double lobeWidth = 1);
 

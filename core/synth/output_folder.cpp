@@ -23,10 +23,10 @@ bool madeBySynth(const fs::path& sceneFile) {
   }
 }
 
-/// The first of these files that is there and not of `synth`; "" = none.
+/// The first of these files that exists and was not written by `synth`; "" = no such file.
 fs::path takenIn(const fs::path& folder, const std::vector<fs::path>& names) {
   if (madeBySynth(folder / "scene.json")) return {};
-  std::error_code ignored;  // what cannot be asked about is not there
+  std::error_code ignored;  // a file that cannot be looked at counts as missing
   const auto taken =
       std::find_if(names.begin(), names.end(), [&](const fs::path& name) { return fs::exists(folder / name, ignored); });
   return taken == names.end() ? fs::path() : *taken;

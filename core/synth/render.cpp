@@ -30,7 +30,7 @@ cv::Mat matOf(const Image& image) {
 }
 
 void writeImage(const fs::path& file, const cv::Mat& mat, int jpegQuality = 0) {
-  // In memory first: the libraries' own writing prints, and may crash, when the disk is full.
+  // Encoded in memory first: the libraries' own writing prints messages, and may crash, when the disk is full.
   std::vector<unsigned char> bytes;
   std::vector<int> parameters;
   if (file.extension() == ".tiff")
@@ -117,7 +117,7 @@ RenderedFrame renderFrame(const Surface& surface, const Camera& camera, const st
       const double share = 1.0 / (samples * samples);
       frame.specular.at(x, y) = static_cast<float>(specular * share);
       for (int c = 0; c < 3; ++c) frame.diffuse.at(x, y, c) = static_cast<float>(material.diffuse[c] * diffuse * share);
-      // Depth, normal and mask belong to the pixel's centre: a mean over an edge is no point of the surface.
+      // Depth, normal and mask belong to the pixel's centre: a mean over an edge is not on the surface.
       const Ray ray = camera.ray(camera.undistorted(Pixel(x, y)));
       const Outcome<SurfacePoint> hit = surface.firstHit(ray);
       if (!hit) continue;
@@ -180,7 +180,7 @@ std::map<fs::path, std::string> namesOfMeshes(const Scene& scene) {
     if (source.file() && names.emplace(source.file()->file, "").second) files.push_back(source.file()->file);
   std::set<std::string> taken;
   const auto isFree = [&](const std::string& name, const fs::path& mine) {
-    std::error_code ignored;  // what is not there yet is no mesh
+    std::error_code ignored;  // a file that does not exist yet is no mesh
     return !taken.count(name) && std::none_of(names.begin(), names.end(), [&](const auto& mesh) {
       return mesh.first != mine && fs::equivalent(mesh.first, scene.folder / "mesh" / name, ignored);
     });
@@ -194,9 +194,9 @@ std::map<fs::path, std::string> namesOfMeshes(const Scene& scene) {
   return names;
 }
 
-/// The mesh lies there already, and is not written.
+/// Whether the mesh lies there already, so that it is not written.
 bool isInPlace(const fs::path& mesh, const fs::path& place) {
-  std::error_code ignored;  // what cannot be asked about is another file
+  std::error_code ignored;  // a path that cannot be looked at counts as another file
   return fs::equivalent(mesh, place, ignored);
 }
 
@@ -267,7 +267,7 @@ void renderFrames(Scene& scene, const RenderOptions& render, const Material& mat
       progress, "render");
 }
 
-/// What the scene's file holds, with the sign that `synth` wrote it.
+/// The text of the scene's file, with the sign that `synth` wrote it.
 std::string textOf(Scene scene) {
   scene.unknownJson = std::string("{\"scene\": {\"") + kMadeBy + "\": \"" + kMadeBySynth + "\"}}";
   return sceneToJson(scene, scene.folder);

@@ -168,7 +168,7 @@ void readLights(const JsonNode& lights, Scene& scene) {
 void readSurfaces(const JsonNode& surfaces, Scene& scene) {
   const auto find = [&](const JsonNode& named) {
     const std::filesystem::path file = resolveInside(scene.folder, named.text(), {}, named.file(), named.place());
-    std::error_code ignored;  // what cannot be asked about is not there
+    std::error_code ignored;  // a file that cannot be looked at counts as missing
     if (!std::filesystem::is_regular_file(file, ignored)) named.fail("file '" + named.text() + "' does not exist");
     return file;
   };
@@ -201,7 +201,7 @@ std::vector<std::string> stepSurface(const JsonNode& steps, Scene& scene) {
   return order;
 }
 
-/// The frames as they are listed, once for each surface of `order`. @param stepped  `order` are steps, whatever surface a frame names
+/// The frames as listed, once for each surface of `order`. @param stepped  `order` holds steps, whatever surface a frame names
 void readFrames(const JsonNode& frames, const SynthCamera& camera, const std::vector<std::string>& order, bool stepped,
                 Scene& scene) {
   std::set<std::string> ids;

@@ -19,8 +19,8 @@ struct RenderOptions {
   double blurPx = 0;    ///< standard deviation of a Gaussian blur, px
   int bits = 8;         ///< of the images: 8, 16 (PNG, sRGB), or 32 (no photograph, the float radiance alone)
   int jpegQuality = 0;  ///< 1 to 100: images of 8 bits are JPEG files of this quality; 0 = PNG
-  int samples =
-      1;  ///< rays per pixel side; 1 = through the pixel's centre, n = mean over an n x n grid in the pixel (box filter)
+  /// Rays per pixel side; 1 = through the pixel's centre, n = mean over an n x n grid in the pixel (box filter).
+  int samples = 1;
   unsigned seed = 1;  ///< of the noise; frame i uses its own stream
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the world may hand over wrong, through the program: the exit code, one line with file and place, nothing half written.
+// Wrong input from outside, through the program: the exit code, one line with file and place, nothing half written.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -23,7 +23,7 @@ class BadInput : public SmallScene {
     for (const char* command : {"info", "detect", "evaluate", "reconstruct", "render", "convert"})
       refuses(command, code, message);
   }
-  /// What an older run of the command left: its kind tells that the command may replace it.
+  /// The output of an older run of the command: its kind tells that the command may replace it.
   static std::string oldOutputOf(const std::string& command) {
     static const std::map<std::string, std::string> keys = {{"info", "info"},           {"detect", "detection"},
                                                             {"evaluate", "evaluation"}, {"reconstruct", "session"},

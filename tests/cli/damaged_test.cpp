@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every folder of shared/data/damaged (inputs that broke the program once, by other people's generators) with the command that its CMD, INFO
-// or README names. Bounds of time and memory are limits of the process, far above the 10 s and 1 GB that the README asks for, so that they
-// tell a hang and an explosion on any machine under any load; they measure no speed.
+// Every folder of shared/data/damaged (inputs that broke the program once, by other people's generators) with the command that
+// its CMD, INFO or README names. Bounds of time and memory are limits of the process, far above the 10 s and 1 GB that the README
+// asks for, so that they tell a hang and an explosion on any machine under any load; they measure no speed.
 #include <gmock/gmock.h>
 
 #include <map>
@@ -133,7 +133,7 @@ class Copy {
   std::string bounds_;
 };
 
-/// One line of at most 400 characters for a refusal, at most one beside an answer; never a signal.
+/// A refusal has one line of at most 400 characters, an answer at most one; no run ends by a signal.
 void expectManners(const ProgramRun& run, Expected expected) {
   EXPECT_THAT(run.code, AnyOf(Eq(0), Eq(2), Eq(3))) << run.err;
   if (expected == Expected::Refused) {
@@ -199,7 +199,8 @@ std::string sceneWithFrame(const std::string& key, const std::string& file) {
          R"(],"surfaces":{"s":{"analytic":{"type":"sphere","radius":0.4}}}})";
 }
 
-/// One frame's damaged picture is a line of the report, and the rest of the scene is read; detection, which has nothing else, says it with 3.
+/// One frame's damaged picture is a line of the report, and the rest of the scene is read. Detection, which has no other frame,
+/// ends with 3.
 void expectFrameRefused(const Copy& copy, const std::string& file) {
   const ProgramRun info = copy.run("info fed.json");
   expectManners(info, Expected::Answered);

@@ -8,7 +8,7 @@ namespace glint {
 namespace {
 using namespace testing_support;
 
-/// A type as a letter: n number, i whole number, s text, o object, a list; after it "?" where null stands for "has none".
+/// A type as a letter: n number, i whole number, s text, o object, a list; after it "?" where null means "has none".
 bool hasType(const Json& value, const std::string& type) {
   if (value.is_null()) return type.size() == 2;
   switch (type[0]) {

@@ -19,7 +19,7 @@ class FrameNames : public SmallScene {
     for (int i = 0; i < kFrames; ++i) scene_["frames"][i]["id"] = idOf(i);
     writeScene();
   }
-  /// 0001, 0003, ..., 0015: some are another frame's number.
+  /// Ids 0001, 0003, ..., 0015: some equal the number of another frame.
   static std::string idOf(int frame) { return std::string(frame < 5 ? "000" : "00") + std::to_string(2 * frame + 1); }
   static Json idsOf(const std::vector<int>& frames) {
     Json ids = Json::array();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the reflectance model says of a lamp that is wider than the lobe, and of a lobe that is not the right one, from 8-bit images. The
-// values expected are those of the specification.
+// What the reflectance model says about a lamp wider than the lobe, and about a wrong lobe, from 8-bit images. The values
+// expected are those of the specification.
 #include <gmock/gmock.h>
 
 #include <sstream>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `glint lights --on`: which lamps are on, against synthetic frames whose lamps were switched by hand. Nine frames name their lamp; six do not.
+// `glint lights --on`: which lamps are on, against synthetic frames whose lamps were switched by hand. Nine frames name their
+// lamp; six do not.
 #include <gmock/gmock.h>
 
 #include <Eigen/Geometry>
@@ -13,7 +14,7 @@ using namespace testing_support;
 using testing::HasSubstr;
 
 using Lamps = std::vector<std::string>;
-/// What is on in each frame; the first nine say so.
+/// The lamps that are on in each frame; the first nine frames name them.
 const std::vector<Lamps> kOn{{"a"}, {"b"},      {"c"}, {"a"}, {"b"},      {"c"},           {"a"},     {"b"},
                              {"c"}, {"a", "b"}, {"c"}, {"b"}, {"a", "c"}, {"a", "b", "c"}, {"a", "d"}};
 constexpr std::size_t kStated = 9;
@@ -58,7 +59,8 @@ Answer answerOf(const std::string& csv) {
 
 class LampsOnTest : public testing::Test {
  protected:
-  /// Makes the frames, takes what is on from all but the first nine, and asks. @param scale  of the scene. @param noise  of the pixels
+  /// Makes the frames, takes what is on from all but the first nine, and asks. @param scale  of the scene. @param noise  of the
+  /// pixels
   Answer ask(double scale, double noise) {
     Json frames = Json::array();
     for (std::size_t i = 0; i < kOn.size(); ++i) {
@@ -103,7 +105,7 @@ class LampsOnTest : public testing::Test {
     return answerOf(run.out);
   }
 
-  /// No wrong answer, and few that are open. @return how many were right
+  /// Expects no wrong answer, and few open ones. @return how many were right
   static int right(const Answer& answer) {
     int count = 0;
     for (const auto& [key, row] : answer.lamps) {

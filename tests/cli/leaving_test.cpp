@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What leaves the command line besides reports: movies, comparisons of two sessions, masks.
+// Output of the command line besides reports: movies, comparisons of two sessions, masks.
 #include <gmock/gmock.h>
 
 #include <opencv2/imgcodecs.hpp>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `glint lights` as a user runs it: photographs of balls whose lamps are known from the reflection law, written in closed form or solved by Fermat's
-// principle here, and a scene with exact highlights.
+// `glint lights` as a user runs it: photographs of balls whose lamps are known from the reflection law, written in closed form or
+// solved by Fermat's principle here, and a scene with exact highlights.
 #include <gmock/gmock.h>
 
 #include <Eigen/LU>
@@ -357,7 +357,8 @@ TEST(TwoBalls, PositionsWithAFocalLength) {
   }
 }
 
-// A rough ball: the middle of a wide highlight is not its mirror point, and its lobe knows. Photographs by `glint synth`, truth from its specification.
+// A rough ball: the middle of a wide highlight is not its mirror point, but the fit of its lobe finds that point. Photographs by
+// `glint synth`, truth from its specification.
 TEST(RoughBall, ItsLobeIsFitted) {
   const TemporaryFolder folder;
   const std::vector<Eigen::Vector3d> lamps{Eigen::Vector3d(0.2, -0.3, -1).normalized(),
@@ -405,8 +406,8 @@ TEST_F(LightsOfAScene, PositionFromGivenHighlights) {
   EXPECT_EQ(lamp["highlights"], kFrames);
   EXPECT_EQ(lamp["frames"].size(), std::size_t(kFrames));
   const Eigen::Vector3d truth(1.5, -1.0, 2.2), at(lamp["position"][0], lamp["position"][1], lamp["position"][2]);
-  constexpr double kExactData =
-      1e-6;  // what is promised; the given points are exact to 1e-9 px, chords between them would leave 2e-5
+  // The promised accuracy: the given points are exact to 1e-9 px, and chords between them would leave 2e-5.
+  constexpr double kExactData = 1e-6;
   EXPECT_LT((at - truth).norm(), kExactData * truth.norm());
   EXPECT_LT(angleDeg(lamp["direction"], truth.normalized()) * M_PI / 180, kExactData);
   EXPECT_EQ(lamp["from"], Json::array({0.0, 0.0, 0.0}));
@@ -438,7 +439,8 @@ TEST_F(LightsOfAScene, AWrongDetectionIsDroppedByName) {
   EXPECT_LT((at - truth).norm(), 1e-4 * truth.norm());
 }
 
-// One frame alone: its direction is that of a distant lamp, and nothing is said of a distance. The lamp is 2.8 m away from a body of 0.6 m.
+// One frame alone: its direction is that of a distant lamp, and no distance is given. The lamp is 2.8 m away from a body
+// of 0.6 m.
 TEST_F(LightsOfAScene, OneViewGivesNoPosition) {
   const ProgramRun run = on("lights", "--exclude 1-7 --json - ");
   ASSERT_EQ(run.code, 0) << run.err;

@@ -50,7 +50,7 @@ TEST_F(OutputsOfCommands, ASessionFoundThroughItsFolderIsNeverReplaced) {
     refuses(runGlint("reconstruct " + input + " --model canonical -o " + out("kept/a.glint")),
             "a.glint: --out: is an input file");
   EXPECT_EQ(contentOf(folder_ / "kept/a.glint"), session);
-  // Beside a scene file a session is none of the input: the folder means the scene file.
+  // A session beside a scene file is not part of the input: the folder means the scene file.
   ASSERT_EQ(on("reconstruct", "--model limit-angle -o " + out("b.glint")).code, 0);
   const ProgramRun again = on("reconstruct", "--model limit-angle -o " + out("b.glint"));
   EXPECT_EQ(again.code, 0) << again.err;

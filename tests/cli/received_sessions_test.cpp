@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A session that came from somebody else has no rights of its own: what it names outside of its folder and its scene's is not looked at
-// until the person at this command line says so.
+// A session that came from somebody else has no rights of its own: what it names outside of its folder and its scene's is not
+// looked at until the person at this command line says so.
 #include <gmock/gmock.h>
 
 #include "tests/cli/small_scene.h"
@@ -151,7 +151,7 @@ TEST_F(ReceivedSessions, ASceneIsNoSession) {
   EXPECT_THAT(run.err, HasSubstr("is a scene, not a session"));
 }
 
-/// A document of another kind is named, not searched for what it lacks.
+/// A document of another kind is named as such; its missing keys are not listed.
 TEST_F(ReceivedSessions, ASpecificationIsNeitherASceneNorASession) {
   const std::string specification = inQuotes(std::filesystem::path(GLINT_SOURCE_DIR) / "resources/specs/ellipsoid_80.json");
   for (const char* command : {"info ", "evaluate "}) {

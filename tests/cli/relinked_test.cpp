@@ -60,7 +60,8 @@ class RelinkedScene : public SmallScene {
   std::string meshes() const { return " --meshes " + inQuotes(elsewhere_.path()); }
   std::string photographs() const { return " --photographs " + inQuotes(elsewhere_.path()); }
 
-  /// From contours with a smooth background: these tests are about places of files, and a fit to the pixels takes ten times as long.
+  /// Fits contours with a smooth background: these tests are about places of files, and a fit to the pixels takes ten times as
+  /// long.
   static constexpr const char* kQuick = " --models limit-angle --set detect.background=smooth --set fit.evidence=contours";
   static inline const std::string kRequest = std::string(kQuick) + " --json -";
   TemporaryFolder elsewhere_;
@@ -106,7 +107,7 @@ TEST_F(RelinkedScene, ASessionRemembersThePlaces) {
   // A session made from that session remembers them, too.
   EXPECT_EQ(runGlint("reconstruct " + session(moved.path()) + kQuick + " -o " + inQuotes(moved / "second.glint") + yes).code, 0);
   EXPECT_EQ(runGlint("replay " + inQuotes(moved / "second.glint") + yes).code, 0);
-  // What is given counts, not what the session says; another file than it was made with is told.
+  // The given place counts, not the session's; a file other than the one it was made with is reported.
   fs::create_directories(moved / "third");
   fs::rename(moved / "elsewhere/shape/body.ply", moved / "third/b.ply");
   EXPECT_EQ(runGlint("replay " + session(moved.path()) + yes).code, 2);

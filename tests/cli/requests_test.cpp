@@ -84,7 +84,7 @@ TEST_F(Requests, ADisplayThatCannotBeOpenedIsOneLine) {
               "glint: not supported: the display ':4711' cannot be opened, and 3D rendering without a display needs Xvfb; "
               "install it: apt-get install xvfb\n");
   }
-  // What needs no display is drawn.
+  // Pictures that need no display are drawn.
   EXPECT_EQ(on("render", "--view frame " + models + "-o " + out("x.png"), none).code, 0);
   EXPECT_EQ(on("evaluate", models + "--html " + out("x.html"), none).code, 0);
 }
@@ -112,7 +112,7 @@ TEST_F(Requests, ExcludedFramesNeitherTrainNorAreScored) {
   EXPECT_EQ(j["excluded"], Json::array({2, 7}));
   EXPECT_EQ(indices(j["training"]), (std::set<int>{0, 1, 3, 4, 5}));
   EXPECT_EQ(indices(j["models"]["limit-angle"]["frames"]), std::set<int>{6});
-  // A session keeps them; what the command line says comes first.
+  // A session keeps them; the command line comes first.
   saveSession("--model limit-angle --train 0-5 --exclude 7");
   EXPECT_EQ(Json::parse(contentOf(folder_ / "run.glint"))["request"]["excluded"], Json::array({7}));
   EXPECT_EQ(Json::parse(onSession("evaluate", "--json -").out)["excluded"], Json::array({7}));
@@ -220,7 +220,7 @@ TEST_F(Requests, JsonAloneOnStandardOutputAndNoProgressInAPipe) {
                                 onSession("predict", "--json -")}) {
     EXPECT_EQ(run.code, 0);
     EXPECT_TRUE(Json::accept(run.out));
-    // One line at most: the tail of this scene's lobe (GGX) may be taken for background, which `detect` says.
+    // At most one line comes: the tail of this scene's lobe (GGX) may be taken for background, which `detect` says.
     if (!run.err.empty()) {
       EXPECT_THAT(run.err, StartsWith("glint: warning: the background is uncertain under 8 highlights"));
       EXPECT_EQ(run.errorLines(), 1);

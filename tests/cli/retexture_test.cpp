@@ -12,7 +12,7 @@ using namespace testing_support;
 using testing::HasSubstr;
 namespace fs = std::filesystem;
 
-/// An ellipsoid twice: as photographs show it, and matt, from the same spec with next to no lobe. Sessions of two models.
+/// An ellipsoid twice: as photographs show it, and matt, from the same spec with almost no lobe. Sessions of two models.
 class Retexture : public testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -70,7 +70,8 @@ class Retexture : public testing::Test {
   inline static std::unique_ptr<TemporaryFolder> made_;
 };
 
-/// docs/retexture.md: against exact renderings, a model without a lobe loses half of a GGX highlight's light, and 7 % of a Beckmann one's.
+/// docs/retexture.md: against exact renderings, a model without a lobe loses half of a GGX highlight's light, and 7 % of a
+/// Beckmann one's.
 TEST_F(Retexture, ATailThatPassesForBackgroundIsWarnedOf) {
   for (const bool tail : {true, false}) {
     const TemporaryFolder folder;
@@ -100,7 +101,7 @@ TEST_F(Retexture, ARestBesideWhatIsFilledIsWarnedOf) {
   std::vector<cv::Point> filled;
   cv::findNonZero(cv::imread((*made_ / "marks.png").string(), cv::IMREAD_GRAYSCALE), filled);
   ASSERT_GT(filled.size(), 100u);
-  // A label of this frame, which is none of those that train: a ring 10 px around the pixels that were filled.
+  // A label of this frame, which does not train: a ring 10 px around the pixels that were filled.
   const cv::Scalar middle = cv::mean(filled);
   const auto distance = [](const cv::Point2d& a, const cv::Point2d& b) { return std::hypot(a.x - b.x, a.y - b.y); };
   double radius = 0, expected = 0;

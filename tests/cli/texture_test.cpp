@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `glint detect` and bright texture: a glossy ball made by `glint synth`, with two spots painted into its pictures here, so that it is known which is which.
+// `glint detect` and bright texture: a glossy ball made by `glint synth`, with two spots painted into its pictures here, so that
+// it is known which is which.
 #include <gmock/gmock.h>
 
 #include <Eigen/Geometry>
@@ -40,7 +41,7 @@ std::optional<Eigen::Vector3d> ballUnder(const Eigen::Isometry3d& camFromWorld, 
   return eye + (-b - std::sqrt(root)) * ray;
 }
 
-/// A spot of paint whose middle this is.
+/// A spot of paint about this middle.
 bool isPaint(const std::optional<Eigen::Vector3d>& p) {
   return p && std::any_of(kSpots.begin(), kSpots.end(), [&](const auto& s) { return (*p - s).norm() < 0.5 * kSpotRadius; });
 }
@@ -188,7 +189,7 @@ TEST_F(TextureTest, NominalOwnDepthMapsThatAgreeAreAsked) {
   EXPECT_EQ(rejected.highlights, 8);
   EXPECT_EQ(rejected.rejectedOther, 0);
   EXPECT_GE(rejected.rejectedPaint, off.paint - 2);  // two may lie where the depth maps end
-  // The same evidence goes into a model.
+  // A model is fitted to the same evidence.
   const ProgramRun run = runGlint("evaluate " + inQuotes(folder_ / "scene") +
                                   " --models limit-angle --train spread:4 --set fit.most_residual=0.5 --json -");
   EXPECT_THAT(run.out + run.err, HasSubstr("no evidence (texture, detect.motion)"));
@@ -223,7 +224,7 @@ TEST_F(TextureTest, DegenerateTooFewViewsAreSaidInWords) {
   EXPECT_GE(close.paintFlagged, 12);
   ASSERT_FALSE(words_.empty());
   EXPECT_THAT(*words_.begin(), HasSubstr("the views are too close"));
-  // One view: nothing can be asked.
+  // One view: no other can be asked.
   make(1, 0);
   const Count one = detect("");
   EXPECT_EQ(one.rejectedPaint + one.rejectedOther + one.paintFlagged + one.highlightsFlagged, 0);

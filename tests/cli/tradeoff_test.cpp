@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 class TradeoffCommand : public SmallScene {
  protected:
-  /// Few trials: what is measured is tested elsewhere.
+  /// Few trials suffice: the measurements are tested elsewhere.
   static constexpr const char* kFew = "--models dual,limit-angle --set fit.most_residual=10 --max-trials 6 --repeats 1 ";
   ProgramRun tradeoff(const std::string& more) const { return on("tradeoff", kFew + more); }
 };
@@ -108,7 +108,7 @@ TEST_F(TradeoffCommand, WithoutAHeldOutFrameItIsRefusedBeforeTheFirstTrial) {
     EXPECT_FALSE(fs::exists(folder_ / "t.json"));
     EXPECT_FALSE(fs::exists(folder_ / "t.json.work"));
   }
-  // The default takes six: a scene of six is told the same, and the suggestion works.
+  // The default takes six: a scene of six gets the same message, and its suggestion works.
   scene_["frames"].erase(scene_["frames"].begin() + 6, scene_["frames"].end());
   writeScene();
   const ProgramRun six = tradeoff("--json " + file);

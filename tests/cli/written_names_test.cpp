@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `glint synth` writes inside the folder that was named, whatever the specification calls its frames and meshes, and nothing at all
-// when the specification is wrong.
+// `glint synth` writes inside the folder that was named, whatever the specification calls its frames and meshes, and nothing at
+// all when the specification is wrong.
 #include <gmock/gmock.h>
 
 #include <sstream>
@@ -20,7 +20,8 @@ class WrittenNames : public testing::Test {
   static Json sphere(const Json& frames) {
     Json spec =
         Json::parse(R"({"glint_scene": 1, "camera": {"width": 64, "height": 48, "fx": 80, "fy": 80, "cx": 31.5, "cy": 23.5},
-      "surfaces": {"body": {"analytic": {"type": "sphere", "radius": 0.4}}}, "lights": [{"id": "lamp", "position": [0.3, 0.2, -2]}],
+      "surfaces": {"body": {"analytic": {"type": "sphere", "radius": 0.4}}},
+      "lights": [{"id": "lamp", "position": [0.3, 0.2, -2]}],
       "render": {"reflectance": "ggx", "roughness": 0.2, "bits": 8, "samples": 1}})");
     spec["frames"] = frames;
     for (Json& frame : spec["frames"]) frame["camera_from_world"] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 1.4}, {0, 0, 0, 1}};
@@ -66,7 +67,7 @@ TEST_F(WrittenNames, IdsThatArePathsStayInsideTheFolder) {
 TEST_F(WrittenNames, TruthIsLookedForUnderTheNameThatIsWritten) {
   ASSERT_EQ(synth(sphere({{{"id", "a/b"}}})).code, 0);
   const fs::path scene = folder_ / "a/b/out";
-  // As `synth` maps the id for its photographs, so `--truth` for contours.
+  // `--truth` maps the id for contours as `synth` does for its photographs.
   ASSERT_TRUE(fs::exists(scene / "frames/a%2Fb.png"));
   folder_.write("truth/a%2Fb.json", R"({"levels": 5})");
   const ProgramRun run = runGlint("evaluate " + inQuotes(scene) + " --train 0 --truth " + inQuotes(folder_ / "truth"));

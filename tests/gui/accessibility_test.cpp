@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// For who works by keyboard, hears the window or sees it badly: every control has a name, icons say what they do, pictures say what they show.
+// For people who work by keyboard, hear the window or see it badly: every control has a name, icons say what they do, pictures
+// say what they show.
 #include <QAbstractButton>
 #include <QAbstractItemView>
 #include <QAbstractSlider>
@@ -73,7 +74,7 @@ bool showsIconAlone(const QAbstractButton* button) {
   return button->text().isEmpty() || (tool && tool->toolButtonStyle() == Qt::ToolButtonIconOnly);
 }
 
-/// As somebody finds it again: its class, its name in the program and the panel that it is in.
+/// Words by which a widget is found again: its class, its name in the program and its panel.
 QString whereIs(const QWidget* widget) {
   QStringList path{QStringLiteral("%1 '%2'").arg(QLatin1String(widget->metaObject()->className()), widget->objectName())};
   for (const QWidget* w = widget->parentWidget(); w; w = w->parentWidget())
@@ -81,7 +82,7 @@ QString whereIs(const QWidget* widget) {
   return path.join(QStringLiteral(" in "));
 }
 
-/// What a walk over all of a window's widgets finds missing.
+/// Faults that a walk over all widgets of a window finds.
 QStringList missingIn(const QWidget& window) {
   QStringList missing;
   for (const QWidget* widget : window.findChildren<QWidget*>()) {
@@ -132,7 +133,7 @@ class AccessibilityTest : public QObject {
     QVERIFY2(missing.isEmpty(), qPrintable("\n" + missing.join('\n')));
   }
 
-  /// Whatever the keyboard can go to shows that it is there: more of its pixels change than a text cursor has.
+  /// Each widget that takes the keyboard shows it: more of its pixels change than a text cursor has.
   void everyStopOfTheKeyboardIsSeen() {
     QApplication::setActiveWindow(window_.get());
     QTRY_COMPARE(QApplication::activeWindow(), static_cast<QWidget*>(window_.get()));
@@ -212,7 +213,7 @@ class AccessibilityTest : public QObject {
         "the errors that stand below the photograph");
   }
 
-  /// Frame by frame, and each can be chosen without a mouse or an eye.
+  /// The timeline is read frame by frame, and each frame can be chosen without a mouse or an eye.
   void framesOfTheTimelineAreItsChildren() {
     auto* strip = window_->findChild<TimelineStrip*>();
     QAccessibleInterface* list = QAccessible::queryAccessibleInterface(strip);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Photographs of mirror balls in their window, by real drags and clicks: outlines that are drawn and dragged, lamps whose truth is the reflection law
-// written out here, and the same answer to the last bit as the command line's.
+// Photographs of mirror balls in their window, by real drags and clicks: outlines that are drawn and dragged, lamps whose truth
+// is the reflection law written out here, and the same answer to the last bit as the command line's.
 #include "gui/lamps/ball_window.h"
 
 #include <QApplication>
@@ -43,7 +43,8 @@ const std::vector<Eigen::Vector3d> kTrueLamps{Eigen::Vector3d(0.5, -0.4, -0.8).n
                                               Eigen::Vector3d(-0.6, 0.3, -0.6).normalized(),
                                               Eigen::Vector3d(0.2, 0.5, -0.7).normalized()};
 
-/// Dark balls before a bright wall, each with the clipped reflection of a distant lamp: its normal halves the angle to the camera.
+/// Dark balls before a bright wall, each with the clipped reflection of a distant lamp: its normal halves the angle to the
+/// camera.
 QImage shotUnder(const Eigen::Vector3d& lamp) {
   QImage image(520, 260, QImage::Format_RGB888);
   const Eigen::Vector2d normal = (lamp - Eigen::Vector3d::UnitZ()).normalized().head<2>();
@@ -87,7 +88,7 @@ class BallWindowTest : public QObject {
   void drawnMeasuredAndTheSameAsTheCommand() {
     open();
     QVERIFY(!button("measureLamps")->isEnabled());  // no ball yet
-    // The first one is drawn without pressing anything, a little beside; the second after a button.
+    // The first outline is drawn without a button, a little off; the second after a button.
     dragOn({kTrueBalls[0].centre + Eigen::Vector2d(2, -1), kTrueBalls[0].centre + Eigen::Vector2d(50, 0),
             kTrueBalls[0].centre + Eigen::Vector2d(90, 0)});
     QCOMPARE(int(balls().size()), 1);
@@ -102,7 +103,7 @@ class BallWindowTest : public QObject {
     QVERIFY(std::abs(balls()[1].outline.radius - 81) < 1.5);
     dragOn({before.centre, before.centre + Eigen::Vector2d(20, 20), before.centre + Eigen::Vector2d(1, 1)});
     QVERIFY((balls()[1].outline.centre - before.centre - Eigen::Vector2d(1, 1)).norm() < 1.5);
-    // And set in numbers.
+    // It can also be set in numbers.
     auto* x = window_->findChild<NumberBox*>(QStringLiteral("ballX"));
     x->setFocus();
     x->selectAll();
@@ -119,7 +120,7 @@ class BallWindowTest : public QObject {
       QVERIFY2(degreesBetween(report->lamps[i].direction, kTrueLamps[i]) < kNearEnough,
                qPrintable(QString::number(degreesBetween(report->lamps[i].direction, kTrueLamps[i]))));
     }
-    // Refined outlines are drawn: they are within a pixel of the truth, the drawn ones were not.
+    // Refined outlines are shown: they are within a pixel of the truth, which those drawn by hand were not.
     QCOMPARE(int(report->balls->balls.size()), 2);
     for (const Pixel& p : report->balls->balls[0].outline)
       QVERIFY(std::abs((p - kTrueBalls[0].centre).norm() - kTrueBalls[0].radius) < 1);
@@ -177,7 +178,7 @@ class BallWindowTest : public QObject {
       QCOMPARE(state(), states[i]);
     }
     QVERIFY(!button("redoOutline")->isEnabled());
-    // What is done after a step back ends what could be done again.
+    // A new step after undo leaves nothing to redo.
     click("undoOutline");
     click("addBall");
     QVERIFY(!button("redoOutline")->isEnabled());
@@ -196,7 +197,7 @@ class BallWindowTest : public QObject {
     QCOMPARE(int(balls().size()), 1);
     QVERIFY((balls()[0].outline.centre - kTrueBalls[0].centre).norm() < 1);
     QVERIFY(std::abs(balls()[0].outline.radius - 90) < 1);
-    // Three on a line are none, and it is said.
+    // Three points on a line give no circle, and a message says so.
     click("drawThroughRim");
     for (const double at : {100.0, 150.0, 200.0}) clickOn({at, 30});
     QCOMPARE(int(balls().size()), 1);
@@ -219,7 +220,7 @@ class BallWindowTest : public QObject {
     click("measureLamps");
     QVERIFY(window_->idle() && !window_->report());
     QTRY_VERIFY(window_->findChild<QLabel*>(QStringLiteral("complaint")));
-    // Which field, and why; and it can be typed anew at once.
+    // The message names the field and the reason, and the field can be typed in again at once.
     const auto told = [this] { return window_->findChild<QLabel*>(QStringLiteral("ballStatus"))->text(); };
     QCOMPARE(told(), QStringLiteral("Camera, pixels: expected fx,fy,cx,cy or fx,fy,cx,cy,k1,k2,p1,p2[,k3]"));
     QCOMPARE(window_->focusWidget(), static_cast<QWidget*>(camera));
@@ -237,7 +238,7 @@ class BallWindowTest : public QObject {
     QCOMPARE(told(), QStringLiteral("Ball radius, metres: must be above 0"));
     QCOMPARE(window_->focusWidget(), static_cast<QWidget*>(metres));
     metres->clear();
-    // An outline where no ball is: no answer, with the reason, and nothing of an earlier one.
+    // An outline where no ball is gives the reason in place of an answer, and nothing of an earlier one stays.
     auto* radius = window_->findChild<NumberBox*>(QStringLiteral("ballRadiusPx"));
     radius->setValue(20);
     window_->findChild<NumberBox*>(QStringLiteral("ballX"))->setValue(262);
@@ -245,7 +246,7 @@ class BallWindowTest : public QObject {
     click("measureLamps");
     QTRY_VERIFY_WITH_TIMEOUT(window_->idle(), 120000);
     QVERIFY(!window_->findChild<QLabel*>(QStringLiteral("ballStatus"))->text().isEmpty());
-    // In words of the window, which has no options of a command line.
+    // The words are the window's, which has no options of a command line.
     const auto said = [this] { return window_->findChild<QLabel*>(QStringLiteral("ballStatus"))->text(); };
     window_->findChild<NumberBox*>(QStringLiteral("ballX"))->setValue(2000);
     click("measureLamps");

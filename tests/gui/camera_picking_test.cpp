@@ -80,7 +80,8 @@ class CameraPickingTest : public QObject, SceneFixture {
     QVERIFY(panel_->view().looksThrough());
   }
 
-  /// Cameras are drawn as lines: what lies between them is theirs, too, whether the surface is behind it or before it.
+  /// Cameras are drawn as lines. What lies between the lines belongs to the camera, too, whether the surface is behind it or
+  /// before it.
   void aRightClickInsideACameraIsOneOnIt() {
     showOnly({"cameras", "surface"});
     largeCameras();
@@ -110,7 +111,7 @@ class CameraPickingTest : public QObject, SceneFixture {
     };
     const Eigen::Vector3d eye = document_->scene()->frames[11].camera.centreInWorld(), depth(0, 0, kDepth);
     const auto corners = viz::imagePlane(document_->scene()->frames[11].camera, kDepth);
-    // From behind it, its image plane is its outline.
+    // Seen from behind, a camera has its image plane as outline.
     lookFrom(eye - Eigen::Vector3d(0, 0, 4), eye);
     const auto backside = panel_->view().pickCamera(display(insideOf(11)).x(), display(insideOf(11)).y());
     QVERIFY(backside && (backside->position - eye).norm() < 0.1 * kDepth);
@@ -121,7 +122,7 @@ class CameraPickingTest : public QObject, SceneFixture {
     lookFrom(eye + Eigen::Vector3d(0.03, 0, 4), eye);
     const auto front = panel_->view().pickCamera(display(eye + depth).x(), display(eye + depth).y());
     QVERIFY(front && (front->position - eye - depth).norm() < 0.1 * kDepth);
-    // Sideways they stand one behind the other, and sides are all that is seen of them.
+    // Seen sideways the cameras stand one behind the other and show only their sides.
     for (const auto& [from, nearest] : {std::pair(-4.0, 11), std::pair(4.0, 0)}) {
       const Eigen::Vector3d there = document_->scene()->frames[std::size_t(nearest)].camera.centreInWorld();
       lookFrom(there + Eigen::Vector3d(from, 0, 0.5 * kDepth), insideOf(nearest));
@@ -174,7 +175,7 @@ class CameraPickingTest : public QObject, SceneFixture {
     renderer->WorldToDisplay();
     return {int(renderer->GetDisplayPoint()[0]), int(renderer->GetDisplayPoint()[1])};
   }
-  /// So that their insides are wider than what a click on a line may miss, and none overlaps the next.
+  /// Makes the insides of cameras wider than a click on a line may miss, without overlap.
   void largeCameras() { document_->setOption("scene/glyph-scale", 1.5, "large cameras"); }
   static constexpr double kDepth = 0.3;  ///< m, of a drawn camera then: 0.8 of the 0.25 m between two, times 1.5
   Eigen::Vector3d insideOf(int frame) {

@@ -97,7 +97,7 @@ class CapturesTest : public QObject {
     window.open(path(""));
     answerDialog<QFileDialog>([](QFileDialog& dialog) { dialog.reject(); });
     QVERIFY2(press(window, QString::fromUtf8("Choose mesh…")), qPrintable(window.lastError()));
-    // Whoever cancels finds the question again.
+    // After Cancel the question can be found again.
     answerDialog<QFileDialog>([&](QFileDialog& dialog) {
       auto* name = dialog.findChild<QLineEdit*>(QStringLiteral("fileNameEdit"));
       name->setText(elsewhere.filePath("object.ply"));
@@ -109,7 +109,7 @@ class CapturesTest : public QObject {
              elsewhere.filePath("object.ply"));
   }
 
-  /// Who stands one level too high is led to the folder that is meant.
+  /// A person who opens the folder one level too high is led to the right one.
   void aFolderInsideIsOffered() {
     putColmap(path("work/model"));
     put(path("work/notes.txt"), "nothing");

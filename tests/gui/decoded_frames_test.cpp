@@ -16,7 +16,7 @@ constexpr int kSide = 16, kBytes = kSide * kSide * int(sizeof(float));  // of an
 constexpr FrameSource kPhotograph = FrameSource::Image;
 
 FramePictures ofFiles() { return {std::make_shared<const Scene>()}; }
-/// As if a what-if rendered them: the results themselves are not looked at.
+/// Results that look as if a what-if rendered them; their content does not matter.
 FramePictures rendered(const FramePictures& files, const QString& key) {
   FramePictures pictures = files;
   pictures.key = key;

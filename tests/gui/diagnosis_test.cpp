@@ -49,7 +49,7 @@ class DiagnosisTest : public QObject {
     }
     return all;
   }
-  /// Those that are listed: what a change of the list took away is deleted later.
+  /// The buttons that are listed now: those that a change of the list removed are deleted later.
   static QList<QPushButton*> tries(const DiagnosisPanel& panel) {
     QList<QPushButton*> all;
     const QTreeWidgetItem* const top = panel.list()->topLevelItem(0);
@@ -144,7 +144,7 @@ class DiagnosisTest : public QObject {
     QCOMPARE(document.request().excluded, std::vector<int>{2});
     QCOMPARE(document.undoStack()->index(), steps + 1);
     QCOMPARE(document.undoStack()->undoText(), QStringLiteral("Try: leave out v2"));
-    // Of the state before: until the new one is asked about, there is nothing to try.
+    // The list is of the state before: until the new state is asked about, there is nothing to try.
     for (const QPushButton* const button : tries(panel)) QVERIFY(!button->isEnabled());
     compute(document);
     QCOMPARE(panel.problems(), 0);
@@ -158,7 +158,7 @@ class DiagnosisTest : public QObject {
     QVERIFY(tryOf(panel, QStringLiteral("--exclude v2")));
   }
 
-  /// The action (menu, palette, a script) does what a click on the first "Try" does, and says so where there is none.
+  /// The action (menu, palette, a script) does what a click on the first "Try" does, and says so if there is no such button.
   void theFirstRemedyIsAnAction() {
     Document document(parseTrainSpec);
     DiagnosisPanel panel(document);
@@ -190,7 +190,8 @@ class DiagnosisTest : public QObject {
     QVERIFY(document.request() == clicked);
   }
 
-  /// A better model that is there already: "Try" selects it, the verdict is then about that one, and offers nothing that is on screen.
+  /// Where a better model is computed already, "Try" selects it; the verdict is then about that model, and offers nothing that is
+  /// on screen.
   void anotherModelIsSelectedAndTheVerdictIsAboutIt() {
     Document document(parseTrainSpec);
     DiagnosisPanel panel(document);
@@ -217,7 +218,7 @@ class DiagnosisTest : public QObject {
     QVERIFY2(lines(panel).value(0).startsWith(QStringLiteral("Nothing is left to improve: limit-angle is best")),
              qPrintable(lines(panel).join("\n")));
     QVERIFY(!tryOf(panel, QStringLiteral("--model limit-angle")));
-    // A click on a line of the other model makes that the one on screen, without moving the line away.
+    // A click on a line of the other model shows that model, without moving the line away.
     QTreeWidgetItem* const other = panel.list()->findItems(QStringLiteral("primal"), Qt::MatchStartsWith).value(0);
     QVERIFY(other);
     const int place = panel.list()->indexOfTopLevelItem(other);
@@ -228,7 +229,7 @@ class DiagnosisTest : public QObject {
     QVERIFY(tryOf(panel, QStringLiteral("--model limit-angle"))->isEnabled());
   }
 
-  /// One that was not computed is added.
+  /// A better model that was not computed is added.
   void anotherModelIsAdded() {
     Document document(parseTrainSpec);
     DiagnosisPanel panel(document);
@@ -285,7 +286,8 @@ class DiagnosisTest : public QObject {
     QCOMPARE(panel.list()->topLevelItemCount(), 0);
   }
 
-  /// From a change until its results are there: at every moment the list is of one state, whatever was asked and is selected meanwhile.
+  /// From a change until its results are there: at every moment the list is of one state, whatever is asked for and selected
+  /// meanwhile.
   void causesOfTwoStatesNeverStandBesideEachOther() {
     Document document(parseTrainSpec);
     DiagnosisPanel panel(document);

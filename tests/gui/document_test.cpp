@@ -144,7 +144,7 @@ class DocumentTest : public QObject {
     QVERIFY(document_->stale() && !document_->inspection());
   }
 
-  /// As a run does it: the views go back to what is computed, and what is pinned stays.
+  /// Results come as from a run: the views go back to what is computed, and what is pinned stays.
   void pinnedResultsStayBesideThoseThatComeBack() {
     const auto first = showResults();
     QVERIFY(document_->pin());
@@ -221,7 +221,7 @@ class DocumentTest : public QObject {
     QCOMPARE(titleOf(*document_), QStringLiteral("vase.glint"));
   }
 
-  /// The history says what was meant, not where it happened to be.
+  /// The history names what was meant, not its coordinates.
   void aSelectionsNameIsWhatWasChosen() {
     draw::Selection s;
     const auto after = [this, &s] {

@@ -65,7 +65,7 @@ class ExplainTest : public QObject {
     }
   }
 
-  /// The cones of primal and dual go through the observed ellipses: canonical ones would be no part of their picture.
+  /// The cones of primal and dual go through the observed ellipses: canonical ones do not belong to their picture.
   void theConesOfAModelStandWithItsOwnEllipses() {
     for (const auto& [model, canonical] : {std::pair("canonical", true), std::pair("primal", false), std::pair("dual", false)}) {
       select(1, model);
@@ -77,7 +77,7 @@ class ExplainTest : public QObject {
     }
   }
 
-  /// Steps whose words depend on the model must not show those of another one.
+  /// Steps whose words depend on the model must not show words of another model.
   void aModelWithoutWordsHasNotThoseOfAnother() {
     for (const ExplainText& t : explainTexts().steps) {
       QVERIFY2(t.words(QStringLiteral("canonical")).text == t.text, qPrintable(t.id));
@@ -123,7 +123,8 @@ class ExplainTest : public QObject {
     QVERIFY(!window_->findChild<SymbolLinks*>()->lit().planeShown());
   }
 
-  /// What is clicked in 3D, and a training frame that is selected, lights its plane there. The main window's keys work, too; Esc closes it.
+  /// A click in 3D lights its plane there, and so does a selected training frame. The main window's keys work, too; Esc closes
+  /// the window.
   void theWindowOfPrimalAndDualFollowsThe3dViewAndKnowsTheKeys() {
     window_->actions().find("explain.duality")->trigger();
     auto* shown = window_->findChild<DualityWindow*>("duality");
@@ -193,7 +194,7 @@ class ExplainTest : public QObject {
     QVERIFY(!panel_->findChild<QTextBrowser*>("explain.text")->toPlainText().contains("the model fails"));
   }
 
-  /// What was asked for before is of no use then, and may still run.
+  /// An earlier request is of no use then, and may still run.
   void leavingAndComingBackAtOnceComputesAgain() {
     Document& d = window_->document();
     d.selectFrame(d.frameCount() - 1);
@@ -267,7 +268,7 @@ class ExplainTest : public QObject {
     QCOMPARE((eye() - primal).norm(), 0.0);
   }
 
-  /// Who has turned the wheel on the photograph has chosen what is seen of it.
+  /// A person who turned the wheel on the photograph has chosen what is seen of it.
   void whatTheUserZoomedToStays() {
     FrameCanvas* canvas = window_->framePanel()->canvas();
     goTo("peak");
@@ -491,7 +492,7 @@ class ExplainTest : public QObject {
     }
   }
 
-  /// What was observed and what was predicted, in a frame that has not trained.
+  /// The observed and the predicted contour, in a frame that did not train.
   void aHeldOutFrameSaysWhatIsObserved() {
     Document& d = window_->document();
     for (const int frame : {0, d.frameCount() - 1}) {
@@ -505,7 +506,7 @@ class ExplainTest : public QObject {
     }
   }
 
-  /// A training frame's camera is no new one.
+  /// The camera of a training frame is not a new one.
   void aProjectionSaysWhetherTheCameraIsNew() {
     Document& d = window_->document();
     bool both[2] = {false, false};
@@ -521,7 +522,7 @@ class ExplainTest : public QObject {
     QVERIFY(both[0] && both[1]);
   }
 
-  /// A symbol and its arrow, whichever is pointed at; a number's symbol as well.
+  /// A symbol and its arrow light up together, whichever is pointed at; so does a number's symbol.
   void aSymbolAndItsArrowLightUpTogether() {
     select(0, "canonical");
     goTo("tangent-plane");

@@ -65,7 +65,7 @@ class ExportTest : public QObject {
     QCOMPARE(back.request.settings.number("detect.level"), 0.4);
     QCOMPARE(back.request.excluded, std::vector<int>{5});
     QCOMPARE(back.selection.frame, 2);
-    // A picture may come from others: where it says that it was saved is no place to save to.
+    // A picture may come from others: the place where it says that it was saved is no place to save to.
     QVERIFY(back.unsaved && !back.isSession && back.warning.empty());
     QCOMPARE(toQString(back.path), file);
   }
@@ -153,7 +153,7 @@ class ExportTest : public QObject {
     QVERIFY2(std::abs(printed - shown) < 1e-9, qPrintable(QStringLiteral("%1 %2").arg(printed).arg(shown)));
   }
 
-  /// Opened by a relative path, with a frame excluded, and pasted into a shell that stands elsewhere.
+  /// The session is opened by a relative path, a frame is excluded, and the command is run by a shell in another folder.
   void theCommandWorksInAnyFolder() {
     const QString stood = QDir::currentPath();
     QVERIFY(QDir::setCurrent(QFileInfo(kSession).path()));
@@ -191,7 +191,7 @@ class ExportTest : public QObject {
     QGuiApplication::clipboard()->setText("untouched");
     window_->actions().find("export.command")->trigger();
     QCOMPARE(QGuiApplication::clipboard()->text(), QStringLiteral("untouched"));
-    // As if it had been saved: the session computes it.
+    // The session computes it, as if it had been saved.
     d.markSaved("/some where/a b.glint", d.state());
     QVERIFY(window_->exports()->command());
     QCOMPARE(toQString(*window_->exports()->command()), QStringLiteral("glint evaluate '/some where/a b.glint'"));
@@ -317,7 +317,7 @@ class ExportTest : public QObject {
     for (const QString& line : table) QVERIFY2(again.contains(line), qPrintable(line));
   }
 
-  /// Named by a relative path, as from a shell: no part of it is left.
+  /// The scene is named by a relative path, as from a shell; no part of the path is left.
   void theDiagnosticReportNamesNoPartOfARelativePath() {
     const QDir shared(folder_.filePath("private name/deeper"));
     QVERIFY(QDir().mkpath(shared.path()));

@@ -168,7 +168,7 @@ class FigureTest : public QObject {
     wait();
     const QImage one(file);
     QVERIFY2(differ(wiped, one) < 200, qPrintable(QString::number(differ(wiped, one))));  // the line is 180 px long
-    // From elsewhere it is another picture, with fewer models too.
+    // Another point of view gives another picture, and so do fewer models.
     window_->findChild<ScenePanel*>()->lookAlong(viz::AxisView::Right);
     window_->exports()->figures()->writeScene({{800, 300}, false, true}, file);
     wait();
@@ -232,7 +232,7 @@ class FigureTest : public QObject {
     d.setOption("scene/models-2", "dual", "B as A");
     QVERIFY2(!texts(1).contains(QStringLiteral("contour error")), qPrintable(texts(1)));
     QVERIFY2(with > legendOfB() + 50, qPrintable(QString::number(with)));
-    // Layers of its own are something else, too; a view that has no room has none.
+    // A view with layers of its own differs, too; without room it has no legend.
     d.setOption("scene/layers-2", " cameras ", "cameras in B");
     QVERIFY2(texts(1).contains(QStringLiteral("contour error")), qPrintable(texts(1)));
     d.setOption("scene/wipe", 0.97, "aside");
@@ -284,7 +284,7 @@ class FigureTest : public QObject {
     QVERIFY(less.contains(QStringLiteral(">canonical<")));
   }
 
-  /// Without it nobody can tell the lines of real and virtual cameras apart; in the window it stands above the pictures.
+  /// Only the key tells the lines of real and virtual cameras apart; in the window it stands above the pictures.
   void twoFramesKeepTheKeyOfTheirLines() {
     window_->document().setOption("frame/side-by-side", "on", "two frames");
     const FigureLook look{{1000, 400}, false, false};
@@ -311,7 +311,7 @@ class FigureTest : public QObject {
     }
   }
 
-  /// A typed size is that of the picture it was typed for.
+  /// A typed size belongs to the picture for which it was typed.
   void aTypedSizeTakesTheShapeOfWhatIsShown() {
     const auto dialog = [](const QSize& shown) { return std::make_unique<FigureDialog>("figure", "shape", shown, nullptr); };
     auto asked = dialog({400, 300});
@@ -362,7 +362,7 @@ class FigureTest : public QObject {
     window_->document().selectFrame(5);
     QTRY_VERIFY_WITH_TIMEOUT(window_->idle(), 20000);
     FrameCanvas* canvas = window_->framePanel()->canvas();
-    // Nothing that a key would name: the key takes a part of the figure.
+    // Here a key would name nothing, because the key takes a part of the figure.
     window_->document().setLayerVisible("frame/observed", "Observed", false);
     for (const std::string& model : window_->document().request().models)
       window_->document().setLayerVisible("frame/model/" + model, model.c_str(), false);
@@ -543,7 +543,7 @@ class FigureTest : public QObject {
     };
     dropOn(window_.get(), photograph(*window_->document().scene(), 4));
     QCOMPARE(window_->document().selection().frame, 4);
-    // Of another scene: that is opened.
+    // A photograph of another scene opens that scene.
     const Scene vase = readScene((kSessions + "vase/scene.json").toStdString());
     dropOn(window_.get(), photograph(vase, 3));
     QTRY_VERIFY_WITH_TIMEOUT(window_->document().inputFile().contains("vase"), 20000);
@@ -551,7 +551,7 @@ class FigureTest : public QObject {
     window_->open(photograph(vase, 5));  // from the command line: as if it were dropped
     QCOMPARE(window_->document().selection().frame, 5);
     window_->document().selectFrame(3);
-    // Of none
+    // A picture that belongs to no scene is refused.
     const QString stray = folder_.filePath("stray.jpg");
     QVERIFY(QImage(8, 8, QImage::Format_RGB32).save(stray));
     dropOn(window_.get(), stray);

@@ -53,7 +53,7 @@ Opened Fixture::opened() const {
 }
 
 namespace {
-/// A session as it was opened, and what was computed of it first.
+/// A session as it was opened, and its first results.
 struct KnownSession {
   Opened opened;
   std::shared_ptr<const Inspection> result;

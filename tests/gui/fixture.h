@@ -35,9 +35,9 @@ class Fixture {
 /// The stand-in's result.
 Inspection drawnCircles(std::shared_ptr<const Scene> scene, const InspectionRequest& request);
 
-/// The program's engine, which opens and computes each file below `folder` ("" = the sessions that ship) once in a process: tests open the
-/// same one in every function. What it knows is given as the earlier result from which the next one is computed, so that a changed request
-/// is computed as ever.
+/// The program's engine, which opens and computes each file below `folder` ("" = the sessions that ship) once in a process: tests
+/// open the same one in every function. Its known results serve as the earlier ones from which the next are computed, so that a
+/// changed request is computed as ever.
 Engine knownEngine(const QString& folder = {});
 
 /// Presses the left button, moves through the points with it held, and releases it at the last one.

@@ -17,8 +17,8 @@ constexpr double kLineX = 100.25;
 
 QImage grabbed(FrameCanvas& canvas) { return canvas.grab().toImage().convertToFormat(QImage::Format_RGB32); }
 
-/// Centre of mass of the pure red along one row, in device pixel coordinates where a pixel's centre is at +0.5; -1 when there is
-/// none.
+/// Centre of mass of the pure red along one row, in device pixel coordinates where a pixel's centre is at +0.5; -1 without red
+/// pixels.
 double redCentre(const QImage& image, int row) {
   double sum = 0, weighted = 0;
   for (int x = 0; x < image.width(); ++x) {

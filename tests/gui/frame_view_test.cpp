@@ -66,7 +66,7 @@ class FrameViewTest : public QObject {
     QVERIFY(canvas->grab().toImage() == plain);
   }
 
-  /// From frame to frame one compares the highlight: it stays in the middle until the view is moved or shows the whole.
+  /// The highlight stays in the middle from frame to frame, to be compared, until the view is moved or shows the whole.
   void zoomedToTheHighlightItFollowsFromFrameToFrame() {
     FrameCanvas* canvas = frame_->canvas();
     const auto middle = [&](int frame) {
@@ -87,7 +87,7 @@ class FrameViewTest : public QObject {
     document_->selectFrame(3);
     settle();
     QVERIFY(canvas->fitted());
-    // Moved by hand it stays where it was put.
+    // After a move by hand the view stays where it was put.
     frame_->goToHighlight();
     QTest::mousePress(canvas, Qt::LeftButton, {}, QPoint(200, 200));
     QMouseEvent drag(QEvent::MouseMove, QPoint(260, 260), Qt::LeftButton, Qt::LeftButton, {});  // QTest's own has no button
@@ -99,7 +99,7 @@ class FrameViewTest : public QObject {
     QVERIFY((canvas->centre() - moved).norm() < 1e-9);
   }
 
-  /// The pixels of a session under every lobe: drawn and named, of the frame that is shown, and gone with their layer.
+  /// The pixels of a session under every lobe are drawn and named for the frame that is shown, and go with their layer.
   void everyLobeOverThePhotograph() {
     Opened opened = coreEngine().open(GLINT_SOURCE_DIR "/sessions/plane/plane.glint", {});
     opened.request.models = {"canonical"};
@@ -148,7 +148,7 @@ class FrameViewTest : public QObject {
     QTRY_VERIFY(folded->isHidden() && !observed->isHidden());
   }
 
-  /// Else one would wonder why the highlight of the photograph stays where it was.
+  /// Words say why the highlight of the photograph stays where it was.
   void itSaysWhatIsNotAsCaptured() {
     FrameCanvas* canvas = frame_->canvas();
     const auto caption = [&](const WhatIf& w) {
@@ -197,7 +197,7 @@ class FrameViewTest : public QObject {
     w = document_->request().whatIf;
     QVERIFY((w.highlights.at({0, 0}).peakBy + moved).norm() < 1e-9);
     QVERIFY((w.highlights.at({0, 0}).contourBy - moved).norm() < 1e-9);
-    // Beside everything the picture moves again.
+    // Away from everything, a drag moves the picture again.
     const Pixel before = canvas->centre();
     drag(canvas, {QPoint(5, 5), QPoint(25, 25), QPoint(45, 25)});
     QVERIFY((canvas->centre() - before).norm() > 1);
@@ -207,7 +207,8 @@ class FrameViewTest : public QObject {
     QVERIFY(document_->request().whatIf.none());
   }
 
-  /// Until the results follow: the contour or the peak where the hand has it, and nothing of the other.
+  /// Until the results follow, the contour or the peak that the hand holds is drawn where the hand has it, and the other is not
+  /// drawn.
   void whatTheHandHoldsIsDrawnWhereItIs() {
     auto* hand = frame_->findChild<HandTool*>();
     QVERIFY(hand);
@@ -293,7 +294,8 @@ class FrameViewTest : public QObject {
 
   void aClickOnAPredictedContourSelectsModelAndPoint() {
     FrameCanvas* canvas = frame_->canvas();
-    // The first model's circle lies 8 px to the right of the observed one (fixture): its rightmost point belongs to nobody else.
+    // The first model's circle lies 8 px to the right of the observed one (fixture): its rightmost point belongs to no other
+    // contour.
     const std::string model = document_->request().models.front();
     const QPointF at = canvas->widgetFromPixel(Fixture::centre(0) + Pixel(Fixture::kRadius + 8, 0));
     QTest::mouseClick(canvas, Qt::LeftButton, {}, at.toPoint());
@@ -355,7 +357,7 @@ class FrameViewTest : public QObject {
     settle();
     QVERIFY(frame_->secondCanvas()->isVisible());
     QVERIFY(frame_->secondCanvas()->hasPicture());
-    // The stand-in fits no ellipses: the reason's name is said in the place of the number, and all of it by the tool tip.
+    // The stand-in fits no ellipses: the reason's name stands in place of the number, and the tool tip has all of it.
     const auto* miss = frame_->findChild<QLabel*>(QStringLiteral("epipolarMiss"));
     QVERIFY(miss->text().contains(QStringLiteral("too few points")));
     QVERIFY(miss->toolTip().contains(QStringLiteral("no ellipse")));
@@ -370,7 +372,7 @@ class FrameViewTest : public QObject {
     QVERIFY(!frame_->secondCanvas()->isVisible());
   }
 
-  /// In a low panel the layers' buttons scroll; what the lines of a pair are stays whole.
+  /// In a low panel the layers' buttons scroll; the key to the lines of a pair stays whole.
   void theBarOfAPairIsWholeInALowPanel() {
     document_->setOption("frame/side-by-side", "on", QString());
     for (const QSize size : {QSize(700, 700), QSize(490, 420), QSize(420, 360)}) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Names from files that look like markup, or hold line ends, escapes and marks that turn the direction of writing: every widget of the
-// window shows them as they are, or escaped.
+// Names from files that look like markup, or hold line ends, escapes and marks that turn the direction of writing: every widget
+// of the window shows them as they are, or escaped.
 #include <QAbstractItemView>
 #include <QAction>
 #include <QDir>
@@ -38,7 +38,7 @@ namespace {
 const QString kMarkup = QStringLiteral("<b>x</b><img src='file:///nowhere.png'>&amp");
 /// A line end, a terminal's escape, a mark that writes the rest from right to left, and an end of line of another kind.
 const QString kControls = QStringLiteral("a\nb\x1b[31m") + QChar(0x202E) + QStringLiteral("gpj.exe") + QChar(0x2028);
-/// What of that the reader lets into the names of a scene: ids with control characters are refused.
+/// The part of it that the reader accepts in the names of a scene: ids with control characters are refused.
 const QString kTurned = QChar(0x202E) + QStringLiteral("gpj.exe") + QChar(0x2028);
 
 bool isControl(QChar c) {
@@ -70,7 +70,7 @@ class HostileNamesTest : public QObject {
     checkAll(window, "opened");
     QVERIFY2(seen_.contains(kMarkup.toHtmlEscaped()) || seen_.contains(kMarkup), "the names are on screen");
 
-    // What goes wrong names files. (Another window: this one would ask whether to save first.)
+    // Error messages name files. (Another window: this one would ask whether to save first.)
     MainWindow failing(coreEngine());
     failing.show();
     auto* bar = failing.findChild<MessageBar*>(QStringLiteral("messageBar"));

@@ -100,7 +100,7 @@ class JobsTest : public QObject {
     QVERIFY(found);
   }
 
-  /// Overtaken between its end and the moment at which that is told.
+  /// A job is overtaken between its end and the moment at which the end is reported.
   void whatHasEndedCanStillBeOvertaken() {
     JobQueue queue;
     std::vector<bool> overtaken;
@@ -256,7 +256,7 @@ class JobsTest : public QObject {
         [&](const JobResult<void>& result) { failure = result.failure(); });
     QTRY_COMPARE(failure, QString("cannot be drawn"));
     QCOMPARE(seen, 1);
-    // Who waits for an owner that does not come back is let go.
+    // A job that waits for an owner that does not come back is let go.
     auto ending = std::make_unique<JobQueue>();
     Gate gate;
     bool stopped = false, ran = false;
@@ -303,7 +303,7 @@ class JobsTest : public QObject {
     QTRY_COMPARE(told, kQueues);
   }
 
-  /// For the thread sanitizer: asked for, dropped and ended in quick succession.
+  /// For the thread sanitizer: jobs are asked for, dropped and ended in quick succession.
   void manyQueuesComeAndGo() {
     std::atomic<int> ran{0};
     for (int round = 0; round < 60; ++round) {

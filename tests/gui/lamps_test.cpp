@@ -31,7 +31,7 @@ QByteArray bytesOf(const QString& file) {
   return f.open(QIODevice::ReadOnly) ? f.readAll() : QByteArray();
 }
 
-/// What the command line writes of the same input.
+/// What the command line writes for the same input.
 QByteArray byCommand(const QStringList& arguments, const QString& output) {
   QProcess program;
   program.start(QStringLiteral(GLINT_CLI), QStringList{"lights"} + arguments + QStringList{"-o", output});
@@ -96,7 +96,7 @@ class LampsTest : public QObject {
     window.open(toQString(file));
     QTRY_VERIFY_WITH_TIMEOUT(window.lamps()->ofScene()->lamps() && window.idle(), 120000);
     QVERIFY(window.document().inspection());
-    // It is said again in the next file, whatever is undone; a scene that is opened then has none.
+    // The next file says it again, whatever is undone; a scene that is opened then does not have it.
     QCOMPARE(QString::fromStdString(window.document().toSave().options.at("lamps/measured")), QStringLiteral("1"));
     window.open(kTwoLamps);
     QTRY_VERIFY_WITH_TIMEOUT(window.document().inspection() && window.idle(), 120000);
@@ -162,7 +162,7 @@ class LampsTest : public QObject {
     QCOMPARE(table->currentLamp(), 0);
   }
 
-  /// Training frames are not what lamps depend on; the level is.
+  /// Lamps depend on the level, not on training frames.
   void becomesStale(MainWindow& window) {
     auto* badge = window.lamps()->panel()->findChild<QLabel*>(QStringLiteral("staleBadge"));
     QVERIFY(badge);

@@ -69,11 +69,11 @@ class LessonsTest : public QObject {
       // Every link is an action.
       for (const QString& part : panel_->findChild<QTextBrowser*>("explain.text")->toHtml().split("href=\"action:").mid(1))
         QVERIFY2(window_->actions().find(part.section('"', 0, 0)), qPrintable(part.section('"', 0, 0)));
-      // Its steps are listed once: by the list, not by the text as well.
+      // Its steps are listed once: in the list, and not in the text as well.
       QCOMPARE(panel_->findChild<QListWidget*>("explain.steps")->count(), lesson.steps.size());
       const QString first = panel_->findChild<QListWidget*>("explain.steps")->item(0)->text().section("  ", 1);
       QVERIFY2(!first.isEmpty() && !shown.contains("1. " + first), qPrintable(first));
-      // Through its own steps, and through no other, each with its remark.
+      // The lesson leads through its own steps alone, each with its remark.
       QTest::mouseClick(panel_->findChild<QToolButton*>("explain.next"), Qt::LeftButton);
       const ExplainText& step = explainTexts().steps[panel_->step()];
       QVERIFY2(lesson.steps.contains(step.id), qPrintable(step.id));
@@ -177,7 +177,7 @@ class LessonsTest : public QObject {
     QCOMPARE(window_->document().option("frame/epipolar", std::string("both")), std::string("both"));
   }
 
-  /// As lesson 1 says: from the text, where the focus is after its link was clicked.
+  /// Escape does what lesson 1 says also from the text, which has the focus after a click on its link.
   void escapeLeavesTheVirtualCameraFromTheText() {
     open("mirror");
     window_->activateWindow();
@@ -191,7 +191,7 @@ class LessonsTest : public QObject {
     QTRY_VERIFY(!through->isChecked());
   }
 
-  /// Beside the lesson's steps: the way leads back to them.
+  /// From a step outside of the lesson a way leads back to its steps.
   void aStepBesideTheLessonLeadsBackToIt() {
     open("bent-mirror");  // tangent-plane, virtual-camera, limit-angles
     window_->actions().find("explain.step-contour")->trigger();
@@ -240,7 +240,7 @@ class LessonsTest : public QObject {
     reader->close();
   }
 
-  /// In the ink of either theme; a symbol that is lit has another colour in its place, and nothing else has it.
+  /// Equations are in the ink of either theme; only a lit symbol has another colour, at its place.
   void equationsAreInOneInkAndASymbolLightsUpAlone() {
     const QColor lit(255, 0, 0);
     for (const Equation& e : equations()) {
@@ -278,7 +278,7 @@ class LessonsTest : public QObject {
     }
   }
 
-  /// Nobody sees the plain form, but it is found, read aloud and copied; the picture is as large as the text.
+  /// The plain form is not visible, but it is found, read aloud and copied; the picture is as large as the text.
   void equationsGrowWithTheTextAndAreCopiedInPlainForm() {
     EquationBrowser page;
     page.resize(900, 300);
@@ -381,7 +381,7 @@ class LessonsTest : public QObject {
     QCOMPARE(walk.step(), paused + 1);
     window_->document().undoStack()->undo();
     QCOMPARE(walk.step(), paused);
-    // To the end it stops by itself.
+    // At the end the walk stops by itself.
     window_->document().setOption("explain/walk-step", double(last - 3), "near the end");
     window_->actions().find("explain.play-walk")->trigger();
     QTRY_VERIFY(!walk.playing());
@@ -506,7 +506,7 @@ class LessonsTest : public QObject {
     panel_->leave();
     QCOMPARE(d.option("frame/epipolar", std::string()), std::string());
     QTRY_VERIFY(miss->isVisible());
-    // Who wants only those of the real cameras gets them back.
+    // Only those of the real cameras can be chosen again.
     d.setOption("frame/epipolar", "real", "lines");
     window_->actions().find("explain.step-peak")->trigger();
     QCOMPARE(d.option("frame/epipolar", std::string()), std::string("off"));
@@ -527,7 +527,7 @@ class LessonsTest : public QObject {
     return document.toPlainText();
   }
   QString place() const { return panel_->findChild<QLabel*>("explain.place")->text(); }
-  /// Without the pictures: the plain form of each stands behind it.
+  /// The text without pictures: the plain form of each picture stands behind it.
   QString text() const {
     return panel_->findChild<QTextBrowser*>("explain.text")->toPlainText().remove(QChar::ObjectReplacementCharacter);
   }

@@ -153,7 +153,8 @@ class LinkingTest : public QObject {
     }
   }
 
-  /// While a slider moves, numbers change and their columns stay; an error far beyond the highlight's size is only that.
+  /// While a slider moves, numbers change and their columns stay in place; an error far beyond the highlight's size is shown as
+  /// such.
   void theSummarysColumnsStayWhereTheyAre() {
     auto* summary = table_->findChild<QLabel*>(QStringLiteral("errorSummary"));
     QSet<int> widths;
@@ -245,7 +246,7 @@ class LinkingTest : public QObject {
     QVERIFY(summary->text().contains("spurious"));
   }
 
-  /// The errors are of what was matched: a mean over few highlights needs the number of those that were missed beside it.
+  /// Errors are those of matched highlights: a mean over few of them needs the number of missed ones beside it.
   void whatIsMissedIsSaidBeforeTheTailsOfTheErrors() {
     auto* summary = table_->findChild<QLabel*>(QStringLiteral("errorSummary"));  // the last frame's is missed by every model
     bool left = false;
@@ -292,7 +293,7 @@ class LinkingTest : public QObject {
     QVERIFY2(numbers.contains("Warning: the fit explains <b>its</b> views poorly"), qPrintable(numbers));
   }
 
-  /// As in plots and photographs: the square before the name of a model that is poor.
+  /// The square before the name of a poor model looks as in plots and photographs.
   void aPoorModelsSquareIsPale() {
     auto* summary = table_->findChild<QLabel*>(QStringLiteral("errorSummary"));
     auto inspection = std::make_shared<Inspection>(*document_->inspection());
@@ -329,8 +330,8 @@ class LinkingTest : public QObject {
     QCOMPARE(table_->view()->model()->index(0, 0).data(Qt::ForegroundRole), colour);
   }
 
-  /// A slider moved: the new contour is there, what is predicted is not yet. The errors stay those of the last results, and are
-  /// marked as such; none is made of both.
+  /// After a move of a slider the new contour is there before its prediction. The errors stay those of the last results, and are
+  /// marked as such; no error mixes both.
   void anOldPredictionIsNotScoredAgainstANewContour() {
     frame_->resize(700, 700);
     const auto* captions = frame_->findChild<QLabel*>(QStringLiteral("frameCaptions"));
@@ -355,7 +356,7 @@ class LinkingTest : public QObject {
     QVERIFY(shown != document_->results());
     for (const auto& [name, model] : shown->models)
       for (const FrameComparison& c : model.frames) QVERIFY2(c.rows.empty(), name.c_str());
-    // What is drawn of them is pale, and says so.
+    // Their drawing is pale, and says so.
     draw::OverlayOptions options;
     options.predictionsEarlier = true;
     QString label;

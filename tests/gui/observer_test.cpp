@@ -80,7 +80,7 @@ class ObserverTest : public QObject {
     QVERIFY(!document_->frameStale());
   }
 
-  /// Also where what was observed is older, since nothing could be observed under the newest request.
+  /// The same holds where the observation is older, because nothing could be observed under the newest request.
   void resultsThatAreAskedForWinOverAnOlderObservation() {
     showResults();
     document_->setSetting("detect.level", 0.3);
@@ -147,7 +147,7 @@ class ObserverTest : public QObject {
     return resultsOf(document_->sharedScene(), request);
   }
   void showResults() { document_->setInspection(resultsFor(document_->request()), document_->request()); }
-  /// Of the contour that is shown.
+  /// Level of the contour that is shown.
   double level() const { return document_->frameInspection()->evidence[0].highlights.at(0).level; }
 
   static constexpr double kFails = 0.15;

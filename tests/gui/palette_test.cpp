@@ -62,7 +62,7 @@ class PaletteTest : public QObject {
     QVERIFY(match("curv", "Curvature") > match("curv", "Lesson 4: Curvature of a mirror"));
     QVERIFY(!match("level zebra", "Contour level"));
     QVERIFY(!match("vl", "Contour level"));  // two letters in order are in everything
-    // However many words are whole: one that is only letters puts the item behind.
+    // One word of which only the letters match puts the item behind, however many words match wholly.
     QVERIFY(match("contour evel", "Contour level") > match("contour contour lvl", "Contour level"));
   }
 
@@ -198,7 +198,7 @@ class PaletteTest : public QObject {
     QVERIFY(finds("fills", "Show selection"));  // of its tool tip alone
     QVERIFY(finds("blinn-phong", "Lobe"));      // of its values alone
     QVERIFY(finds("axis front", "Front"));      // of its id
-    // What is called so comes before what is only explained so.
+    // Items with the word in their name come before those with it in their explanation.
     window_->commandPalette()->line()->setText("theme");
     QCOMPARE(window_->commandPalette()->list()->topLevelItem(0)->text(0), QStringLiteral("Switch light/dark theme"));
   }
@@ -257,7 +257,8 @@ class PaletteTest : public QObject {
     type("detect.level = 7", Qt::Key_Return);  // out of range: the row says so and does nothing
     QCOMPARE(window_->document().request().settings.number("detect.level"), 0.3);
     QVERIFY(window_->commandPalette()->list()->topLevelItem(0)->isDisabled());
-    // Of several with that name, the one that can take the value; "Level-set contour" is a choice, "Level-set grid" in px.
+    // Among several with that name, the one that can take the value is meant; "Level-set contour" is a choice, "Level-set grid"
+    // in px.
     popUp();
     type("level = 0.4", Qt::Key_Return);
     QCOMPARE(window_->document().request().settings.number("detect.level"), 0.4);

@@ -23,7 +23,7 @@
 namespace glint::gui {
 
 namespace {
-/// What one setting is turned to, where, and what else is set there.
+/// The value to which one setting is turned, the scene, and what else is set there.
 struct Turn {
   const char* key;
   const char* value;
@@ -89,8 +89,8 @@ const std::vector<Turn>& turns() {
   return all;
 }
 
-/// What is set in a turn. A lobe that is fitted to pixels on every other surface takes most of the time of the rows that change one:
-/// `surface.normals` and the settings of the detection tell whether it follows.
+/// The values that are set in one turn. A lobe that is fitted to pixels on every other surface takes most of the time of the rows
+/// that change one: `surface.normals` and the settings of the detection tell whether it follows.
 std::map<std::string, std::string> baseOf(const Turn& t) {
   std::map<std::string, std::string> base = t.base;
   const std::string key = t.key;
@@ -118,9 +118,10 @@ const char* const kSpec = R"({"glint_scene": 1, "name": "ellipsoid",
   "surfaces": {"body": {"analytic": {"type": "ellipsoid", "semi_axes": [0.6, 0.45, 0.35]}}},
   "lights": [{"id": "lamp", "position": [0.9, -0.8, 1.6], "radius": %1}],
   "path": {"orbit": {"centre": [0, 0, 0], "radius": 1.6, "from": -1.6, "to": -0.17, "height": 0.9, "count": 6}},
-  "render": {"reflectance": "torrance-sparrow", "roughness": 0.12, "diffuse": [0.3, 0.4, 0.6], "noise": %2, "bits": 8, "seed": 3}})";
+  "render": {"reflectance": "torrance-sparrow", "roughness": 0.12, "diffuse": [0.3, 0.4, 0.6], "noise": %2, "bits": 8,
+             "seed": 3}})";
 
-/// All numbers, and what is said of each fit: the border between ok and poor changes nothing else.
+/// All numbers and the words about each fit: the border between ok and poor changes only words.
 std::string results(const Inspection& inspection) {
   std::string all = digestOf(inspection);
   for (const auto& [name, model] : inspection.models)
@@ -132,7 +133,7 @@ std::string results(const Inspection& inspection) {
 class ParametersTest : public QObject {
   Q_OBJECT
  private slots:
-  /// What is shown shortened stays exact; while it is edited all digits are there; nothing is cut.
+  /// A number that is shown shortened stays exact; while it is edited all digits are there, and none is cut.
   void numbersAreShortAndExact() {
     ParamSpec spec = paramSpec("detect.level");
     spec.min = -10;

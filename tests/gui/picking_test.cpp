@@ -29,7 +29,7 @@ namespace glint::gui {
 
 namespace {
 using Views = std::set<QString>;
-/// Who shows what is selected.
+/// The views that show what is selected.
 const Views kShowFrame{"scene", "frame", "ladder", "timeline", "table", "plots", "numbers"},
     kShowModel{"scene", "frame", "timeline", "table", "plots", "conditioning", "numbers"},
     kShowHighlight{"scene", "frame", "ladder", "numbers"}, kShowDirection{"scene", "frame", "ladder", "plots", "numbers"},
@@ -221,8 +221,8 @@ class PickingTest : public QObject {
   }
 
  private:
-  /// Picks, and expects one more step of undo, a change in every view that shows such a thing, and the same pictures when the
-  /// same is selected without the mouse. Every other thing that is selected on the way is undone first.
+  /// Picks, and expects one more step of undo, a change in every view that shows such a thing, and the same pictures for the same
+  /// selection without the mouse. Every other thing that is selected on the way is undone first.
   void pick(const QString& place, const Views& shownBy, const std::function<void()>& byMouse) {
     const draw::Selection before = document_->selection();
     const std::map<QString, QImage> old = pictures();

@@ -96,7 +96,7 @@ class PlotsTest : public QObject {
     QVERIFY(toQString(dial->plot().title).contains(QStringLiteral("0003")));
   }
 
-  /// From point to point by the arrow keys, with the ring of the keyboard on it and its words for who does not see it.
+  /// The arrow keys go from point to point, with the keyboard's ring on the point and words for people who do not see it.
   void theArrowKeysGoFromPointToPoint() {
     PlotCanvas* canvas = panel_->canvas(0);
     QApplication::setActiveWindow(panel_.get());
@@ -197,7 +197,7 @@ class PlotsTest : public QObject {
     const QImage picture(png);
     QCOMPARE(picture.width(), 2 * panel_->canvas(0)->width());
     QVERIFY2(panel_->saveTo(csv, &problem), qPrintable(problem));
-    // As a dialog asks for it: 85 mm at 600 dpi, on a light page.
+    // The size that a dialog asks for: 85 mm at 600 dpi, on a light page.
     const QString paper = folder.filePath(QStringLiteral("paper.png")), slide = folder.filePath(QStringLiteral("slide.svg"));
     const FigureLook look{{2008, 1506}, false, false, 600};
     QVERIFY2(panel_->saveTo(paper, &problem, look), qPrintable(problem));

@@ -47,9 +47,11 @@ const char* const kScene = R"({"glint_scene": 1, "name": "ball",
       "camera": {"width": 160, "height": 120, "fx": 200, "fy": 200, "cx": 79.5, "cy": 59.5},
       "frames": [
         {"id": "a", "camera_from_world": [[1,0,0,0],[0,1,0,0],[0,0,1,2],[0,0,0,1]], "surface": "ball",
-         "highlights": [{"light": "lamp", "peak": [85,60], "contour": [[90,60],[88,64],[85,66],[82,64],[80,60],[82,56],[85,54],[88,56]]}]},
+         "highlights": [{"light": "lamp", "peak": [85,60],
+                         "contour": [[90,60],[88,64],[85,66],[82,64],[80,60],[82,56],[85,54],[88,56]]}]},
         {"id": "b", "camera_from_world": [[1,0,0,0.1],[0,1,0,0],[0,0,1,2],[0,0,0,1]], "surface": "ball",
-         "highlights": [{"light": "lamp", "peak": [93,60], "contour": [[98,60],[96,64],[93,66],[90,64],[88,60],[90,56],[93,54],[96,56]]}]},
+         "highlights": [{"light": "lamp", "peak": [93,60],
+                         "contour": [[98,60],[96,64],[93,66],[90,64],[88,60],[90,56],[93,54],[96,56]]}]},
         {"id": "c", "camera_from_world": [[1,0,0,0],[0,1,0,0.1],[0,0,1,2],[0,0,0,1]], "surface": "ball"}],
       "surfaces": {"ball": {"analytic": {"type": "sphere", "radius": 0.4}}},
       "lights": [{"id": "lamp", "position": [0.5, 0, -2]}]})";
@@ -180,7 +182,7 @@ class ProgramTest : public QObject {
     QCOMPARE(QSet<QString>(ids.begin(), ids.end()).size(), ids.size());
   }
 
-  /// A line of at most 400 bytes, without control characters, whatever the arguments and names hold.
+  /// A message is a line of at most 400 bytes without control characters, whatever the arguments and names hold.
   void errorLinesAreShortAndEscaped_data() {
     QTest::addColumn<QStringList>("arguments");
     QTest::addColumn<QString>("mentions");
@@ -209,7 +211,7 @@ class ProgramTest : public QObject {
     QVERIFY(!r.err.contains(QChar(0x1b)));
   }
 
-  /// As the commands do it: a picture replaces only a PNG, and never a file of what is open.
+  /// As in the commands, a picture replaces only a PNG, and never a file of the open input.
   void aScreenshotReplacesNoFileOfTheInput() {
     QTemporaryDir folder;
     const auto path = [&](const char* name) { return folder.filePath(QString::fromLatin1(name)); };
@@ -250,7 +252,7 @@ class ProgramTest : public QObject {
     QVERIFY(QImage(path("shot.png")).width() > 160);
   }
 
-  /// The check of the input ends after the results: a picture without what it found would be a clean bill.
+  /// The check of the input ends after the results: a picture without its findings would say that all is well.
   void aScreenshotWaitsForFindings() {
     const QString capture = QStringLiteral(GLINT_SHARED_DIR "/data/reports/mesh-y-up");
     if (!QFileInfo::exists(capture)) QSKIP("no data beside the project");

@@ -80,7 +80,7 @@ class RandomTest : public QObject {
     window.resize(1500, 950);
     window.show();
     QVERIFY(QTest::qWaitForWindowExposed(&window));
-    // What is written beside a session is not to lie in the sources.
+    // Files that are written beside a session must not lie in the sources.
     const std::filesystem::path copy = copy_.path().toStdString();
     std::filesystem::copy(std::string(GLINT_SOURCE_DIR "/sessions/") + name.toStdString(), copy,
                           std::filesystem::copy_options::recursive | std::filesystem::copy_options::overwrite_existing);
@@ -103,7 +103,7 @@ class RandomTest : public QObject {
         if (done[QLatin1String(kind)] == 0) return false;
       return window.findChild<TimelineStrip*>()->lights().empty() || done[QStringLiteral("light")] > 0;
     };
-    // On until each kind changed something: what is chosen in a turn depends on how many actions and layers there are.
+    // Goes on until each kind changed something: the choice in a turn depends on the number of actions and layers.
     for (int i = 0; i < kSteps || (i < kMostSteps && !allDone()); ++i) {
       const int before = document.undoStack()->index();
       const QString kind = act(window, random);

@@ -75,7 +75,7 @@ class RecoveryTest : public QObject {
     const auto* history = window.findChild<QUndoView*>(QStringLiteral("historyList"));
     QCOMPARE(history->emptyLabel(), QStringLiteral("As recovered; earlier steps are lost"));
     QCOMPARE(QFileInfo(window.document().sessionFile()).canonicalFilePath(), QFileInfo(kSession).canonicalFilePath());
-    // This program keeps it now; the dead one's file is gone, and nobody is offered it twice.
+    // This program keeps it now; the dead one's file is gone, and it is not offered twice.
     Autosave* autosave = window.findChild<Autosave*>();
     QTRY_VERIFY(!autosave->leftBehind());
     QVERIFY(QFile::exists(autosave->file()));

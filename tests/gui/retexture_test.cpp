@@ -95,7 +95,7 @@ class RetextureTest : public QObject {
     compareWithCommand({"--background", plain}, "limit-angle");
   }
 
-  /// A setting, a model, a frame: the picture follows, and stays the command's.
+  /// The picture follows a setting, a model, a frame, and stays equal to the command's.
   void itFollowsSettingsAndFrames() {
     turnOn();
     document().selectFrame(3);
@@ -193,7 +193,7 @@ class RetextureTest : public QObject {
     QCOMPARE(told.count(), 1);
   }
 
-  /// Of many wishes in a row the last one counts, and the window answers meanwhile.
+  /// After many wishes in a row the last one counts, and the window answers meanwhile.
   void theNewestWins() {
     turnOn();
     for (int i = 1; i <= 30; ++i) document().setOption("frame/retexture-repeat", double(i), "more", 77);

@@ -141,7 +141,7 @@ class RunnerTest : public QObject {
     QCOMPARE(frames, (std::vector<unsigned>{1, 2, 3, 4, 5, 6, 7, 8}));
   }
 
-  /// A hand that drags on does not wait for runs that take longer than they are given at first.
+  /// A hand that keeps dragging does not wait for runs that take longer than their first allowance.
   void aSlowFrameIsSeenWhileTheHandMoves() {
     Engine engine = fixture_.engine();
     engine.inspectOneFrame = [](std::shared_ptr<const Scene> scene, const InspectionRequest& request, int,

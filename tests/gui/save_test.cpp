@@ -319,7 +319,7 @@ class SaveTest : public QObject {
     QVERIFY(!button(*window, "Allow and open"));
     window->comparison()->compareWith(session);  // and where it is read to be compared
     QTRY_VERIFY_WITH_TIMEOUT(window->comparison()->comparison() && window->idle(), 60000);
-    // For this session alone: a copy of it is another one.
+    // The permission is for this session alone: a copy of it is another session.
     QVERIFY(QFile::copy(session, path("scene/copy.glint")));
     const std::shared_ptr<const Scene> scene = window->document().sharedScene();
     QString said;

@@ -64,7 +64,7 @@ struct SceneFixture {
     action->trigger();
     QCoreApplication::processEvents();
   }
-  /// Draws what is wanted, with every photograph.
+  /// Draws what is needed, with every photograph.
   void settle() {
     QCoreApplication::processEvents();
     QTRY_VERIFY(!views().busy());

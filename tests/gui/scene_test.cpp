@@ -65,7 +65,8 @@ class SceneTest : public QObject, SceneFixture {
     QVERIFY(!shown(1, "surface"));
     while (document_->undoStack()->count() > before && document_->undoStack()->index() > before) document_->undoStack()->undo();
     QVERIFY(shown(1, "surface") && !shown(1, "rays") && shown(0, "cameras"));
-    // The checklist says what the active view shows, also after undo; own layers may be none at all, and be given back.
+    // The checklist says what the active view shows, also after undo; a view may have no layers at all, and its own layers can be
+    // given up again.
     const auto ticked = [&](const char* name) {
       for (int i = 0; i < list->count(); ++i)
         if (list->item(i)->data(Qt::UserRole).toString() == QLatin1String(name))
@@ -306,7 +307,7 @@ class SceneTest : public QObject, SceneFixture {
     QVERIFY(samePlaces(placesNow(), std::vector(4, linked)));
   }
 
-  /// One view large for a moment.
+  /// One view can be large for a moment.
   void unlinkedViewsComeBackWhereTheyStood() {
     trigger("view.views-4");
     settle();
@@ -329,14 +330,14 @@ class SceneTest : public QObject, SceneFixture {
     QTest::mouseClick(views().widget(), Qt::LeftButton, {}, onScreen(document_->scene()->frames[3].camera.centreInWorld()));
     QCOMPARE(document_->selection().frame, 3);
     QVERIFY(views().view().buildCount("surface") > surfaces);
-    // Results of the selected frame come first; whoever has moved the view by then keeps it.
+    // Results of the selected frame come first; a view that a person has moved by then stays.
     trigger("view.axis-top");
     const viz::ViewPoint moved = views().view().viewPoint();
     setResults(true);
     QCOMPARE(toText(views().view().viewPoint()), toText(moved));
     setResults(false);
     QCOMPARE(toText(views().view().viewPoint()), toText(moved));
-    // Who has not sees all of them.
+    // A view that was not moved shows all of them.
     document_->open(spread());
     settle();
     document_->setOption("scene/views", std::string("1"), "as it is");
@@ -408,7 +409,7 @@ class SceneTest : public QObject, SceneFixture {
     QCOMPARE(differingPixels(picture(), first), 0);
   }
 
-  /// Opened again, as from a picture, with cameras coloured by what was measured then.
+  /// A session is opened again, as from a picture, with cameras coloured by an earlier measurement.
   void influenceIsMeasuredAgainWhenAViewThatShowsItIsReopened() {
     QSignalSpy asked(panel_.get(), &ScenePanel::influenceRequested);
     Opened opened = spread();
@@ -542,7 +543,7 @@ class SceneTest : public QObject, SceneFixture {
   }
 
  private:
-  /// Results as the program gets them. @param first  those of the selected frame alone.
+  /// Results as the program gets them. @param first  results of the selected frame alone
   void setResults(bool first) {
     auto inspection = std::make_shared<Inspection>(drawnCircles(document_->sharedScene(), document_->request()));
     inspection->surfaces = std::make_shared<SurfaceCache>(*document_->sharedScene());

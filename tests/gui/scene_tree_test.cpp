@@ -207,7 +207,7 @@ class SceneTreeTest : public QObject, SceneFixture {
     const int steps = document_->undoStack()->index();
     QTest::keyClicks(search, "0011");
     QCOMPARE(children(group(Kind::Camera)), QStringList{"0011"});
-    // Looking for something selects nothing: not even what is left when the selected row goes.
+    // A search selects nothing, not even the row that is left when the selected one goes.
     QCOMPARE(document_->selection().frame, 6);
     QCOMPARE(document_->undoStack()->index(), steps);
     QVERIFY(marked().empty());

@@ -135,7 +135,7 @@ class SessionTest : public QObject {
     MainWindow window(engine);
     openAndWait(window, file);
     QVERIFY(same(seen(window), saved));
-    // One view large for a moment: they come back where the session had them.
+    // One view is large for a moment: the others come back where the session had them.
     Actions& actions = window.actions();
     actions.find(QStringLiteral("view.views-1"))->trigger();
     QTRY_VERIFY(window.idle());
@@ -226,7 +226,7 @@ class SessionTest : public QObject {
     QVERIFY(!QFileInfo::exists(QStringLiteral("/nowhere")));
   }
 
-  /// Prints how soon a run on 60 rendered frames ends after Stop, and for how long the interface stood still meanwhile.
+  /// Prints how soon a run on 60 rendered frames ends after Stop, and how long the interface stood still meanwhile.
   void stopAndInterfaceOnAWholeSequence() {
     const QString scene = QStringLiteral(GLINT_SHARED_DIR "/data/cycles/plane_to_cylinder/scene.json");
     if (!QFileInfo::exists(scene)) QSKIP("the rendered sequences are not here");
@@ -243,7 +243,7 @@ class SessionTest : public QObject {
     window.runner().cancel();
     QVERIFY(stopped.wait(60000));
     qInfo("stopped while detecting after %lld ms", static_cast<long long>(clock.elapsed()));
-    // From every part of a run: the level changes, so that nothing is reused.
+    // Stops in every part of a run: the level changes, so that nothing is reused.
     int n = 0;
     for (const int delayMs : {50, 200, 500, 1000, 1500}) {
       window.document().setSetting("detect.level", 0.5 + 0.01 * ++n);
@@ -269,7 +269,7 @@ class SessionTest : public QObject {
   }
 
  private:
-  /// The menu's action: without a window manager no window is active, and shortcuts need an active one.
+  /// Uses the menu's action: without a window manager no window is active, and shortcuts need an active one.
   static void save(MainWindow& window) {
     for (QAction* action : window.findChildren<QAction*>())
       if (action->shortcut() == QKeySequence(QKeySequence::Save)) action->trigger();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What one meets first: the start page, by keyboard alone; and the window before a room.
+// What a person meets first: the start page, by keyboard alone; and the window in front of an audience.
 #include "gui/window/start_page.h"
 
 #include <QLabel>
@@ -104,7 +104,7 @@ class StartPageTest : public QObject, WindowFixture {
     QTRY_VERIFY(window.isFullScreen() && present->isChecked());
     QVERIFY(QApplication::font().pointSizeF() > 1.3 * font.pointSizeF());
     QVERIFY(window.menuBar()->isHidden() && tools->isHidden() && names() == QStringList{"timeline"});
-    // What stands in a dock, whose title has a font of its own, grows, too; and the views have most of the screen.
+    // Text in a dock, whose title has a font of its own, grows, too; and the views have most of the screen.
     QVERIFY2(QFontInfo(text->font()).pointSizeF() > 1.3 * small,
              qPrintable(QString::number(QFontInfo(text->font()).pointSizeF())));
     QTRY_VERIFY2(timeline->height() < window.height() * 2 / 5, qPrintable(QString::number(timeline->height())));

@@ -130,7 +130,7 @@ class TableTest : public QObject {
     QCOMPARE(table_->view()->verticalScrollBar()->value(), 0);
   }
 
-  /// By which column, and which way: an arrow in its heading, also where numbers stand to the right.
+  /// An arrow in a column's heading shows by which column and in which direction rows are sorted, also for right-aligned numbers.
   void sortingShowsItsArrow() {
     QHeaderView* const head = table_->view()->horizontalHeader();
     for (const int column : {int(ErrorModel::ErrorPct), int(ErrorModel::Model), int(ErrorModel::Status)}) {
@@ -198,7 +198,7 @@ class TableTest : public QObject {
     document_->setOption("plots/two", "on", QStringLiteral("Two plots"));
   }
 
-  /// Errors double: every held-out highlight is worse, and it is said with how many.
+  /// Errors double: every held-out highlight is worse, and the words say how many.
   void pinnedResultsAreComparedRowByRow() {
     QVERIFY(document_->pin());
     auto* summary = table_->findChild<QWidget*>(QStringLiteral("pinnedSummary"));
@@ -207,7 +207,7 @@ class TableTest : public QObject {
     const int steps = document_->undoStack()->count();
     document_->setSetting("detect.level", 0.4);
     compute(2);
-    QCOMPARE(document_->undoStack()->count(), steps + 1);  // pinning is none
+    QCOMPARE(document_->undoStack()->count(), steps + 1);  // pinning is not a step
     QVERIFY(table_->columns()->shown(ErrorModel::Pinned) && table_->columns()->shown(ErrorModel::Difference));
     choose("errorModelFilter", QStringLiteral("primal"));
     table_->view()->sortByColumn(ErrorModel::Frame, Qt::AscendingOrder);
@@ -259,7 +259,7 @@ class TableTest : public QObject {
     QVERIFY(!action("export.json")->isEnabled());
     QCOMPARE(document.undoStack()->count(), steps);
     QVERIFY(document.computed() != pinned);
-    // A change is of what is computed, and shows it.
+    // A change concerns computed results, and shows them.
     document.setSetting("detect.level", 0.3);
     QVERIFY(!document.pinnedShown() && badges() == 0 && action("export.json")->isEnabled());
     QTRY_VERIFY(window.idle() && !document.stale());

@@ -47,7 +47,7 @@ double contrast(const QColor& a, const QColor& b) {
 }
 constexpr double kEnough = 3;
 
-/// Of the pixels in `area`, how many stand out from the background.
+/// How many of the pixels in `area` stand out from the background.
 int clearPixels(const QImage& image, const QRect& area, const QColor& background) {
   int n = 0;
   for (int y = area.top(); y <= area.bottom(); ++y)
@@ -110,7 +110,7 @@ class ThemeTest : public QObject, WindowFixture {
 
   void cleanup() { applyTheme(*qApp, Theme::Dark); }
 
-  /// "updating…" says that what it covers is old; the bars of a table would hide half of it.
+  /// "updating…" says that the widget below it is old; the bars of a table would hide half of the words.
   void aBadgeKeepsClearOfScrollBars() {
     QListWidget list;
     list.setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOn);
@@ -336,7 +336,7 @@ class ThemeTest : public QObject, WindowFixture {
     QVERIFY(!QToolTip::isVisible());
   }
 
-  /// What a panel needs and does not get is behind a scroll bar, not cut.
+  /// The part of a panel that has no room is behind a scroll bar, not cut.
   void aPanelScrollsWhatItHasNoRoomFor() {
     auto* content = new QWidget;
     content->setMinimumSize(300, 200);

@@ -184,7 +184,7 @@ class TimelineTest : public QObject {
     QCOMPARE(document.request().whatIf.lightsSwitched.size(), std::size_t(1));
   }
 
-  /// A slider's step waits for what is painted in vain.
+  /// A setting paints nothing again: a slider's step would wait for it.
   void aSettingPaintsNothingAgain() {
     Shown shown;
     TimelineStrip* strip = shown.timeline.strip();
@@ -242,7 +242,7 @@ class TimelineTest : public QObject {
     QCOMPARE(speed->currentData().toInt(), 30);
   }
 
-  /// 1,000 frames under the mouse: what is painted and read depends on how often the screen is refreshed, not on how many frames
+  /// 1,000 frames under the mouse: painting and reading depend on how often the screen is refreshed, not on how many frames
   /// passed by.
   void scrubbingPaintsACursorAndReadsWhereItStops() {
     const Fixture fixture(1000);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The screen says what is so: no heading with another frame's numbers, no old numbers as new ones, no missed highlight as a small
+// The screen tells the truth: no heading with another frame's numbers, no old numbers as new ones, no missed highlight as a small
 // error, no line of the window below the screen.
 #include <QAbstractItemModel>
 #include <QGuiApplication>
@@ -88,7 +88,7 @@ class TruthTest : public QObject {
     };
     QVERIFY(inked(missed, kMissedFrame, row.top(), row.bottom()) > 2);
     QCOMPARE(inked(missed, kMissedFrame - 1, row.top(), row.bottom()), 0);
-    // In the errors below there is a gap.
+    // The errors below have a gap.
     const double bottom = strip.roleMark(0).top() - 2;
     QCOMPARE(inked(missed, kMissedFrame, row.bottom() + 2, bottom), 0);
     QVERIFY(inked(missed, kMissedFrame - 2, row.bottom() + 2, bottom) > 2);

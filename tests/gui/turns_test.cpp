@@ -63,7 +63,7 @@ class TurnsTest : public QObject {
     QVERIFY(!drawn);
   }
 
-  /// On screen a canvas in a new size waits for its turn; whoever grabs it gets the new picture at once.
+  /// On screen a canvas in a new size waits for its turn; a grab gets the new picture at once.
   void aCanvasInANewSizeDrawsInItsTurn() {
     VtkCanvas canvas;
     vtkNew<vtkRenderer> renderer;

@@ -22,7 +22,7 @@
 namespace glint::gui {
 
 namespace {
-/// What is said in the window of a widget about what was typed; "" = nothing.
+/// The message in the window of a widget about the typed text; "" = no message.
 QString complaint(const QWidget* widget) {
   const auto* label = widget->window()->findChild<QLabel*>(QStringLiteral("complaint"));
   return label && label->isVisible() ? label->text() : QString();

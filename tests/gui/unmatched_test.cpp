@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Missed and spurious highlights by mouse, and highlights changed by hand. An observed contour is moved away from the exact one, so that
-// the exact prediction is spurious and the moved contour is missed.
+// Missed and spurious highlights by mouse, and highlights changed by hand. An observed contour is moved away from the exact one,
+// so that the exact prediction is spurious and the moved contour is missed.
 #include <QAction>
 #include <QDoubleSpinBox>
 #include <QMenu>
@@ -99,10 +99,10 @@ class UnmatchedTest : public QObject {
     QCOMPARE(s.predicted, 0);
     QVERIFY2(numbers().contains(QStringLiteral("spurious, predicted by limit-angle: the nearest observed highlight is")),
              qPrintable(numbers()));
-    // F goes there.
+    // The key F goes there.
     frame_->goToHighlight();
     QVERIFY((frame_->canvas()->centre() - centroid(exact_)).norm() < 3);
-    // It is of this frame: another one has none selected, and undo brings it back.
+    // The selection belongs to this frame: another frame has nothing selected, and undo brings it back.
     document_->selectFrame(3);
     QCOMPARE(document_->selection().predicted, -1);
     document_->undoStack()->undo();
@@ -198,7 +198,7 @@ class UnmatchedTest : public QObject {
     QCOMPARE(tree.model().rowCount(camera), 1);  // the prediction beside it, where nothing is ignored
   }
 
-  /// One step of undo; then nothing of the frame is wrong.
+  /// The edit is one step of undo; after it nothing of the frame is wrong.
   void ignoringUnderThePointer() {
     const int steps = document_->undoStack()->index();
     point(centroid(exact_) + Pixel(kAway, 0));
@@ -207,7 +207,7 @@ class UnmatchedTest : public QObject {
     compute();
     QCOMPARE(int(document_->inspection()->evidence[kFrame].highlights.size()), 0);
     QCOMPARE(int(document_->inspection()->evidence[kFrame].ignored.size()), 1);
-    // Once more: it counts again.
+    // A second click: it counts again.
     actions_->find("frame.ignore-highlight")->trigger();
     QVERIFY(document_->request().whatIf.none());
     document_->undoStack()->undo();

@@ -59,7 +59,7 @@ class UnreadableTest : public QObject {
       QVERIFY2(bar->text().contains(part), qPrintable(bar->text()));
     TimelineStrip* strip = window.findChild<Timeline*>()->strip();
     QCOMPARE(strip->unreadable(), (QList<int>{2, 4}));
-    // Drawn: a mark under their thumbnails, and a cross in place of them; said by the tool tip.
+    // A mark under the thumbnails and a cross in place of them are drawn; the tool tip says why.
     const auto warnedAt = [&](int frame) {
       const QImage shown = strip->grab().toImage();
       const double ratio = shown.devicePixelRatio(), wide = (strip->width() - 56 - 10) / strip->framesInView();

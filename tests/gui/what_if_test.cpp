@@ -92,7 +92,7 @@ class WhatIfTest : public QObject {
     QVERIFY(!panel().canvas()->caption().contains("photograph"));
   }
 
-  /// The lines below the photograph, which had to say more, become as few as they were.
+  /// The lines below the photograph, which had more to say, become as few as before.
   void puttingEverythingBackGivesThePhotographItsRoomBack() {
     MainWindow window(coreEngine());
     window.resize(1280, 720);

@@ -10,13 +10,13 @@
 
 namespace glint::gui {
 
-/// What tests of the whole window do with it.
+/// What tests of the whole window do with the window.
 struct WindowFixture {
   static void show(MainWindow& window) {
     window.show();
     QVERIFY(QTest::qWaitForWindowExposed(&window));
   }
-  /// With its scene, the docks of the layout for debugging, and the keyboard.
+  /// The window with its scene, the docks of the layout for debugging, and the keyboard.
   void openActive(MainWindow& window) {
     show(window);
     openAndWait(window);

@@ -130,7 +130,7 @@ class WindowSizeTest : public QObject, WindowFixture {
     QVERIFY(spread());
   }
 
-  /// Without steps between, and at once as small as it is asked to be.
+  /// The window becomes as small as it is asked to be, at once and without steps between.
   void aWindowThatShrinksAtOnceMakesTabsOfItsDocks() {
     if (screen()->availableSize().width() < 1600) QSKIP("the screen is smaller");
     MainWindow window(fixture_.engine());
@@ -207,7 +207,7 @@ class WindowSizeTest : public QObject, WindowFixture {
     QVERIFY(miss->height() >= miss->heightForWidth(miss->width()));
   }
 
-  /// Whatever comes together: sizes, limits, what the panel holds, and the panel itself hidden and shown again.
+  /// Changes in any combination: sizes, limits, the panel's content, and the panel itself hidden and shown again.
   void aPanelOverItsLimitHasItsScrollBarAtOnce() {
     class Host : public QWidget {
      public:

@@ -69,7 +69,7 @@ class WindowTest : public QObject, WindowFixture {
     QVERIFY(pages->widget(0)->minimumSizeHint().height() < 200);
   }
 
-  /// One of them anywhere makes every update of every widget a composition of the whole window by OpenGL.
+  /// A single such widget makes every update of every widget a composition of the whole window by OpenGL.
   void noWidgetIsAnOpenGlWidget() {
     MainWindow window(fixture_.engine());
     show(window);
@@ -342,7 +342,7 @@ class WindowTest : public QObject, WindowFixture {
       QCOMPARE(badge->text(), QStringLiteral("updating…"));
   }
 
-  /// What has worked says so, and takes away the message of what had not.
+  /// A success says so, and removes the message of an earlier failure.
   void successTakesTheErrorAway() {
     MainWindow window(fixture_.engine());
     show(window);
@@ -426,7 +426,7 @@ class WindowTest : public QObject, WindowFixture {
     QVERIFY(reasons > 0);
   }
 
-  /// The selected frame comes first, and whatever shows only that frame shows it then.
+  /// The selected frame comes first, and views of that frame alone show it then.
   void theLadderAndTheDialDoNotWaitForTheOtherFrames() {
     Engine engine = fixture_.engine();
     std::atomic<bool> hold{true}, holdFrame{true};
@@ -466,7 +466,7 @@ class WindowTest : public QObject, WindowFixture {
     QCOMPARE(earlyDial, dial());
   }
 
-  /// A bug in a job ends neither the program nor unseen.
+  /// A bug in a job does not end the program, and does not go unseen.
   void whatNobodyExpectedIsToldOnce() {
     Engine engine = fixture_.engine();
     engine.observeFrame = [](std::shared_ptr<const Scene>, const InspectionRequest&, int, const ProgressFn&,

@@ -10,7 +10,7 @@ foreach(layer io core viz gui cli plugins tests bench)
        "${SRC}/${layer}/run_*")
   list(APPEND sources ${found})
 endforeach()
-file(GLOB_RECURSE rules "${SRC}/tests/rules/*")  # they name pages that are not there, to see them found
+file(GLOB_RECURSE rules "${SRC}/tests/rules/*")  # these name pages that do not exist, to see that they are found
 list(REMOVE_ITEM sources ${rules} "")
 list(REMOVE_DUPLICATES sources)
 
@@ -21,7 +21,7 @@ foreach(f IN LISTS sources)
   endif()
   string(REGEX REPLACE "[][;\\]" " " text "${text}")  # CMake's list syntax
   string(REGEX REPLACE "\n[ \t]*(///?<?|#|[*])[ \t]*" " " text "${text}")
-  # The page without its folder is how citations began that led nowhere in a clone.
+  # A page without its folder led nowhere in a clone.
   if(text MATCHES "(^|[^/A-Za-z0-9_-])formats[.]md")
     complain("${f}" "cites formats.md without its folder: docs/formats.md, \"Section\"")
   endif()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# What a rule of the sources collects in `broken`: a line with the file, named from SRC.
+# complain(FILE REASON): adds a line to `broken`, which a rule of the sources collects, with the file named from SRC.
 set(broken "")
 macro(complain file text)
   file(RELATIVE_PATH name "${SRC}" "${file}")

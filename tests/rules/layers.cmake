@@ -159,7 +159,7 @@ forbid("gui does not include cli or plugins" "\"([^\"]*/)?(cli|plugins)/" gui/*.
 forbid("plugins stand on core and viz" "\"([^\"]*/)?(gui|cli)/" plugins/*.h plugins/*.cpp)
 forbid("only the benchmarks of the window know gui" "\"([^\"]*/)?gui/" bench/*.h bench/*.cpp)
 
-# The same arrows at the linker.
+# The same arrows for the linker.
 function(forbid_link what pattern)
   foreach(layer IN LISTS ARGN)
     file(GLOB_RECURSE files "${SRC}/${layer}/CMakeLists.txt")
@@ -177,7 +177,7 @@ endfunction()
 forbid_link("Qt belongs to gui" "Qt([0-9]|[$])|GUISupportQt|glint::gui|glint_gui" io core viz cli bench)
 forbid_link("io links Eigen and core/base" "VTK|PCL|pcl_|opencv|ceres|embree|nlohmann|glint::(core|viz|gui)|glint_(core|viz|gui)" io)
 forbid_link("core stands below viz" "glint::viz|glint_viz" core)
-# PCL's own lists bring VTK and Qt along, its io and visualization by themselves, its features by what they say that they need.
+# PCL's own lists bring VTK and Qt along: io and visualization by themselves, features by their stated dependencies.
 forbid_link("the computing core has no VTK" "VTK::|vtk[A-Z]|PCL_[A-Z_]*LIBRARIES|pcl_(io|visualization|surface|apps)|[^:]pcl_(features|2d)" core)
 
 if(leaks)

@@ -29,8 +29,7 @@ foreach(f IN LISTS sources)
   endif()
 endforeach()
 
-# A small number in core is a threshold, and a threshold has its reason beside it: a comment on its line or on the one above. Not meant:
-# units (`Us * 1e-3`), ranges of inputs, and tables of settings.
+# A small number in core is a threshold, and a threshold has its reason beside it: a comment on its line or on the one above. Exempt are units (`Us * 1e-3`), ranges of inputs, and tables of settings.
 file(GLOB_RECURSE coreSources "${SRC}/io/*.h" "${SRC}/io/*.cpp" "${SRC}/core/*.h" "${SRC}/core/*.cpp")
 list(FILTER coreSources EXCLUDE REGEX "core/(base/settings[.]cpp|tradeoff/knobs[.]cpp)")
 foreach(f IN LISTS coreSources)
@@ -57,8 +56,7 @@ foreach(f IN LISTS numberSources)
   endif()
 endforeach()
 
-# A model is one file: what others must know of it is a virtual or the traits of HighlightModel (core/model/model.h). Exempt are the stability
-# cases, which are of one model each, and files where the word means something else: "path: reason".
+# A model is one file: what others must know of it is a virtual or the traits of HighlightModel (core/model/model.h). Exempt are the stability cases, each about one model, and files where the word means something else: "path: reason".
 set(modelWords "core/inspect/inspect.cpp: a stage's name" "core/fit/fit_engine.cpp: a stage's name" "core/synth/spec.cpp: values of the file format"
                "core/synth/synth.h: values of the file format" "core/diagnostics/conditioning.cpp: a kind of contour"
                "core/draw/plots.cpp: a plot's name" "gui/plots/plots_panel.cpp: a plot's name" "gui/frame/pair_bar.cpp: a kind of ellipse"
@@ -86,7 +84,7 @@ foreach(f "${SRC}/CMakeLists.txt" ${lists})
   endif()
 endforeach()
 
-# Nothing of one machine or one network in the files: absolute paths of home and work folders, hosts that serve packages.
+# Files name nothing of one machine or one network: no absolute paths of home and work folders, no hosts that serve packages.
 # (The patterns are written so that they do not match themselves.)
 set(places "(^|[^A-Za-z0-9_.~/-])/(wor[k]|hom[e]|roo[t]|User[s]|mn[t]/[a-z])/[A-Za-z0-9]")
 set(hosts "(de[b][.]debian[.]org|snapshot[.]debian[.]org|registry[.]npmj[s]|pyp[i][.]org|crate[s][.]io|archive[.]ubuntu[.]com|conda[.]anacond[a]|nodesourc[e][.]com|package[s][.]cloud)")

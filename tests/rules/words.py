@@ -22,9 +22,8 @@ TERMS = {
     r"[Tt]ongue": "streak",
     r"(?<![a-zA-Z])[Ss]kirt|[a-z]Skirt": "flank",
 }
-# Not yet looked through: the rules do not hold there.
-LATER = ("core/reflectance/", "core/light/", "core/surface/", "core/scene/", "core/model/", "core/synth/", "core/render/", "tests/gui/",
-         "tests/cli/", "tests/rules/")
+# They name habits and old terms, to see that they are found.
+EXEMPT = ("tests/rules/words.py", "tests/rules/rules_selftest.cmake")
 
 
 def faults(name, text):
@@ -51,7 +50,7 @@ def main():
     count = broken = 0
     for path in files:
         name = str(path.relative_to(root))
-        if name.startswith(LATER):
+        if name in EXEMPT:
             continue
         count += 1
         for number, rule in faults(name, path.read_text(errors="replace")):
