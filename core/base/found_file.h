@@ -44,8 +44,8 @@ class FileFinder {
 /// FileFinder().under(folder, file)
 std::filesystem::path sameUnder(const std::filesystem::path& folder, const std::filesystem::path& file);
 
-/// The first bytes of a regular file, fewer where it is shorter; "" for one that cannot be read, and for a pipe, which would make the
-/// program wait.
+/// The first bytes of a regular file, fewer where it is shorter; "" for one that cannot be read, and for a pipe, which would
+/// make the program wait.
 std::string firstBytes(const std::filesystem::path& file, std::size_t most);
 
 /// The ending of a file's name with its dot, ASCII letters in lower case.

@@ -297,7 +297,8 @@ Problem problemOf(const std::vector<BundleView>& given, int pointsPerView) {
   return problem;
 }
 
-/// As many terms as predict views that were left out better: free terms that nothing asks for would trade noise between depth and light.
+/// As many terms as predict views that were left out better: free terms that nothing asks for would trade noise between depth
+/// and light.
 int usefulTerms(const Problem& problem, const State& start, const Terms& prior, double robustPx) {
   int terms = 0;
   std::vector<double> best = leftOutErrors(problem, start, prior, 0, robustPx);

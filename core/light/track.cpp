@@ -377,8 +377,8 @@ std::vector<std::string> numberedNames(std::size_t count) {
   return names;
 }
 
-/// Gives every highlight the name of its group, unless it also contains the mirror point of another light that has no highlight of
-/// its own in that frame: it then shows both.
+/// Gives every highlight the name of its group, unless it also contains the mirror point of another light that has no
+/// highlight of its own in that frame: it then shows both.
 void nameMembers(std::vector<TrackedFrame>& frames, const std::vector<Item>& items, const std::vector<Group>& groups,
                  const std::vector<std::string>& names) {
   std::map<std::size_t, std::set<std::size_t>> shown;  // groups that have a highlight of their own in a frame

@@ -108,7 +108,8 @@ class Canonical final : public EllipsoidModel {
     std::get<EllipsoidFit>(fit.family).limitAngle = input.light->limitAngle;
     fit.hints = hintsOf(input);
     if (!fit.uncertainty || !input.light->uncertainty) return;
-    // The light moves the prediction on its own as well. Taken as independent: the contours' noise enters both, through different residuals.
+    // The light moves the prediction on its own as well. Taken as independent: the contours' noise enters both, through
+    // different residuals.
     const Eigen::MatrixXd ellipsoid = fit.uncertainty->root, lamp = parameters::kLight.of(input.light->uncertainty->root);
     Eigen::MatrixXd& root = fit.uncertainty->root;
     root = Eigen::MatrixXd::Zero(ellipsoid.rows() + lamp.rows(), ellipsoid.cols() + lamp.cols());

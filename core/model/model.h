@@ -220,7 +220,8 @@ namespace parameters {
 inline constexpr ParameterBlock kLight{0, 4}, kLimitAngle{4, 1}, kExtent{5, 6};
 // primal, dual, canonical: centre; S, xx yy zz xy xz yz; of canonical, whose light moves its predictions, L too.
 inline constexpr ParameterBlock kCentre{0, 3}, kShape{3, 6}, kLampOfEllipsoid{9, 4};
-// reflectance: after L the logarithm of the roughness, then the unknowns of the lamp's shape, then the logarithm of two widths' ratio.
+// reflectance: after L the logarithm of the roughness, then the unknowns of the lamp's shape, then the logarithm of two
+// widths' ratio.
 inline constexpr ParameterBlock kLogRoughness{4, 1};
 inline constexpr int kLampShape = 5;
 }  // namespace parameters

@@ -252,7 +252,8 @@ struct Descent {
   }
 
   /// Levenberg and Marquardt's iteration with the damping relative to the largest singular value. A flat valley (an axis that the
-  /// contours hardly see) has a small but certain slope: damping falls by decades, so that the full Gauss-Newton step is taken there.
+  /// contours hardly see) has a small but certain slope: damping falls by decades, so that the full Gauss-Newton step is taken
+  /// there.
   void iterate(int maxIterations) {
     Rows rows;
     double damping = 1e-3;  // of the largest singular value: cautious first; it adapts by decades
@@ -297,8 +298,8 @@ struct Descent {
   std::optional<Failure> fault() const {
     if (!(linear.smallest() > kRankRatio * linear.largest()))
       return Failure{Reason::RankDeficient, "several ellipsoids explain the contours equally well"};
-    // Where the iteration stops short of a minimum (at the limit, or because a longer shape would reach a camera) and the next step is
-    // longer than the ellipsoid, the state is a place on the way: round-off decides where on a long flat valley it lies.
+    // Where the iteration stops short of a minimum (at the limit, or because a longer shape would reach a camera) and the next
+    // step is longer than the ellipsoid, the state is a place on the way: round-off decides where on a long flat valley it lies.
     const Step left = linear.step(0);
     const double size = std::sqrt(state.squares.sum()),
                  steps = std::max(left.head<3>().norm() / size, left.tail<6>().norm() / (size * size));

@@ -82,8 +82,8 @@ class TangentWalk {
     Pixel from, to;
     SurfacePoint end;
   };
-  /// Where the foot's pixel lies on the line of a contour's edge, within a step that crosses it; on the line of a neighbouring edge
-  /// where the path bends. BehindCamera; NotConverged; the failures of foot().
+  /// Where the foot's pixel lies on the line of a contour's edge, within a step that crosses it; on the line of a neighbouring
+  /// edge where the path bends. BehindCamera; NotConverged; the failures of foot().
   Outcome<Reach> reachOnEdge(const Eigen::Vector3d& direction, const Polyline& contour, std::size_t edge, const Step& step) const;
 
   const Surface& surface_;

@@ -29,8 +29,8 @@ class LobeProfile {
   /// constant factor of D that does not depend on m or t may be left out.
   virtual ProfileValue logDistribution(double roughness, double tanSquared) const = 0;
   virtual bool isMicrofacet() const { return true; }
-  /// Its roughness depends on the direction: t is then stretched by the two widths (lobe.h), of log D and of Lambda, and log D leaves out the
-  /// factor 1 / cos^4 theta_h, which goes with the angle as it is.
+  /// Its roughness depends on the direction: t is then stretched by the two widths (lobe.h), of log D and of Lambda, and log D
+  /// leaves out the factor 1 / cos^4 theta_h, which goes with the angle as it is.
   virtual bool hasTwoWidths() const { return false; }
   virtual ProfileValue lambda(double, double) const { return {}; }  ///< Smith's Lambda, >= 0
 };

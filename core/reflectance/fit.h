@@ -83,9 +83,9 @@ struct RadianceFit {
 Outcome<RadianceFit> fitRadiance(Lobe lobe, const std::vector<RadianceView>& views, const Light& light, double roughness,
                                  const RadianceFitOptions& options = {});
 
-/// The minimum that one start leads to, with everything free that the lamp's shape has: a point stays a point, a segment a segment.
-/// `lightSize` and `otherStarts` do not matter. Failures as fitRadiance; NotConverged also where a lamp grows beyond what its
-/// quadrature serves (2.5 lobe widths for a sphere, 12 for a segment).
+/// The minimum that one start leads to, with everything free that the lamp's shape has: a point stays a point, a segment a
+/// segment. `lightSize` and `otherStarts` do not matter. Failures as fitRadiance; NotConverged also where a lamp grows beyond
+/// what its quadrature serves (2.5 lobe widths for a sphere, 12 for a segment).
 Outcome<RadianceFit> fitLamp(Lobe lobe, const std::vector<RadianceView>& views, const Lamp& lamp, const Roughness& roughness,
                              const RadianceFitOptions& options = {});
 

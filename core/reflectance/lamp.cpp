@@ -36,7 +36,7 @@ std::vector<LampShape> shapesOf(std::index_sequence<I...>) {
   return {LampShape(std::in_place_index<I + 1>)..., PointShape<>{}};
 }
 
-/// Of a shape that no search looks for.
+/// No search looks for this shape.
 template <class Shape>
 std::vector<LampShape> startsLike(const Shape&, const ExtentGuess&) {
   return {};

@@ -19,8 +19,9 @@
 
 namespace glint {
 
-// The shapes of a lamp. A new one is a struct here, an entry of ShapeOf, its part of lamp.cpp (files, words, drawing, quadrature, where a search starts), its
-// radiance in light_radiance.h, and its samples in core/synth/light_source.cpp. T is double, or a dual number with derivatives. Each says:
+// The shapes of a lamp. A new one is a struct here, an entry of ShapeOf, its part of lamp.cpp (files, words, drawing,
+// quadrature, where a search starts), its radiance in light_radiance.h, and its samples in core/synth/light_source.cpp. T is
+// double, or a dual number with derivatives. Each says:
 //   kName, kWords  as fit.light_size takes it, and for people
 //   kUnknowns      numbers that a fit finds beside centre and lobe; unknowns() points to them
 //   kLength        power of a length that the unknowns are

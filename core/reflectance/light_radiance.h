@@ -132,7 +132,8 @@ std::optional<T> logOfShape(const SegmentShape<T>& segment, Lobe lobe, const Rou
 }
 
 /// log I of one lobe under any lamp, up to a constant of the lamp: the one way to evaluate it, in fits, predictions and bands.
-/// @param position,lamp  in the same coordinates. @param axes,toCamera  unit vectors away from the surface, N on the camera's side.
+/// @param position,lamp  in the same coordinates. @param axes,toCamera  unit vectors away from the surface, N on the camera's
+/// side.
 /// @param rule  from lampRuleFor, for the lamp's shape; it must serve the lamp's size.
 /// @return nothing where no part of the lamp lights the point, or where the camera is below the horizon.
 template <class T>

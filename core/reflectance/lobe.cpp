@@ -71,7 +71,8 @@ double roughnessOf(Lobe lobe, double width, double level) {
 Eight largestLogRadiance(Lobe lobe, const Roughness& roughness, const PartBounds& parts) {
   constexpr float kRoundOff = 1e-4f;  // of log I in single precision: a dozen operations on numbers of up to some hundred
   return lobe::withLobe(lobe, [&](const auto& l) {
-    // Two widths: in no direction does D fall slower than with the larger one, over pi m^2 of the mean, or mask less than with the smaller.
+    // Two widths: in no direction does D fall slower than with the larger one, over pi m^2 of the mean, or mask less than with
+    // the smaller.
     const double wider = l.hasTwoWidths() ? std::sqrt(std::max(roughness.ratio, 1 / roughness.ratio)) : 1;
     Eight log = l.largest(roughness.mean * wider, parts) + static_cast<float>(2 * std::log(wider));
     if (l.isMicrofacet()) log -= (4 * l.leastShadowed(static_cast<float>(roughness.mean / wider), parts.cosView)).log();

@@ -13,8 +13,8 @@ namespace glint {
 /// values (added_lobe.h), so a switch over these four has a default.
 enum class Lobe { Phong, BlinnPhong, TorranceSparrow, Ggx };
 
-/// How rough a lobe is: m, and for a lobe with two widths how much wider it is across the surface's tangent than along it. m is their
-/// geometric mean: along it is mean / sqrt(ratio), across it mean * sqrt(ratio). Other lobes do not read the ratio.
+/// How rough a lobe is: m, and for a lobe with two widths how much wider it is across the surface's tangent than along it. m
+/// is their geometric mean: along it is mean / sqrt(ratio), across it mean * sqrt(ratio). Other lobes do not read the ratio.
 template <class T>
 struct RoughnessOf {
   T mean{0.0};
@@ -27,8 +27,8 @@ struct RoughnessOf {
 };
 using Roughness = RoughnessOf<double>;
 
-/// Unit directions that a lobe goes with: the surface's normal, and its tangent (Surface::tangentAt), which only a lobe with two widths
-/// reads.
+/// Unit directions that a lobe goes with: the surface's normal, and its tangent (Surface::tangentAt), which only a lobe with
+/// two widths reads.
 struct LobeAxes {
   Eigen::Vector3d normal, tangent;
 
@@ -62,8 +62,8 @@ struct LogRadiance {
 ///   ggx               D = m^2 / (pi cos^4 theta_h (m^2 + tan^2 theta_h)^2),    Lambda(v) = (sqrt(1 + m^2 tan^2 v) - 1) / 2
 ///   blinn-phong       cos(theta_h)^(2 / m^2)
 ///   phong             (R.V)^(1 / (2 m^2)), R the mirror direction of L
-/// A lobe with two widths, axes T, B = N x T, ratio q: theta_h, m of D with tan^2 theta_h = (q (H.T)^2 + (H.B)^2 / q) / (H.N)^2 (cos theta_h
-/// as it is), and of Lambda with tan^2 v = ((v.T)^2 / q + q (v.B)^2) / (v.N)^2.
+/// A lobe with two widths, axes T, B = N x T, ratio q: theta_h, m of D with tan^2 theta_h = (q (H.T)^2 + (H.B)^2 / q) /
+/// (H.N)^2 (cos theta_h as it is), and of Lambda with tan^2 v = ((v.T)^2 / q + q (v.B)^2) / (v.N)^2.
 /// @param axes,toLight,toCamera  unit vectors away from the surface, N on the camera's side.
 /// @return nothing where the light or the camera is below the horizon, or where R.V <= 0 (phong).
 /// @see Walter et al., Microfacet models for refraction through rough surfaces, EGSR 2007 (D, Lambda); Heitz, Understanding the
@@ -76,13 +76,13 @@ double beckmannLambda(double roughness, double tanTheta);
 /// Smith's Lambda for GGX.
 double ggxLambda(double roughness, double tanTheta);
 
-/// The angle theta_h, rad, at which the lobe itself (D, or the cosine power) has fallen to `level` of its value in the mirror direction.
-/// At most 1.4, where a lobe never falls that far.
+/// The angle theta_h, rad, at which the lobe itself (D, or the cosine power) has fallen to `level` of its value in the mirror
+/// direction. At most 1.4, where a lobe never falls that far.
 /// @param roughness  m > 0. @param level  in (0, 1). std::invalid_argument otherwise.
 double widthOf(Lobe lobe, double roughness, double level);
 
-/// The m with which a lobe has a width: the inverse of widthOf, in closed form. Lobes of one width look alike near the level; their m
-/// may differ by half. @param width  rad, in (0, pi / 2); for Phong widths beyond pi / 4 count as just below it.
+/// The m with which a lobe has a width: the inverse of widthOf, in closed form. Lobes of one width look alike near the level;
+/// their m may differ by half. @param width  rad, in (0, pi / 2); for Phong widths beyond pi / 4 count as just below it.
 double roughnessOf(Lobe lobe, double width, double level);
 
 namespace lobe {

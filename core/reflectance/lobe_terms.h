@@ -64,8 +64,8 @@ struct Factors {
   T over, under, exponent;
 };
 
-// The lobes. A new one is a struct here, a value of Lobe, its case in withLobe(), and its place in allLobes(). t = tan^2 of the angle that the
-// lobe falls with; s is t as the two widths stretch it, and t itself for a lobe with one. Each says:
+// The lobes. A new one is a struct here, a value of Lobe, its case in withLobe(), and its place in allLobes(). t = tan^2 of
+// the angle that the lobe falls with; s is t as the two widths stretch it, and t itself for a lobe with one. Each says:
 //   isMicrofacet     it has masking and cosines
 //   hasTwoWidths     its roughness depends on the direction; for lobes that fall with the angle between N and H
 //   reaches          whether light from there is mirrored to the camera's side at all

@@ -81,8 +81,8 @@ struct PixelFit {
 /// background is chosen by the Bayesian information criterion, the lobe by the cost. The lamp keeps the shape of the start: a
 /// point, a sphere or a segment.
 /// @param lobes  tried in turn; the one with the least cost wins, a microfacet lobe where the costs do not tell
-/// @param lamp,roughness  start (two widths keep their ratio, which contours find): what the contours say, which need not be close (clipped highlights)
-/// TooFewPoints; NotConverged; NoBrightestPoint where no lobe reaches the patches. Stopped.
+/// @param lamp,roughness  start (two widths keep their ratio, which contours find): what the contours say, which need not be
+/// close (clipped highlights) TooFewPoints; NotConverged; NoBrightestPoint where no lobe reaches the patches. Stopped.
 /// @see Golub, Pereyra, Separable nonlinear least squares, Inverse Problems 2003.
 Outcome<PixelFit> fitPixels(const std::vector<Lobe>& lobes, const std::vector<const PixelPatch*>& patches, const Lamp& lamp,
                             const Roughness& roughness, const PixelFitOptions& options = {});

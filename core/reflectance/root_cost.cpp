@@ -55,8 +55,8 @@ GLINT_FLATTEN std::optional<T> logOf(const RadianceProblem& problem, const Seen&
   return logOfShape<T>(shape, problem.lobe(), {roughness, ratio}, s.position, s.axes, s.toCamera, light, problem.rule());
 }
 
-/// (g - sqrt(-log q)) in pixels, with its derivatives by dual numbers; g at the frame's peak is the problem's, of the same parameters.
-/// The ratio of two widths is by differences: dual numbers of another size would compile all of the lobes once more.
+/// (g - sqrt(-log q)) in pixels, with its derivatives by dual numbers; g at the frame's peak is the problem's, of the same
+/// parameters. The ratio of two widths is by differences: dual numbers of another size would compile all of the lobes once more.
 template <template <class> class Shape>
 class RootCost final : public ceres::CostFunction {
  public:

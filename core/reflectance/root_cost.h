@@ -16,8 +16,8 @@ namespace glint::lobe {
 
 inline constexpr double kUnlitPx = 100;  // residual of a point that the light does not reach
 
-/// Parameter blocks of a state as the cost functions take them: L (4), log m (1), then the shape's own, where it has any, then the
-/// logarithm of the ratio of two widths, where the lobe has them.
+/// Parameter blocks of a state as the cost functions take them: L (4), log m (1), then the shape's own, where it has any, then
+/// the logarithm of the ratio of two widths, where the lobe has them.
 struct Blocks {
   Blocks(State& s, Lobe lobe)
       : at{s.lamp.centre.data(), &s.logRoughness, &s.logRatio, &s.logRatio}, count(hasTwoWidths(lobe) ? 3 : 2) {

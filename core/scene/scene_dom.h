@@ -17,7 +17,8 @@ json_dom::Json toJson(const Eigen::Matrix4d& m);
 using WrittenPath = std::function<std::string(const std::filesystem::path& file, const std::string& place)>;
 /// The form that `readSurfaceJson` reads. InputError (place) for a surface that a scene file cannot name.
 json_dom::Json toJson(const SurfaceSource& source, const std::string& place, const WrittenPath& written);
-/// As `readInputChoices` reads it. @param relative  the path of a file relative to the session's folder; asked for those that are named
+/// As `readInputChoices` reads it. @param relative  the path of a file relative to the session's folder; asked for those that
+/// are named
 json_dom::Json toJson(const InputChoices& choices, const std::function<std::string(const std::filesystem::path&)>& relative);
 
 }  // namespace glint

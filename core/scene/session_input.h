@@ -23,7 +23,8 @@ int readSessionVersion(const JsonNode& root);
 /// A path that a session writes, relative to its folder. InputError for an empty one and one with a zero byte.
 std::filesystem::path absolutePath(const JsonNode& node, const std::filesystem::path& folder);
 
-/// What the `input` of a session names, absolute. A session comes from others: `requirePermitted` before anything of it is looked at.
+/// What the `input` of a session names, absolute. A session comes from others: `requirePermitted` before anything of it is
+/// looked at.
 struct SessionInput {
   std::filesystem::path scene;                          ///< a file, see requireSceneFile(); may lie anywhere
   std::vector<FilesFolder> folders;                     ///< in which frames' files are looked for, in the session's order

@@ -79,8 +79,8 @@ class Surface {
   /// Principal curvatures at a point of this surface. NotSupported on facets.
   virtual Outcome<Curvature> curvatureAt(const SurfacePoint& p) const = 0;
 
-  /// Tangent that turns with the surface, unit, sign free: what brushed metal is rough along. The first direction of an analytic surface
-  /// (around its y axis), else y x N; where N is within 1e-6 of y, the x axis, both of the world.
+  /// Tangent that turns with the surface, unit, sign free: what brushed metal is rough along. The first direction of an
+  /// analytic surface (around its y axis), else y x N; where N is within 1e-6 of y, the x axis, both of the world.
   virtual Eigen::Vector3d tangentAt(const SurfacePoint& p) const;
 
   /// True when the open segment between a surface point and another world point meets the surface.

@@ -93,7 +93,8 @@ class LightView {
         const Pixel at = limit() ? point.pixel : maximumNear(point.pixel).value_or(point.pixel);
         if (const std::optional<double> value = brightness(at)) peaks.push_back({at, *value});
       }
-    // A light that is wide, or whose mirror point is hidden, may have its maximum elsewhere: the coarse grid of the image decides.
+    // A light that is wide, or whose mirror point is hidden, may have its maximum elsewhere: the coarse grid of the image
+    // decides.
     if (!limit() || peaks.empty())
       if (std::optional<Candidate> best = brightestOfGrid();
           best && (peaks.empty() || best->value > std::max_element(peaks.begin(), peaks.end(), dimmer)->value)) {
