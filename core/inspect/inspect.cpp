@@ -534,6 +534,7 @@ Inspection run(std::shared_ptr<const Scene> scene, const InspectionRequest& requ
   if (request.noisePx > 0 && request.settings.text("fit.evidence") == "pixels")
     throw InputError("", "--noise-px", "noise is added to contours, which fit.evidence=pixels does not use");
   for (const std::string& m : request.models) modelByName(m);  // unknown names are refused before any work
+  const PhotographsHeld held(*result.scene, result.train.frames);
   Run run(result, progress, previous, {onlyFrame >= 0 ? std::optional(onlyFrame) : std::nullopt, withoutPixels});
   run.highlights();
   run.lobes();

@@ -19,6 +19,7 @@ FrameEvidence evidenceFor(const Scene& scene, int frame, const InspectionRequest
     evidence.failure = Failure{Reason::NoHighlight, "no light produces one in frame " + f.id};
     return evidence;
   }
+  const PhotographsHeld held(scene, {frame});  // some read it twice
   evidence = gatherEvidence(scene, frame, request.source, request.settings);
   const bool detected = !evidence.highlights.empty() && !evidence.highlights.front().fromScene;
   if (detected && request.settings.text("detect.background") == "colours") {
