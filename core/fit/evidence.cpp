@@ -94,19 +94,19 @@ void addOtherLevels(const std::vector<Highlight>& given, std::vector<Highlight>&
     }
 }
 
-DetectOptions detectOptionsFor(const Frame& frame, FrameSource source, const Settings& settings) {
+DetectOptions detectOptionsFor(const Frame& frame, FrameSource source, const DetectSettings& settings) {
   DetectOptions options;
-  options.level = settings.number("detect.level");
-  options.minAreaPx2 = settings.number("detect.min_area");
-  options.minContrast = settings.number("detect.min_contrast");
-  options.peakWindowLevel = settings.number("detect.peak_window");
-  options.clipValue = settings.number("detect.clip");
+  options.level = settings.level;
+  options.minAreaPx2 = settings.minAreaPx2;
+  options.minContrast = settings.minContrast;
+  options.peakWindowLevel = settings.peakWindowLevel;
+  options.clipValue = settings.clipValue;
   const bool photograph = frame.radiance.empty() || (source == FrameSource::Image && !frame.image.empty());
   if (options.clipValue == 0 && photograph) options.clipValue = 1.0;  // linearised codes end at 1
   return options;
 }
 
-Outcome<LinearPixels> pixelsOf(const Frame& frame, FrameSource source, const Settings& settings,
+Outcome<LinearPixels> pixelsOf(const Frame& frame, FrameSource source, const DetectSettings& settings,
                                const std::vector<SeparatedRegion>& separated) {
   const Outcome<MaskedImage> image = readMasked(frame, source);
   if (!image) return image.failure();
@@ -115,13 +115,13 @@ Outcome<LinearPixels> pixelsOf(const Frame& frame, FrameSource source, const Set
   return pixels;
 }
 
-FrameEvidence gatherEvidence(const Scene& scene, int index, FrameSource source, const Settings& settings,
+FrameEvidence gatherEvidence(const Scene& scene, int index, FrameSource source, const DetectSettings& settings,
                              const SeparateLights& lights) {
   const Frame& frame = scene.frames[index];
   FrameEvidence evidence;
   evidence.frame = index;
   evidence.id = frame.id;
-  const double level = settings.number("detect.level");
+  const double level = settings.level;
   for (const Highlight& h : frame.highlights)
     if (std::abs(h.level - level) < kSameLevel) evidence.highlights.push_back(h);
   addOtherLevels(frame.highlights, evidence.highlights);
@@ -166,7 +166,7 @@ FrameEvidence gatherEvidence(const Scene& scene, int index, FrameSource source, 
   return evidence;
 }
 
-SpecularSeparation separateEvidence(const Scene& scene, int index, FrameSource source, const Settings& settings,
+SpecularSeparation separateEvidence(const Scene& scene, int index, FrameSource source, const DetectSettings& settings,
                                     FrameEvidence& evidence) {
   const auto because = [](std::string reason) {
     SpecularSeparation none;

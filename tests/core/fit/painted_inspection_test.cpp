@@ -7,6 +7,7 @@
 #include "core/scene/decoded_images.h"
 #include "core/session/session.h"
 #include "tests/core/fit/painted_scene.h"
+#include "tests/core/inspect/questions.h"
 #include "tests/core/scene/scene_fixture.h"
 
 /// Whole inspections of photographs with painted spots: none of them trains.
