@@ -122,6 +122,7 @@ std::shared_ptr<const Scene> InspectionArguments::scene(InspectionRequest& reque
     std::erase_if(
         frames, [&](int f) { return std::find(request.excluded.begin(), request.excluded.end(), f) != request.excluded.end(); });
     if (frames.empty()) throw InputError("", "--level auto", "no training frame is left to choose a level by");
+    photographs = std::make_shared<const PhotographsHeld>(*scene, frames);
     const Outcome<LevelChoice> choice = chooseLevel(*scene, frames, request.source, request.settings);
     if (!choice) throw CannotAnswer{choice.failure()};
     request.settings.set("detect.level", choice->level);

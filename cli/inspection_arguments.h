@@ -27,6 +27,7 @@ struct InspectionArguments {
   double noisePx = 0;
   unsigned seed = 1;
   SceneArguments places;
+  mutable std::shared_ptr<const PhotographsHeld> photographs;  ///< of the frames that chose the level: they train next
 
   void declare(Options& options, const std::string& modelsHelp);
   /// Starts from the session's request when INPUT is one; what is given on the command line wins.

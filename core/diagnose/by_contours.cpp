@@ -24,7 +24,7 @@ bool pixelsFailed(const Inspection& base) {
 bool fitsPixelsAgain(const Inspection& base, const InspectionRequest& changed, const Change& change, const std::string& model) {
   const Scene& scene = *base.scene;
   StageInputs asked;
-  asked.set(Stage::Lobes, lobeInputs(changed, parseTrainSpec(changed.train, scene), lightsAreOpenIn(scene, changed)));
+  asked.lobes = lobeInputs(changed, parseTrainSpec(changed.train, scene), lightsAreOpenIn(scene, changed));
   if (!asked.same(Stage::Lobes, base.inputs)) return true;
   if (!change.set || !takesPixels(changed) || !modelByName(model).takesPixels()) return false;
   const std::string& stage = paramSpec(change.set->substr(0, change.set->find('='))).stage;

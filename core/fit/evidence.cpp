@@ -94,37 +94,34 @@ void addOtherLevels(const std::vector<Highlight>& given, std::vector<Highlight>&
     }
 }
 
-DetectOptions detectOptionsFor(const Frame& frame, FrameSource source, const Settings& settings) {
+DetectOptions detectOptionsFor(const Frame& frame, FrameSource source, const DetectSettings& settings) {
   DetectOptions options;
-  options.level = settings.number("detect.level");
-  options.minAreaPx2 = settings.number("detect.min_area");
-  options.minContrast = settings.number("detect.min_contrast");
-  options.peakWindowLevel = settings.number("detect.peak_window");
-  options.clipValue = settings.number("detect.clip");
+  options.level = settings.level;
+  options.minAreaPx2 = settings.minAreaPx2;
+  options.minContrast = settings.minContrast;
+  options.peakWindowLevel = settings.peakWindowLevel;
+  options.clipValue = settings.clipValue;
   const bool photograph = frame.radiance.empty() || (source == FrameSource::Image && !frame.image.empty());
   if (options.clipValue == 0 && photograph) options.clipValue = 1.0;  // linearised codes end at 1
   return options;
 }
 
-Outcome<LinearPixels> pixelsOf(const Frame& frame, FrameSource source, const Settings& settings,
+Outcome<LinearPixels> pixelsOf(const Frame& frame, FrameSource source, const DetectSettings& settings,
                                const std::vector<SeparatedRegion>& separated) {
-  const Outcome<Image> linear = readLinear(frame, source);
-  if (!linear) return linear.failure();
-  const Outcome<std::optional<Image>> mask = readMask(frame);
-  if (!mask) return mask.failure();
-  LinearPixels pixels =
-      linearPixels(*linear, mask->has_value() ? &**mask : nullptr, detectOptionsFor(frame, source, settings).clipValue);
-  if (!separated.empty()) takeSpecularPart(*linear, separated, pixels);
+  const Outcome<MaskedImage> image = readMasked(frame, source);
+  if (!image) return image.failure();
+  LinearPixels pixels = linearPixels(image->linear, image->maskIfAny(), detectOptionsFor(frame, source, settings).clipValue);
+  if (!separated.empty()) takeSpecularPart(image->linear, separated, pixels);
   return pixels;
 }
 
-FrameEvidence gatherEvidence(const Scene& scene, int index, FrameSource source, const Settings& settings,
+FrameEvidence gatherEvidence(const Scene& scene, int index, FrameSource source, const DetectSettings& settings,
                              const SeparateLights& lights) {
   const Frame& frame = scene.frames[index];
   FrameEvidence evidence;
   evidence.frame = index;
   evidence.id = frame.id;
-  const double level = settings.number("detect.level");
+  const double level = settings.level;
   for (const Highlight& h : frame.highlights)
     if (std::abs(h.level - level) < kSameLevel) evidence.highlights.push_back(h);
   addOtherLevels(frame.highlights, evidence.highlights);
@@ -137,22 +134,16 @@ FrameEvidence gatherEvidence(const Scene& scene, int index, FrameSource source, 
       evidence.failure = Failure{Reason::FrameUnreadable, "frame " + frame.id + " has no image, radiance or highlights"};
       return evidence;
     }
-    const Outcome<Image> linear = readLinear(frame, source);
-    if (!linear) {
-      evidence.failure = linear.failure();
-      return evidence;
-    }
-    const Outcome<std::optional<Image>> mask = readMask(frame);
-    if (!mask) {
-      evidence.failure = mask.failure();
+    const Outcome<MaskedImage> image = readMasked(frame, source);
+    if (!image) {
+      evidence.failure = image.failure();
       return evidence;
     }
     DetectOptions options = detectOptionsFor(frame, source, settings);
     options.separatePeaks = lights.separate || frame.lightsOn.size() > 1;
     options.references = lights.references;
     for (PeakReference& r : options.references) r.peak = frame.camera.distorted(r.peak);
-    Outcome<std::vector<Highlight>> found =
-        detectHighlights(*linear, mask->has_value() ? &**mask : nullptr, options, &evidence.rejected);
+    Outcome<std::vector<Highlight>> found = detectHighlights(image->linear, image->maskIfAny(), options, &evidence.rejected);
     if (!found) {
       evidence.failure = found.failure();
       return evidence;
@@ -175,7 +166,7 @@ FrameEvidence gatherEvidence(const Scene& scene, int index, FrameSource source, 
   return evidence;
 }
 
-SpecularSeparation separateEvidence(const Scene& scene, int index, FrameSource source, const Settings& settings,
+SpecularSeparation separateEvidence(const Scene& scene, int index, FrameSource source, const DetectSettings& settings,
                                     FrameEvidence& evidence) {
   const auto because = [](std::string reason) {
     SpecularSeparation none;
@@ -186,10 +177,8 @@ SpecularSeparation separateEvidence(const Scene& scene, int index, FrameSource s
   if (evidence.highlights.empty()) return because("there is no highlight");
   if (std::any_of(evidence.highlights.begin(), evidence.highlights.end(), [](const Highlight& h) { return h.fromScene; }))
     return because("the scene gives the highlights");
-  const Outcome<Image> linear = readLinear(frame, source);
-  if (!linear) return because(linear.failure().message());
-  const Outcome<std::optional<Image>> mask = readMask(frame);
-  if (!mask) return because(mask.failure().message());
+  const Outcome<MaskedImage> image = readMasked(frame, source);
+  if (!image) return because(image.failure().message());
   std::vector<Highlight> measured = evidence.highlights;
   if (frame.camera.hasDistortion())
     for (Highlight& h : measured) {
@@ -200,7 +189,7 @@ SpecularSeparation separateEvidence(const Scene& scene, int index, FrameSource s
     }
   DetectOptions options = detectOptionsFor(frame, source, settings);
   options.separatePeaks = frame.lightsOn.size() > 1;
-  SpecularSeparation separation = separateHighlights(*linear, mask->has_value() ? &**mask : nullptr, options, measured);
+  SpecularSeparation separation = separateHighlights(image->linear, image->maskIfAny(), options, measured);
   if (!separation.separated) return separation;
   for (Highlight& h : measured) {
     if (const std::optional<Failure> failure = toIdealPixels(h, frame.camera)) return because(failure->message());

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/base/settings.h"
+#include "core/fit/detect_settings.h"
 #include "core/fit/frame_evidence.h"
 #include "core/highlight/specular_separation.h"
 #include "core/reflectance/pixel_patch.h"
@@ -20,12 +20,12 @@ struct SeparateLights {
 };
 
 /// How a frame's image is searched, without references.
-DetectOptions detectOptionsFor(const Frame& frame, FrameSource source, const Settings& settings);
+DetectOptions detectOptionsFor(const Frame& frame, FrameSource source, const DetectSettings& settings);
 
 /// The image that detection sees, as evidence. FrameUnreadable.
 /// @param separated  FrameEvidence::separated: each pixel then holds the specular part by
 ///                the nearest one's combination, in footprints; below 0 where noise says so. Empty: the mean of the channels
-Outcome<LinearPixels> pixelsOf(const Frame& frame, FrameSource source, const Settings& settings,
+Outcome<LinearPixels> pixelsOf(const Frame& frame, FrameSource source, const DetectSettings& settings,
                                const std::vector<SeparatedRegion>& separated = {});
 
 /// Contours at other levels, to the highlight of the same light whose peak they enclose. One around several peaks counts once.
@@ -33,13 +33,13 @@ void addOtherLevels(const std::vector<Highlight>& given, std::vector<Highlight>&
 
 /// Highlights of one frame in ideal pixels: those that the scene gives, else detected ones (each at the level of its own peak if
 /// the frame states several lights). Sets the light if the frame says which one is on (one light: its id; none stated: "light").
-FrameEvidence gatherEvidence(const Scene& scene, int frame, FrameSource source, const Settings& settings,
+FrameEvidence gatherEvidence(const Scene& scene, int frame, FrameSource source, const DetectSettings& settings,
                              const SeparateLights& lights = {});
 
 /// Traces the detected highlights of a frame again on their specular part alone, where its colours allow it
 /// (`separateHighlights`). Highlights that the scene gives stay as they are.
 /// @return what came of it; the reason also if the lens distortion has no inverse
-SpecularSeparation separateEvidence(const Scene& scene, int frame, FrameSource source, const Settings& settings,
+SpecularSeparation separateEvidence(const Scene& scene, int frame, FrameSource source, const DetectSettings& settings,
                                     FrameEvidence& evidence);
 
 /// Contours stored as in data/cycles/*/contours (FOLDER/ID.json) at `level`, for scoring. FrameUnreadable if the frame has no

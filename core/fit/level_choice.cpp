@@ -41,12 +41,11 @@ const Highlight* largestOf(const FrameEvidence& evidence) {
   return largest == evidence.highlights.end() || !largest->ellipse ? nullptr : &*largest;
 }
 
-FrameEvidence at(const Scene& scene, int frame, FrameSource source, Settings settings, double level) {
-  settings.set("detect.level", level);
-  return gatherEvidence(scene, frame, source, settings);
+FrameEvidence at(const Scene& scene, int frame, FrameSource source, const DetectSettings& settings, double level) {
+  return gatherEvidence(scene, frame, source, settings.at(level));
 }
 
-FrameAtLevel lookAt(const Scene& scene, int frame, FrameSource source, const Settings& settings, double level) {
+FrameAtLevel lookAt(const Scene& scene, int frame, FrameSource source, const DetectSettings& settings, double level) {
   FrameAtLevel result;
   const FrameEvidence here = at(scene, frame, source, settings, level);
   const Highlight* const h = largestOf(here);
@@ -112,8 +111,8 @@ LevelChoice summaryOf(const std::vector<FrameAtLevel>& seen, double level) {
 
 }  // namespace
 
-Outcome<LevelChoice> chooseLevel(const Scene& scene, const std::vector<int>& frames, FrameSource source, const Settings& settings,
-                                 const ProgressFn& progress) {
+Outcome<LevelChoice> chooseLevel(const Scene& scene, const std::vector<int>& frames, FrameSource source,
+                                 const DetectSettings& settings, const ProgressFn& progress) {
   require(!frames.empty(), "chooseLevel: no frames");
   if (std::optional<LevelChoice> given = givenLevel(scene, frames)) return *std::move(given);
   std::vector<int> looked;

@@ -6,7 +6,7 @@
 
 #include "core/base/outcome.h"
 #include "core/base/progress.h"
-#include "core/base/settings.h"
+#include "core/fit/detect_settings.h"
 #include "core/scene/scene.h"
 
 namespace glint {
@@ -26,7 +26,7 @@ struct LevelChoice {
 /// above noise; else the one at which most are. A clipped highlight lies at a fraction of the clip value, always below it.
 /// @param frames  that are looked at, by index
 /// @return  NoHighlight if none of them shows one; FrameUnreadable
-Outcome<LevelChoice> chooseLevel(const Scene& scene, const std::vector<int>& frames, FrameSource source, const Settings& settings,
-                                 const ProgressFn& progress = {});
+Outcome<LevelChoice> chooseLevel(const Scene& scene, const std::vector<int>& frames, FrameSource source,
+                                 const DetectSettings& settings, const ProgressFn& progress = {});
 
 }  // namespace glint

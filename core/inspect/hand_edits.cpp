@@ -176,10 +176,9 @@ Outcome<Highlight> grown(const Scene& scene, int frame, const InspectionRequest&
   const Frame& f = scene.frames[static_cast<std::size_t>(frame)];
   const Pixel clicked = f.camera.distorted(ideal);
   if (!isInPhotograph(f.camera, ideal)) return Failure{Reason::OutsideImage, "the place is outside of the image"};
-  const Outcome<Image> linear = readLinear(f, request.source);
-  if (!linear) return linear.failure();
-  const Outcome<std::optional<Image>> mask = readMask(f);
-  if (!mask) return mask.failure();
+  const Outcome<MaskedImage> image = readMasked(f, request.source);
+  if (!image) return image.failure();
+  const Image& linear = image->linear;
   DetectOptions options = detectOptionsFor(f, request.source, request.settings);
   options.separatePeaks = true;
   options.minAreaPx2 = std::min(options.minAreaPx2, kSeedAreaPx2);
@@ -193,12 +192,12 @@ Outcome<Highlight> grown(const Scene& scene, int frame, const InspectionRequest&
   };
   std::string why = "no region is large and bright enough";
   for (int half = kSeedWindowPx;; half *= 2) {
-    const int x0 = std::max(0, int(clicked.x()) - half), x1 = std::min(linear->width, int(clicked.x()) + half + 1);
-    const int y0 = std::max(0, int(clicked.y()) - half), y1 = std::min(linear->height, int(clicked.y()) + half + 1);
-    const bool whole = x0 == 0 && y0 == 0 && x1 == linear->width && y1 == linear->height;
-    const Image crop = part(*linear, x0, y0, x1, y1);
+    const int x0 = std::max(0, int(clicked.x()) - half), x1 = std::min(linear.width, int(clicked.x()) + half + 1);
+    const int y0 = std::max(0, int(clicked.y()) - half), y1 = std::min(linear.height, int(clicked.y()) + half + 1);
+    const bool whole = x0 == 0 && y0 == 0 && x1 == linear.width && y1 == linear.height;
+    const Image crop = part(linear, x0, y0, x1, y1);
     std::optional<Image> cropMask;
-    if (*mask) cropMask = part(**mask, x0, y0, x1, y1);
+    if (image->mask) cropMask = part(*image->mask, x0, y0, x1, y1);
     const Pixel inCrop = clicked - Pixel(x0, y0);
     const Outcome<std::vector<Highlight>> found = detectHighlights(crop, cropMask ? &*cropMask : nullptr, options);
     const Highlight* nearest = nullptr;

@@ -44,7 +44,7 @@ const FrameEvidence* Inspection::evidenceOf(int frame, const StageInputs& from) 
 
 Inspection Inspection::evidenceAlone() && {
   Inspection alone = std::move(*this);
-  alone.inputs = alone.inputs.upTo(Stage::Lobes);
+  alone.inputs = alone.inputs.upToLobes();
   alone.views.clear();
   alone.viewsAsGiven.clear();
   alone.lights.clear();

@@ -59,7 +59,7 @@ struct ModelResult {
   };
   std::vector<Fit> fits;
   std::vector<FrameComparison> frames;  ///< every frame, training ones too; `heldOut` tells which count
-  bool oneFrame = false;                ///< `frames` has one frame's alone, see inspectOneFrame()
+  bool oneFrame = false;                ///< `frames` has one frame's alone, see Question::Part::Frame
 };
 
 /// What one run of `inspect` computed itself; what it took over from an earlier run or did not need counts nothing.
@@ -84,7 +84,7 @@ struct Inspection {
   std::shared_ptr<const SurfaceCache> surfaces;
   InspectionRequest request;
   TrainSpec train;
-  std::vector<FrameEvidence> evidence;  ///< one per frame; `frame` is -1 if inspectOneFrame() did not look
+  std::vector<FrameEvidence> evidence;  ///< one per frame; `frame` is -1 where nobody looked
   /// As found, of frames whose highlights the what-if moved or whose lights it switched off.
   std::map<int, FrameEvidence> evidenceBefore;
   /// Where a lobe's background replaced the smooth one (detect.background = lobe): the evidence as first detected; else empty.
@@ -94,9 +94,9 @@ struct Inspection {
   std::map<std::pair<int, int>, std::shared_ptr<const PixelPatch>> patches;  ///< pixels by (training frame, highlight as found)
   std::map<FitKey, Outcome<std::shared_ptr<const PixelFit>>> pixelFits;      ///< the lobe of the training frames' pixels
   std::map<FitKey, std::shared_ptr<const UnexplainedPixels>> unexplained;    ///< what was asked where that failed
-  bool pixelsLeft = false;                                 ///< patches and pixelFits are still to be made, see firstLook()
-  std::map<FitKey, Outcome<LightEstimate>> lights;         ///< see lightOf(), lightFor()
-  std::map<FitKey, SurfaceCorrection> corrections;         ///< of the views' and predictions' surfaces, where there is one
+  bool pixelsLeft = false;                          ///< patches and pixelFits are still to be made, see Question::Part::FirstLook
+  std::map<FitKey, Outcome<LightEstimate>> lights;  ///< see lightOf(), lightFor()
+  std::map<FitKey, SurfaceCorrection> corrections;  ///< of the views' and predictions' surfaces, where there is one
   std::shared_ptr<CorrectedDepthMaps> correctedDepthMaps;  ///< recently used ones, for surfaceFor(); never null after a run
   std::map<std::string, ModelResult> models;
   StageInputs inputs;  ///< of the stages that were computed: tells which of them a later run may take over
@@ -126,25 +126,9 @@ struct Inspection {
 /// @param light  id.
 Outcome<std::shared_ptr<const Surface>> surfaceFor(const Inspection& inspection, int frame, const std::string& light);
 
-/// scene -> highlight -> brightest point, tangent plane -> light -> virtual camera -> canonical contour -> model fit
-/// -> prediction -> comparison. Pure; throws Stopped when `progress` says so, InputError for wrong requests.
+/// The answer to a single question for everything, see Pipeline (core/inspect/pipeline.h), with its failures.
 /// @param previous  result of an earlier run on the same scene: stages whose inputs did not change are taken from it.
 Inspection inspect(std::shared_ptr<const Scene> scene, const InspectionRequest& request, const ProgressFn& progress = {},
                    const Inspection* previous = nullptr);
-
-/// What `inspect` would say about one frame, sooner: evidence of the training frames and of this one, all fits, but predictions
-/// for this frame alone (`previous` may fill in more). Given to `inspect` as `previous` it leaves only the rest to be done. Same
-/// failures; every frame is looked at where a light can only be told from all of them.
-Inspection inspectOneFrame(std::shared_ptr<const Scene> scene, const InspectionRequest& request, int frame,
-                           const ProgressFn& progress = {}, const Inspection* previous = nullptr);
-
-/// What `inspectOneFrame` would say with those of the models alone that take no pixels: sooner, as a lobe's fit to the pixels is
-/// the longest part of many first runs. Given on as `previous` it leaves only the rest to be done.
-/// Contours that the lobe finds again (detect.background = lobe) are those of the smooth background for as long.
-/// @return nothing if that is not worth a step of its own: no pixels are asked for, or every model takes them; `previous` has
-///         the lobe, or contours found with one; or it shows a model that takes pixels, which would be gone for a moment.
-/// Failures as inspectOneFrame.
-std::optional<Inspection> firstLook(std::shared_ptr<const Scene> scene, const InspectionRequest& request, int frame,
-                                    const ProgressFn& progress = {}, const Inspection* previous = nullptr);
 
 }  // namespace glint

@@ -6,6 +6,7 @@
 
 #include "core/base/elapsed.h"
 #include "core/inspect/fit_band.h"
+#include "core/inspect/pipeline.h"
 #include "core/inspect/prediction_filter.h"
 #include "core/model/plausible.h"
 #include "core/surface/mesh_policy.h"
@@ -49,7 +50,7 @@ LivePredictor::LivePredictor(std::shared_ptr<const Scene> scene, const Inspectio
   // Fits need the training frames alone; of the predictions one is enough to load the surface and to build its trees.
   InspectionRequest fits = request;
   fits.settings.set("predict.band", false);  // of the one prediction; that of the poses is below
-  inspection_ = inspectOneFrame(std::move(scene), fits, train.frames.front(), progress);
+  inspection_ = answer(std::move(scene), {fits, Question::Part::Frame, train.frames.front()}, progress);
   inspection_.request = request;
   if (request.settings.flag("predict.band"))
     for (auto& [name, result] : inspection_.models)

@@ -52,11 +52,6 @@ bool takesAnyLobe(const Settings& settings) {
                      [&](const char* key) { return settings.text(key) == any.text(key); });
 }
 
-InspectionRequest atHalf(InspectionRequest request) {
-  request.settings.set("detect.level", 0.5);
-  return request;
-}
-
 /// One light's. What fails is kept with its question.
 void fitLobe(Inspection& r, const FitKey& key, const std::vector<TrainingView>& views, const ProgressFn& goesOn) {
   // The start is the same whatever the settings of the light are: they do not matter to where the fit ends.
@@ -81,32 +76,21 @@ bool looksAtPixels(const InspectionRequest& request) {
   return request.settings.text("detect.background") == "lobe" || evidence == "auto" || evidence == "pixels";
 }
 
-std::optional<InspectionRequest> withoutPixels(const Scene& scene, const InspectionRequest& request, const Inspection* previous) {
-  if (!looksAtPixels(request)) return std::nullopt;
-  InspectionRequest quick = request;
-  std::erase_if(quick.models, [](const std::string& m) { return modelByName(m).takesPixels(); });
-  if (quick.models.empty()) return std::nullopt;
-  const Inspection* const known = previous && !previous->pixelsLeft ? previous : nullptr;
-  const auto shown = [&](const std::string& m) { return modelByName(m).takesPixels() && known->models.count(m); };
-  const auto lobesAreKnown = [&] {
-    StageInputs asked;
-    asked.set(Stage::Lobes, lobeInputs(request, parseTrainSpec(request.train, scene), lightsAreOpenIn(scene, request)));
-    return asked.same(Stage::Lobes, known->inputs);
-  };
+bool worthALook(const Scene& scene, const InspectionRequest& request, const std::vector<const Inspection*>& known) {
+  const auto takesPixels = [](const std::string& m) { return modelByName(m).takesPixels(); };
+  if (!looksAtPixels(request) || std::all_of(request.models.begin(), request.models.end(), takesPixels)) return false;
+  const auto withPixels = [](const Inspection* k) { return !k->pixelsLeft; };
+  const auto newest =
+      std::find_if(known.begin(), known.end(), [&](const Inspection* k) { return withPixels(k) && !k->models.empty(); });
+  if (newest == known.end()) return true;
   // Contours that are found again would move twice at every step of a drag: their first ones serve where there are no others yet.
-  if (known && request.settings.text("detect.background") == "lobe") return std::nullopt;
-  if (known && (lobesAreKnown() || std::any_of(request.models.begin(), request.models.end(), shown))) return std::nullopt;
-  return quick;
-}
-
-std::string lobeInputs(const InspectionRequest& request, const TrainSpec& train, bool together) {
-  std::string frames;
-  for (const int f : train.frames) frames += std::to_string(f) + ",";
-  frames += train.perSurface ? "per-surface" : "";
-  for (const int f : request.excluded) frames += "x" + std::to_string(f);
-  return inputsText(request.settings, {"surface"}, evidenceInputs(together ? request : atHalf(request), together)) + "|" +
-         frames + "|" + posesKey(request.whatIf) + "|" + lightsOffKey(request.whatIf) + ignoredKey(request.whatIf) +
-         (looksAtPixels(request) ? "|pixels" : "");
+  if (DetectSettings(request.settings).background == BackgroundUse::Lobe) return false;
+  StageInputs asked;
+  asked.lobes = lobeInputs(request, parseTrainSpec(request.train, scene), lightsAreOpenIn(scene, request));
+  const auto hasLobes = [&](const Inspection* k) { return withPixels(k) && asked.same(Stage::Lobes, k->inputs); };
+  const auto isShown = [&](const std::string& m) { return takesPixels(m) && (*newest)->models.count(m); };
+  return std::none_of(known.begin(), known.end(), hasLobes) &&
+         std::none_of(request.models.begin(), request.models.end(), isShown);
 }
 
 void fitLobes(Inspection& r, const SurfaceOfFrame& surfaceOf, bool together, const ProgressFn& progress) {
@@ -119,17 +103,17 @@ void fitLobes(Inspection& r, const SurfaceOfFrame& surfaceOf, bool together, con
     std::vector<std::pair<int, int>> ids;
   };
   std::vector<Seen> seen(frames.size());
-  const InspectionRequest half = atHalf(r.request);
-  const bool sameLevel = together || r.request.settings.number("detect.level") == 0.5;
+  const EvidenceInputs& asked = r.inputs.lobes->evidence;
+  const bool sameLevel = together || r.inputs.evidence->detect.level == asked.detect.level;
   parallelFor(
       static_cast<int>(frames.size()),
       [&](int n) {
         const int f = frames[static_cast<std::size_t>(n)];
         const Frame& frame = r.scene->frames[static_cast<std::size_t>(f)];
-        FrameEvidence evidence = sameLevel ? r.evidence[static_cast<std::size_t>(f)] : evidenceFor(*r.scene, f, half);
+        FrameEvidence evidence = sameLevel ? r.evidence[static_cast<std::size_t>(f)] : evidenceFor(*r.scene, f, asked);
         if (!sameLevel) dropTextures(evidence, r.evidence[static_cast<std::size_t>(f)].textures);
         const std::shared_ptr<const Surface> surface = surfaceOf(f);
-        const Outcome<LinearPixels> pixels = pixelsOf(frame, r.request.source, r.request.settings, evidence.separated);
+        const Outcome<LinearPixels> pixels = pixelsOf(frame, asked.source, asked.detect, evidence.separated);
         if (!surface || !pixels) return;
         for (int h = 0; h < static_cast<int>(evidence.highlights.size()); ++h) {
           const Highlight& highlight = evidence.highlights[static_cast<std::size_t>(h)];
@@ -167,11 +151,11 @@ std::shared_ptr<const PixelFit> pixelFitFor(const Inspection& r, const FitKey& k
   return fit != r.pixelFits.end() && fit->second && takesAnyLobe(r.request.settings) ? *fit->second : nullptr;
 }
 
-std::optional<FrameEvidence> contouredAgain(const Inspection& lobes, const Scene& scene, const InspectionRequest& request, int f,
+std::optional<FrameEvidence> contouredAgain(const Inspection& lobes, const Scene& scene, const EvidenceInputs& in, int f,
                                             const FrameEvidence& detected, const std::shared_ptr<const Surface>& surface) {
   if (!wasDetected(detected) || !surface) return std::nullopt;
   const Frame& frame = scene.frames[static_cast<std::size_t>(f)];
-  const Outcome<LinearPixels> pixels = pixelsOf(frame, request.source, request.settings);
+  const Outcome<LinearPixels> pixels = pixelsOf(frame, in.source, in.detect);
   if (!pixels) return std::nullopt;
   std::map<std::string, std::vector<std::size_t>> byLight;
   for (std::size_t h = 0; h < detected.highlights.size(); ++h) byLight[detected.highlights[h].light].push_back(h);
@@ -184,7 +168,7 @@ std::optional<FrameEvidence> contouredAgain(const Inspection& lobes, const Scene
     for (const std::size_t h : indices) found.push_back(detected.highlights[h]);
     Outcome<std::vector<Highlight>> traced =
         contourWithLobe(*pixels, frame.camera, *surface, f, found, ofOthers(detected, light), lobe.model, lobe.background,
-                        detectOptionsFor(frame, request.source, request.settings));
+                        detectOptionsFor(frame, in.source, in.detect));
     if (!traced) continue;
     if (!again) again = detected;
     for (std::size_t k = 0; k < indices.size(); ++k) again->highlights[indices[k]] = std::move((*traced)[k]);
@@ -193,7 +177,7 @@ std::optional<FrameEvidence> contouredAgain(const Inspection& lobes, const Scene
 }
 
 void contourAgain(Inspection& r, const SurfaceOfFrame& surfaceOf, const ProgressFn& progress) {
-  if (r.request.settings.text("detect.background") != "lobe" || r.pixelFits.empty()) return;
+  if (r.inputs.evidence->detect.background != BackgroundUse::Lobe || r.pixelFits.empty()) return;
   r.detected.resize(r.evidence.size());
   std::vector<int> frames;
   for (int f = 0; f < static_cast<int>(r.evidence.size()); ++f)
@@ -206,7 +190,7 @@ void contourAgain(Inspection& r, const SurfaceOfFrame& surfaceOf, const Progress
         const int f = frames[static_cast<std::size_t>(n)];
         FrameEvidence& evidence = r.evidence[static_cast<std::size_t>(f)];
         r.detected[static_cast<std::size_t>(f)] = evidence;
-        if (std::optional<FrameEvidence> again = contouredAgain(r, *r.scene, r.request, f, evidence, surfaceOf(f))) {
+        if (std::optional<FrameEvidence> again = contouredAgain(r, *r.scene, *r.inputs.evidence, f, evidence, surfaceOf(f))) {
           evidence = *std::move(again);
           ++changed;
         }
@@ -221,9 +205,9 @@ void addDetectedLevels(const Inspection& r, const SurfaceOfFrame& surfaceOf, Fra
   const std::size_t f = static_cast<std::size_t>(evidence.frame);
   const bool withLobe = f < r.detected.size() && r.detected[f].frame >= 0;
   for (const double level : listedLevels(r.request.settings)) {
-    if (!(level > 0 && level < 1) || std::abs(level - r.request.settings.number("detect.level")) < kSameLevel) continue;
-    InspectionRequest at = r.request;
-    at.settings.set("detect.level", level);
+    if (!(level > 0 && level < 1) || std::abs(level - r.inputs.evidence->detect.level) < kSameLevel) continue;
+    EvidenceInputs at = *r.inputs.evidence;
+    at.detect = at.detect.at(level);
     std::optional<FrameEvidence> found;
     if (withLobe) found = contouredAgain(r, *r.scene, at, evidence.frame, r.detected[f], surfaceOf(evidence.frame));
     if (!found) found = evidenceFor(*r.scene, evidence.frame, at);

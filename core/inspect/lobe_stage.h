@@ -18,14 +18,9 @@ namespace glint {
 /// The request asks for pixels: as evidence, or for the background.
 bool looksAtPixels(const InspectionRequest& request);
 
-/// The request with those models alone that take no pixels, where these are worth a step of their own, see firstLook().
-/// @param previous  earlier results on the same scene, or null
-std::optional<InspectionRequest> withoutPixels(const Scene& scene, const InspectionRequest& request, const Inspection* previous);
-
-/// What the stage depends on; the models' settings do not count. It always looks at highlights as detected at half their peak, so
-/// that another level, which a user drags, fits no lobe again.
-/// @param together  lights are told apart from all frames: then the highlights of the request's own level are taken
-std::string lobeInputs(const InspectionRequest& request, const TrainSpec& train, bool together);
+/// The models that take no pixels are worth a step of their own, see Pipeline::ask().
+/// @param known  earlier results on the same scene, the newest first
+bool worthALook(const Scene& scene, const InspectionRequest& request, const std::vector<const Inspection*>& known);
 
 using SurfaceOfFrame = std::function<std::shared_ptr<const Surface>(int frame)>;
 
@@ -42,10 +37,9 @@ std::shared_ptr<const PixelFit> pixelFitFor(const Inspection& inspection, const 
 void contourAgain(Inspection& inspection, const SurfaceOfFrame& surfaceOf, const ProgressFn& progress);
 
 /// One frame's evidence, contoured again with the lobes that an inspection found. Empty if no light's lobe explains the frame.
-/// @param scene,request  whose frame and settings count; they may be newer than the inspection's
-std::optional<FrameEvidence> contouredAgain(const Inspection& lobes, const Scene& scene, const InspectionRequest& request,
-                                            int frame, const FrameEvidence& detected,
-                                            const std::shared_ptr<const Surface>& surface);
+/// @param scene,in  whose frame and settings count; they may be newer than the inspection's
+std::optional<FrameEvidence> contouredAgain(const Inspection& lobes, const Scene& scene, const EvidenceInputs& in, int frame,
+                                            const FrameEvidence& detected, const std::shared_ptr<const Surface>& surface);
 
 /// Where the evidence is `levels`: contours of a frame's detected highlights at those of `fit.levels` that are not their own,
 /// found as their own were. None for what the user moved, and at levels that lie in clipped pixels.

@@ -23,24 +23,25 @@ std::optional<Observation> observeFrame(std::shared_ptr<const Scene> scene, cons
   require(scene && frame >= 0 && frame < static_cast<int>(scene->frames.size()), "observeFrame: no such frame");
   if (lightsAreOpenIn(*scene, request)) return std::nullopt;
   Observation seen;
-  seen.inputs = StageInputs(evidenceInputs(request, false));
+  seen.inputs.evidence = evidenceInputs(request, false);
   if (known && known->given == scene && known->evidenceOf(frame, seen.inputs)) return std::nullopt;
   const WhatIf& w = request.whatIf;
   const std::vector<int> alone{frame};
   seen.given = scene;
-  seen.scene = w.changesScene() ? changedScene(*scene, w, request.settings.number("detect.level"), progress, &alone) : scene;
+  seen.scene = w.changesScene() ? changedScene(*scene, w, seen.inputs.evidence->detect.level, progress, &alone) : scene;
   seen.request = request;
   seen.frame = frame;
   if (!report(progress, {"detect", 0, 1})) throw Stopped{};
-  seen.evidence = evidenceFor(*seen.scene, frame, request);
+  seen.evidence = evidenceFor(*seen.scene, frame, *seen.inputs.evidence);
   // Only all frames tell texture; what was texture before most likely still is.
-  if (known && known->given == scene && motionUse(request.settings) == MotionUse::Reject)
+  if (known && known->given == scene && seen.inputs.evidence->detect.motion == MotionUse::Reject)
     dropTextures(seen.evidence, known->evidence[std::size_t(frame)].textures);
-  if (known && known->given == scene && known->surfaces && request.settings.text("detect.background") == "lobe") {
+  if (known && known->given == scene && known->surfaces && seen.inputs.evidence->detect.background == BackgroundUse::Lobe) {
     // The lobes of the earlier results, where the request would find the same ones.
     const auto surface = known->surfaces->surfaceOf(frame, meshPolicy(request.settings));
-    if (known->inputs.is(Stage::Lobes, lobeInputs(request, known->train, false)) && surface)
-      if (std::optional<FrameEvidence> again = contouredAgain(*known, *seen.scene, request, frame, seen.evidence, *surface))
+    if (known->inputs.lobes == lobeInputs(request, known->train, false) && surface)
+      if (std::optional<FrameEvidence> again =
+              contouredAgain(*known, *seen.scene, *seen.inputs.evidence, frame, seen.evidence, *surface))
         seen.evidence = *std::move(again);
   }
   applyEdits(seen.evidence, *seen.scene, request);

@@ -10,25 +10,26 @@
 
 namespace glint {
 
-FrameEvidence evidenceFor(const Scene& scene, int frame, const InspectionRequest& request) {
+FrameEvidence evidenceFor(const Scene& scene, int frame, const EvidenceInputs& in) {
   const Frame& f = scene.frames[static_cast<std::size_t>(frame)];
   FrameEvidence evidence;
-  if (request.whatIf.synthesise && f.highlights.empty()) {
+  if (in.whatIf.synthesise && f.highlights.empty()) {
     evidence.frame = frame;
     evidence.id = f.id;
     evidence.failure = Failure{Reason::NoHighlight, "no light produces one in frame " + f.id};
     return evidence;
   }
-  evidence = gatherEvidence(scene, frame, request.source, request.settings);
+  const PhotographsHeld held(scene, {frame});  // some read it twice
+  evidence = gatherEvidence(scene, frame, in.source, in.detect);
   const bool detected = !evidence.highlights.empty() && !evidence.highlights.front().fromScene;
-  if (detected && request.settings.text("detect.background") == "colours") {
-    SpecularSeparation separation = separateEvidence(scene, frame, request.source, request.settings, evidence);
+  if (detected && in.detect.background == BackgroundUse::Colours) {
+    SpecularSeparation separation = separateEvidence(scene, frame, in.source, in.detect, evidence);
     evidence.notSeparated = std::move(separation.reason);
     evidence.separated = std::move(separation.regions);
   }
-  if (request.truthFolder.empty()) return evidence;
+  if (in.truthFolder.empty()) return evidence;
   evidence.againstTruth = true;
-  Outcome<std::vector<Highlight>> truth = readTruth(request.truthFolder, scene, frame, request.settings.number("detect.level"));
+  Outcome<std::vector<Highlight>> truth = readTruth(in.truthFolder, scene, frame, in.detect.level);
   if (truth)
     evidence.truth = std::move(*truth);
   else

@@ -5,10 +5,9 @@
 
 namespace glint {
 
-/// Evidence of one frame as a request asks for it, with truth where it names a folder, but without the user's changes to single
-/// highlights.
-/// @param scene  with the request's what-if
-FrameEvidence evidenceFor(const Scene& scene, int frame, const InspectionRequest& request);
+/// Evidence of one frame, with truth where its inputs name a folder, but without the user's changes to single highlights.
+/// @param scene  with the what-if
+FrameEvidence evidenceFor(const Scene& scene, int frame, const EvidenceInputs& in);
 
 /// Whether a what-if moves highlights of a frame or changes which there are.
 bool changesHighlights(const WhatIf& whatIf, int frame);

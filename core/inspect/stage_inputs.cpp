@@ -1,44 +1,80 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/inspect/stage_inputs.h"
 
-#include <variant>
-
-#include "core/base/number_text.h"
 #include "core/inspect/inspection.h"
+#include "core/inspect/lobe_stage.h"
 
 namespace glint {
 
-StageInputs StageInputs::upTo(Stage last) const {
-  StageInputs some = *this;
-  for (std::size_t i = index(last) + 1; i < kStages; ++i) some.inputs_[i].reset();
+bool StageInputs::same(Stage stage, const StageInputs& other) const {
+  const auto equal = [](const auto& a, const auto& b) { return a && a == b; };
+  switch (stage) {
+    case Stage::Evidence: return equal(evidence, other.evidence);
+    case Stage::Lobes: return equal(lobes, other.lobes);
+    case Stage::Views: return same(Stage::Evidence, other) && same(Stage::Lobes, other) && equal(views, other.views);
+    case Stage::Lights: return same(Stage::Views, other) && equal(lights, other.lights);
+    case Stage::Fits: return same(Stage::Lights, other) && equal(fits, other.fits);
+    case Stage::Predictions: break;
+  }
+  return same(Stage::Fits, other) && equal(predictions, other.predictions);
+}
+
+StageInputs StageInputs::upToLobes() const {
+  StageInputs some;
+  some.evidence = evidence;
+  some.lobes = lobes;
   return some;
 }
 
-std::string exactText(double v) { return formatted("%.17g", v); }
-
-std::string inputsText(const Settings& settings, const std::set<std::string>& stages, const std::string& more) {
-  std::string text = more;
-  for (const auto& [name, value] : settings.values()) {
-    if (!stages.count(paramSpec(name).stage)) continue;
-    text += "|" + name + "=";
-    if (const auto* word = std::get_if<std::string>(&value))
-      text += *word;
-    else if (const auto* number = std::get_if<double>(&value))
-      text += exactText(*number);
-    else if (const auto* whole = std::get_if<int>(&value))
-      text += std::to_string(*whole);
-    else
-      text += std::get<bool>(value) ? "true" : "false";
-  }
-  return text;
+StageSettings settingsOf(const Settings& settings, const std::set<std::string>& stages) {
+  StageSettings some;
+  for (const auto& [name, value] : settings.values())
+    if (stages.count(paramSpec(name).stage)) some.emplace(name, value);
+  return some;
 }
 
-std::string evidenceInputs(const InspectionRequest& request, bool together) {
-  // The assignment of several lights reflects rays on the surface: its normals matter then.
-  const std::set<std::string> stages = together ? std::set<std::string>{"detect", "surface"} : std::set<std::string>{"detect"};
-  return inputsText(request.settings, stages,
-                    (request.source == FrameSource::Image ? "image|" : "radiance|") + request.truthFolder + "|" +
-                        synthesisKey(request.whatIf) + (together ? posesKey(request.whatIf) : ""));
+EvidenceInputs evidenceInputs(const InspectionRequest& request, bool together) {
+  EvidenceInputs in;
+  in.source = request.source;
+  in.truthFolder = request.truthFolder;
+  in.detect = request.settings;
+  if (together) in.surface = settingsOf(request.settings, {"surface"});
+  in.whatIf = synthesisOf(request.whatIf);
+  if (together) in.whatIf.poses = request.whatIf.poses;
+  return in;
+}
+
+TrainingInputs trainingInputs(const InspectionRequest& request, const TrainSpec& train) {
+  return {train.frames, request.excluded, train.perSurface};
+}
+
+LobeInputs lobeInputs(const InspectionRequest& request, const TrainSpec& train, bool together) {
+  constexpr double kHalf = 0.5;
+  LobeInputs in;
+  in.evidence = evidenceInputs(request, together);
+  if (!together) in.evidence.detect = in.evidence.detect.at(kHalf);
+  in.surface = settingsOf(request.settings, {"surface"});
+  in.training = trainingInputs(request, train);
+  in.whatIf.poses = request.whatIf.poses;
+  in.whatIf.lightsSwitched = lightsOff(request.whatIf);
+  in.whatIf.edits = request.whatIf.edits;
+  std::erase_if(in.whatIf.edits, [](const HighlightEdit& e) { return e.kind != HighlightEdit::Kind::Ignore; });
+  in.pixels = looksAtPixels(request);
+  return in;
+}
+
+ViewInputs viewInputs(const InspectionRequest& request, const TrainSpec& train) {
+  ViewInputs in;
+  in.surface = settingsOf(request.settings, {"surface"});
+  in.training = trainingInputs(request, train);
+  in.noisePx = request.noisePx;
+  in.seed = request.seed;
+  in.whatIf.poses = request.whatIf.poses;
+  in.whatIf.highlights = request.whatIf.highlights;
+  in.whatIf.edits = request.whatIf.edits;
+  in.whatIf.lightsSwitched = lightsOff(request.whatIf);
+  if (request.settings.text("fit.evidence") == "levels") in.levels = request.settings.text("fit.levels");
+  return in;
 }
 
 }  // namespace glint

@@ -59,6 +59,7 @@ void choose(Evaluation& e, const std::shared_ptr<const Scene>& scene, Inspection
 
 Evaluation evaluate(std::shared_ptr<const Scene> scene, InspectionRequest request, ReportContext report,
                     const EvaluationQuestion& question, const ProgressFn& progress, const Inspection* previous) {
+  const PhotographsHeld held(*scene, parseTrainSpec(request.train, *scene).frames);  // the choice may look at them again
   Evaluation e;
   e.report = std::move(report);
   if (question.choose) {

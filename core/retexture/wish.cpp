@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <set>
 
+#include "core/inspect/pipeline.h"
 #include "core/retexture/picture_file.h"
 
 namespace glint {
@@ -70,7 +71,8 @@ RetexturedFrame retextureAsWished(std::shared_ptr<const Scene> scene, Inspection
   request.models = {model};
   const Frame& about = scene->frames.at(static_cast<std::size_t>(frame));
   const RetextureRequest wanted = requestOf(wish, model, about.camera);
-  Inspection inspection = inspectOneFrame(scene, request, frame, progress, previous);
+  Inspection inspection = answer(scene, {request, Question::Part::Frame, frame}, progress,
+                                 previous ? std::vector{previous} : std::vector<const Inspection*>{});
   requireLight(wish.light, inspection, model);
   Outcome<Retextured> result = retexture(inspection, frame, wanted, progress);
   if (!result) {

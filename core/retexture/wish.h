@@ -33,7 +33,7 @@ struct RetexturedFrame {
   Outcome<Retextured> result;
 };
 
-/// inspectOneFrame() and retexture() as wished.
+/// What is asked of this frame alone (Question::Part::Frame), and retexture(), as wished.
 /// @param request   of the session: models, training frames, settings
 /// @param previous  an inspection of the same scene, whose stages are taken over; null = none
 /// Failures of both, the detail with model and frame. InputError: a model, light, mapping, shading or file that is missing or

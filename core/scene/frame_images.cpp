@@ -90,6 +90,7 @@ Outcome<DecodedImage> decodeFile(const fs::path& file, const Camera& camera) {
   } catch (const InputError& e) {
     return Failure{Reason::FrameUnreadable, e.what()};
   }
+  countDecoded();
   Outcome<cv::Mat> pixels = decodeImage(bytes, header);
   if (!pixels) return unreadable(file, pixels.failure().detail);
   const int orientation = orientationThatFits(bytes, header, camera);
@@ -97,24 +98,27 @@ Outcome<DecodedImage> decodeFile(const fs::path& file, const Camera& camera) {
                       header.severalChannels};
 }
 
-/// The result of an earlier read of the same file. Nothing if it is beyond a limit that was lowered since.
-std::optional<DecodedImage> keptImage(const fs::path& file, const FileVersion& version) {
-  std::optional<DecodedImage> kept = decodedImages().find(file, version);
+/// What an earlier read of the same file found. Nothing beyond a limit that was lowered since.
+std::optional<DecodedImage> keptImage(const fs::path& name, const FileVersion& version) {
+  std::optional<DecodedImage> kept = decodedImages().find(name, version);
   if (!kept || double(version.bytes) / kMega > limitOf(Limit::ImageMegabytes) ||
       double(kept->pixels->total()) / kMega > limitOf(Limit::ImageMegapixels))
     return std::nullopt;
   return kept;
 }
 
-Outcome<DecodedImage> decode(const fs::path& file, const Camera& camera) {
-  const std::optional<FileVersion> version = decodedImages().keepsAny() ? versionOf(file) : std::nullopt;
-  std::optional<DecodedImage> image = version ? keptImage(file, *version) : std::nullopt;
+/// @param name  by which it is kept: the file, and which picture of a video
+/// @param read  decodes it
+Outcome<DecodedImage> decodeOnce(const fs::path& file, const fs::path& name, const Camera& camera,
+                                 const std::function<Outcome<DecodedImage>()>& read) {
+  const std::optional<FileVersion> version = decodedImages().keeps(name) ? versionOf(file) : std::nullopt;
+  std::optional<DecodedImage> image = version ? keptImage(name, *version) : std::nullopt;
   const auto hasSize = [&camera](const cv::Mat& m) { return m.cols == camera.width && m.rows == camera.height; };
   if (!image || !hasSize(*image->pixels)) {  // one that is kept may be turned for a camera of another size
-    Outcome<DecodedImage> read = decodeFile(file, camera);
-    if (!read) return read.failure();
-    if (version) decodedImages().keep(file, *version, *read);
-    image = *std::move(read);
+    Outcome<DecodedImage> now = read();
+    if (!now) return now.failure();
+    if (version) decodedImages().keep(name, *version, *now);
+    image = *std::move(now);
   }
   const cv::Mat& m = *image->pixels;
   if (!hasSize(m))  // a decoder may know better than the header
@@ -122,15 +126,20 @@ Outcome<DecodedImage> decode(const fs::path& file, const Camera& camera) {
   return *std::move(image);
 }
 
-/// The picture of a frame. Decoders give 8 bits for every video.
+Outcome<DecodedImage> decode(const fs::path& file, const Camera& camera) {
+  return decodeOnce(file, file, camera, [&] { return decodeFile(file, camera); });
+}
+
+/// The picture of a frame. Of a video all decoders give 8 bits.
 Outcome<DecodedImage> decode(const Frame& frame, const fs::path& file) {
   if (!frame.ofVideo || file != frame.image) return decode(file, frame.camera);
-  const Outcome<cv::Mat> pixels = videoPicture(file, *frame.ofVideo);
-  if (!pixels) return pixels.failure();
-  if (pixels->cols != frame.camera.width || pixels->rows != frame.camera.height)
-    return unreadable(
-        file, wrongSize(static_cast<std::uint64_t>(pixels->cols), static_cast<std::uint64_t>(pixels->rows), frame.camera));
-  return DecodedImage{std::make_shared<const cv::Mat>(*pixels), false};
+  const auto read = [&]() -> Outcome<DecodedImage> {
+    countDecoded();
+    const Outcome<cv::Mat> pixels = videoPicture(file, *frame.ofVideo);
+    if (!pixels) return pixels.failure();
+    return DecodedImage{std::make_shared<const cv::Mat>(*pixels), false};
+  };
+  return decodeOnce(file, pictureName(file, *frame.ofVideo), frame.camera, read);
 }
 
 bool isFloat(const cv::Mat& m) { return m.depth() == CV_32F || m.depth() == CV_64F; }
@@ -238,31 +247,42 @@ Image toneMapped(const Image& linear) {
 }  // namespace
 
 namespace {
-/// The mask of a cut-out: the colour of its transparent pixels is arbitrary, so they are outside. Nothing where all pixels are
-/// opaque.
+/// How opaque the pixels of a photograph are, as the file has it; empty where it does not say, or nothing that can be read.
+cv::Mat alphaIn(const Frame& frame) {
+  try {
+    const std::string bytes = readFile(frame.image, Limit::ImageMegabytes);
+    const ImageHeader header = readImageHeader(bytes);
+    const bool mayHaveAlpha = header.channels == 2 || header.channels == 4;
+    if (!mayHaveAlpha || header.format == ImageFormat::Jpeg || !headerProblem(bytes, header, frame.camera).empty()) return {};
+    countDecoded();
+    const Outcome<cv::Mat> alpha = decodeAlpha(bytes);
+    return alpha ? turnedBy(orientationThatFits(bytes, header, frame.camera), *alpha) : cv::Mat();
+  } catch (const InputError&) {
+    return {};  // who reads the photograph says so
+  }
+}
+
+/// A cut-out: what colour its transparent pixels have is arbitrary, so they are outside. Nothing where all is opaque.
 std::optional<Image> opaquePart(const Frame& frame) {
   if (frame.image.empty() || frame.ofVideo || !frame.radiance.empty()) return std::nullopt;
-  std::string bytes;
-  ImageHeader header;
-  try {
-    bytes = readFile(frame.image, Limit::ImageMegabytes);
-    header = readImageHeader(bytes);
-    const bool mayHaveAlpha = header.channels == 2 || header.channels == 4;
-    if (!mayHaveAlpha || header.format == ImageFormat::Jpeg || !headerProblem(bytes, header, frame.camera).empty())
-      return std::nullopt;
-  } catch (const InputError&) {
-    return std::nullopt;  // the reader of the photograph says so
+  const fs::path name = alphaName(frame.image);
+  const std::optional<FileVersion> version = decodedImages().keeps(name) ? versionOf(frame.image) : std::nullopt;
+  std::optional<DecodedImage> read = version ? keptImage(name, *version) : std::nullopt;
+  if (!read) {
+    read = DecodedImage{std::make_shared<const cv::Mat>(alphaIn(frame))};
+    if (version) decodedImages().keep(name, *version, *read);
   }
-  Outcome<cv::Mat> alpha = decodeAlpha(bytes);
-  if (alpha) *alpha = turnedBy(orientationThatFits(bytes, header, frame.camera), *alpha);
-  if (!alpha || !isCode(*alpha) || alpha->cols != frame.camera.width || alpha->rows != frame.camera.height) return std::nullopt;
-  const Image mask = toImage(*alpha, [](double v) { return v != 0 ? 1.f : 0.f; });
+  const cv::Mat& alpha = *read->pixels;
+  if (alpha.empty() || !isCode(alpha) || alpha.cols != frame.camera.width || alpha.rows != frame.camera.height)
+    return std::nullopt;
+  const Image mask = toImage(alpha, [](double v) { return v != 0 ? 1.f : 0.f; });
   if (std::all_of(mask.data.begin(), mask.data.end(), [](float v) { return v != 0; })) return std::nullopt;
   return mask;
 }
-}  // namespace
 
-Outcome<Image> readLinear(const Frame& frame, FrameSource source, std::string* how) {
+/// @param opaqueOf  says opaquePart(frame)
+Outcome<Image> linearOf(const Frame& frame, FrameSource source, std::string* how,
+                        const std::function<std::optional<Image>()>& opaqueOf) {
   // Where only one of the two exists there is nothing to choose.
   const bool useRadiance = frame.image.empty() || (source == FrameSource::Radiance && !frame.radiance.empty());
   const fs::path& file = useRadiance ? frame.radiance : frame.image;
@@ -277,10 +297,28 @@ Outcome<Image> readLinear(const Frame& frame, FrameSource source, std::string* h
   Image image = throughTable(
       m, [&frame, linear = takenAsLinear(*decoded)](double v, int c) { return frame.response.lightOf(v, c, linear); });
   // Hidden colours are arbitrary, and a blur or an edge would bring them in: transparent pixels are dark.
-  if (const std::optional<Image> opaque = useRadiance ? std::nullopt : opaquePart(frame))
+  if (const std::optional<Image> opaque = useRadiance ? std::nullopt : opaqueOf())
     for (std::size_t i = 0; i < image.data.size(); ++i)
       if (opaque->data[i / static_cast<std::size_t>(image.channels)] == 0) image.data[i] = 0;
   return image;
+}
+}  // namespace
+
+Outcome<Image> readLinear(const Frame& frame, FrameSource source, std::string* how) {
+  return linearOf(frame, source, how, [&] { return opaquePart(frame); });
+}
+
+Outcome<MaskedImage> readMasked(const Frame& frame, FrameSource source) {
+  std::optional<std::optional<Image>> opaque;
+  const auto opaqueOnce = [&] {
+    if (!opaque) opaque = opaquePart(frame);
+    return *opaque;
+  };
+  Outcome<Image> linear = linearOf(frame, source, nullptr, opaqueOnce);
+  if (!linear) return linear.failure();
+  Outcome<std::optional<Image>> mask = frame.mask.empty() ? opaqueOnce() : readMask(frame);
+  if (!mask) return mask.failure();
+  return MaskedImage{*std::move(linear), *std::move(mask)};
 }
 
 Outcome<Image> readPhotograph(const Frame& frame) {

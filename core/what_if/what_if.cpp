@@ -234,14 +234,6 @@ Highlight changed(Highlight h, const HighlightChange& change) {
   return h;
 }
 
-namespace {
-std::string exactText(const HighlightEdit& e) {
-  std::string key = std::to_string(e.frame) + " " + nameOf(e.kind) + " " + e.light + ":";
-  for (const Pixel& p : e.places) key += exact(p.x()) + exact(p.y());
-  return key + ";";
-}
-}  // namespace
-
 const char* nameOf(HighlightEdit::Kind kind) {
   switch (kind) {
     case HighlightEdit::Kind::Ignore: return "ignore";
@@ -256,27 +248,20 @@ std::size_t placesOf(HighlightEdit::Kind kind) {
   return kind == HighlightEdit::Kind::Merge ? 2 : kind == HighlightEdit::Kind::Split ? 3 : 1;
 }
 
-std::string posesKey(const WhatIf& w) {
-  std::string key;
-  for (const auto& [frame, change] : w.poses)
-    key += std::to_string(frame) + ":" + exact(change.rotation) + exact(change.translation);
-  return key;
+WhatIf synthesisOf(const WhatIf& w) {
+  WhatIf part;
+  if (!w.synthesise) return part;
+  part = w;
+  part.highlights.clear();
+  part.edits.clear();
+  std::erase_if(part.lightsSwitched, [](const auto& light) { return !light.second; });
+  return part;
 }
 
-std::string highlightsKey(const WhatIf& w) {
-  std::string key;
-  for (const auto& [at, c] : w.highlights)
-    key += std::to_string(at.first) + "/" + std::to_string(at.second) + ":" + exact(c.contourBy.x()) + exact(c.contourBy.y()) +
-           exact(c.contourScale) + exact(c.peakBy.x()) + exact(c.peakBy.y());
-  for (const HighlightEdit& e : w.edits) key += exactText(e);
-  return key;
-}
-
-std::string ignoredKey(const WhatIf& w) {
-  std::string key;
-  for (const HighlightEdit& e : w.edits)
-    if (e.kind == HighlightEdit::Kind::Ignore) key += exactText(e);
-  return key.empty() ? key : "|ignored " + key;
+std::map<std::pair<int, std::string>, bool> lightsOff(const WhatIf& w) {
+  auto off = w.lightsSwitched;
+  std::erase_if(off, [](const auto& light) { return light.second; });
+  return off;
 }
 
 std::string lightsOffKey(const WhatIf& w) {
@@ -293,7 +278,9 @@ std::string synthesisKey(const WhatIf& w) {
   for (const auto& [id, value] : w.surfaces) key += id + ":" + exact(value);
   for (const auto& [at, on] : w.lightsSwitched)
     if (on) key += std::to_string(at.first) + "/" + at.second + " on,";
-  return key + posesKey(w);  // synthetic contours follow their cameras
+  for (const auto& [frame, change] : w.poses)  // synthetic contours follow their cameras
+    key += std::to_string(frame) + ":" + exact(change.rotation) + exact(change.translation);
+  return key;
 }
 
 }  // namespace glint

@@ -124,12 +124,12 @@ std::shared_ptr<const Scene> withContours(const Scene& changed, const WhatIf& wh
 /// A highlight with a change; its ellipse and area follow.
 Highlight changed(Highlight highlight, const HighlightChange& change);
 
-/// Equal for equal changes, exact to the last bit: the part that changes the scene's evidence from the start, that of poses, that
-/// of highlights, and that of lights which are switched off.
+/// The part that makes the scene's evidence, with all else at its default: the default where nothing is synthesised.
+WhatIf synthesisOf(const WhatIf& whatIf);
+/// Those that are switched off.
+std::map<std::pair<int, std::string>, bool> lightsOff(const WhatIf& whatIf);
+/// Equal for equal pictures, exact to the last bit: of what is synthesised, "" without, and of the lights that are switched off.
 std::string synthesisKey(const WhatIf& whatIf);
-std::string posesKey(const WhatIf& whatIf);
-std::string highlightsKey(const WhatIf& whatIf);  ///< edits too
-std::string ignoredKey(const WhatIf& whatIf);     ///< its edits that ignore a highlight; "" without any
 std::string lightsOffKey(const WhatIf& whatIf);
 
 }  // namespace glint

@@ -15,18 +15,11 @@ Engine coreEngine() {
   engine.save = saveSession;
   engine.autosave = autosaveSession;
   engine.recoveryText = recoveryText;
-  engine.inspect = [](std::shared_ptr<const Scene> scene, const InspectionRequest& request, const ProgressFn& progress,
-                      const Inspection* previous) { return inspect(std::move(scene), request, progress, previous); };
-  engine.inspectOneFrame = [](std::shared_ptr<const Scene> scene, const InspectionRequest& request, int frame,
-                              const ProgressFn& progress, const Inspection* previous) {
-    return inspectOneFrame(std::move(scene), request, frame, progress, previous);
+  engine.ask = [](Pipeline& pipeline, const Question& question, const ProgressFn& progress) {
+    return pipeline.ask(question, progress);
   };
-  engine.firstLook = [](std::shared_ptr<const Scene> scene, const InspectionRequest& request, int frame,
-                        const ProgressFn& progress,
-                        const Inspection* previous) { return firstLook(std::move(scene), request, frame, progress, previous); };
-  engine.observeFrame = [](std::shared_ptr<const Scene> scene, const InspectionRequest& request, int frame,
-                           const ProgressFn& progress,
-                           const Inspection* known) { return observeFrame(std::move(scene), request, frame, progress, known); };
+  engine.contour = [](const Pipeline& pipeline, const InspectionRequest& request, int frame, const ProgressFn& progress,
+                      const Inspection* shown) { return pipeline.contour(request, frame, progress, shown); };
   engine.choose = [](std::shared_ptr<const Scene> scene, InspectionRequest request, std::optional<double> goodEnoughPct,
                      const ProgressFn& progress, const Inspection* previous) {
     request.models.clear();                   // evidence and views alone

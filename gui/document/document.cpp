@@ -40,27 +40,25 @@ std::string Document::plottedModel() const {
   const std::vector<std::string>& models = state_.request.models;
   if (std::find(models.begin(), models.end(), state_.selection.model) != models.end()) return state_.selection.model;
   // Where nothing is selected, the explanation and the plots are about the same one.
-  if (inspection_ && !option("explain/step", std::string()).empty())
-    if (const std::string explained = modelToExplain(*inspection_, ""); !explained.empty()) return explained;
+  if (results_.complete() && !option("explain/step", std::string()).empty())
+    if (const std::string explained = modelToExplain(*results_.complete(), ""); !explained.empty()) return explained;
   return models.empty() ? std::string() : models.back();
 }
 
 void Document::setInspection(std::shared_ptr<const Inspection> inspection, const InspectionRequest& computedFor) {
   if (!inspection || inspection->given != scene_) return;  // a late result of a scene that was closed
-  recent_.keep(inspection, computedFor, [this](const InspectionRequest& r) { return historyLeadsTo(r); });
-  if (inspection_ && !stale_ && computedFor != state_.request) return;
-  inspection_ = std::move(inspection);
-  ahead_.reset();
-  setBesideObservation();
+  const bool show = !results_.complete() || stale_ || computedFor == state_.request;
+  results_.take(std::move(inspection), computedFor, show, state_.request,
+                [this](const InspectionRequest& r) { return historyLeadsTo(r); });
+  if (!show) return;
   setStale(computedFor != state_.request);
   emit inspectionChanged();
 }
 
 void Document::setFrameInspection(std::shared_ptr<const Inspection> inspection, int frame) {
   if (!inspection || inspection->given != scene_ || frame != state_.selection.frame) return;
-  if (inspection_ && !stale_ && inspection->request != state_.request) return;  // of a run that was overtaken
-  ahead_ = std::move(inspection);
-  setBesideObservation();
+  if (results_.complete() && !stale_ && inspection->request != state_.request) return;  // of a run that was overtaken
+  results_.takeAhead(std::move(inspection), state_.request);
   emit frameInspectionChanged();
 }
 
@@ -68,35 +66,20 @@ void Document::setObservation(std::shared_ptr<const Observation> observation) {
   if (observation &&
       (observation->given != scene_ || observation->frame != state_.selection.frame || observation->request != state_.request))
     return;
-  const bool shown = observed_ != nullptr;
-  observation_ = std::move(observation);
-  setBesideObservation();
-  if (shown || observed_) emit frameInspectionChanged();
-}
-
-void Document::setBesideObservation() {
-  observed_.reset();
-  const std::shared_ptr<const Inspection> newest = ahead_ ? ahead_ : inspection_;
-  if (!observation_ || !newest) return;
-  // Results of an earlier position of the slider come after the observation of a later one: they must not put the contour back.
-  const bool caughtUp = newest->request == state_.request || newest->inputs.same(Stage::Evidence, observation_->inputs);
-  if (caughtUp)
-    observation_.reset();
-  else
-    observed_ = std::make_shared<const Inspection>(besideObservation(*newest, *observation_));
+  if (results_.observe(std::move(observation), state_.request)) emit frameInspectionChanged();
 }
 
 RowsPtr Document::rowsOf(const std::shared_ptr<const Inspection>& inspection) const {
   if (!inspection) return std::make_shared<const std::vector<HighlightRow>>();
-  std::erase_if(rows_, [this](const auto& known) { return known.first != inspection_ && known.first != pinned_; });
+  std::erase_if(rows_, [this](const auto& known) { return known.first != results_.complete() && known.first != pinned_; });
   RowsPtr& rows = rows_[inspection];
   if (!rows) rows = std::make_shared<const std::vector<HighlightRow>>(highlightRows(*inspection));
   return rows;
 }
 
 bool Document::pin() {
-  if (!inspection_) return false;
-  pinned_ = inspection_;
+  if (!results_.complete()) return false;
+  pinned_ = results_.complete();
   const bool was = std::exchange(pinnedShown_, false);
   emit pinnedChanged();
   if (was) emit inspectionChanged();
@@ -165,11 +148,7 @@ void Document::open(const Opened& opened) {
   inputFile_ = exactQString(opened.path);
   session_ = opened.session;
   sessionFile_ = opened.isSession ? inputFile_ : QString();
-  recent_.clear();
-  inspection_.reset();
-  ahead_.reset();
-  observed_.reset();
-  observation_.reset();
+  results_ = Results(scene_);
   influence_.reset();
   pinned_.reset();
   pinnedShown_ = false;
@@ -393,11 +372,7 @@ void Document::apply(const ViewState& state) {
   const bool selection = state.selection != state_.selection;
   const bool layers = state.layers != state_.layers;
   const bool options = state.options != state_.options;
-  if (state.selection.frame != state_.selection.frame) {
-    ahead_.reset();
-    observed_.reset();
-    observation_.reset();
-  }
+  if (state.selection.frame != state_.selection.frame) results_.leaveFrame();
   if (request) showPinned(false);
   state_ = state;
   if (request) {
@@ -411,13 +386,7 @@ void Document::apply(const ViewState& state) {
 }
 
 void Document::followRequest() {
-  const std::shared_ptr<const Inspection> known = recent_.find(state_.request);
-  if (known) {
-    inspection_ = known;
-    ahead_.reset();
-    observed_.reset();
-    observation_.reset();
-  }
+  const bool known = results_.show(state_.request);
   setStale(!known);
   emit requestChanged();
   if (known) emit inspectionChanged();

@@ -13,7 +13,7 @@
 
 #include "core/diagnostics/highlight_rows.h"
 #include "gui/document/engine.h"
-#include "gui/document/recent_results.h"
+#include "gui/document/results.h"
 
 namespace glint::gui {
 
@@ -58,9 +58,11 @@ class Document : public QObject {
 
   /// What every view shows: the newest results, or the pinned ones while those are flipped to; null before the first. They may
   /// belong to an older request: see stale().
-  std::shared_ptr<const Inspection> inspection() const { return pinnedShown_ ? pinned_ : inspection_; }
+  std::shared_ptr<const Inspection> inspection() const { return pinnedShown_ ? pinned_ : results_.complete(); }
   /// The newest results, whatever is shown: what files are written from.
-  std::shared_ptr<const Inspection> computed() const { return inspection_; }
+  std::shared_ptr<const Inspection> computed() const { return results_.complete(); }
+  /// Whom to ask for results; null without a scene.
+  std::shared_ptr<Pipeline> pipeline() const { return results_.pipeline(); }
   /// highlightRows() of inspection(), made once; never null.
   RowsPtr rows() const { return rowsOf(inspection()); }
 
@@ -81,11 +83,11 @@ class Document : public QObject {
   /// inspection() is not what the request asks for, nor pinned on purpose: nothing is written of it.
   bool shownStale() const { return stale_ && !pinnedShown_; }
   /// Newest results for the selected frame: inspection(), or those that came before it was complete.
-  std::shared_ptr<const Inspection> results() const { return pinnedShown_ ? pinned_ : ahead_ ? ahead_ : inspection_; }
+  std::shared_ptr<const Inspection> results() const { return pinnedShown_ ? pinned_ : results_.newest(); }
   /// results(), beside what was observed in the frame since then.
-  std::shared_ptr<const Inspection> frameInspection() const { return observed_ && !pinnedShown_ ? observed_ : results(); }
+  std::shared_ptr<const Inspection> frameInspection() const { return pinnedShown_ ? pinned_ : results_.ofFrame(); }
   /// results() are not what the request asks for.
-  bool frameStale() const { return stale_ && !(ahead_ && ahead_->request == state_.request); }
+  bool frameStale() const { return stale_ && !results_.isAhead(state_.request); }
   /// Results for one frame while the others' are being computed. Ignored when another frame is selected by now.
   void setFrameInspection(std::shared_ptr<const Inspection> inspection, int frame);
   /// What the selected frame shows under the request, before there are results for it; null = what results() say. Ignored when it
@@ -175,7 +177,6 @@ class Document : public QObject {
   void followRequest();
   bool historyLeadsTo(const InspectionRequest& request) const;
   void updateTraining();
-  void setBesideObservation();
   void setStale(bool stale);
   RowsPtr rowsOf(const std::shared_ptr<const Inspection>& inspection) const;
   FrameRole requestedRole(int frame) const;
@@ -186,12 +187,11 @@ class Document : public QObject {
   std::set<int> training_;
   QString sessionFile_, inputFile_;
   std::shared_ptr<const Session> session_;
-  std::shared_ptr<const Inspection> inspection_, ahead_, observed_, pinned_;
-  RecentResults recent_;
+  Results results_;
+  std::shared_ptr<const Inspection> pinned_;
   bool pinnedShown_ = false;
   std::set<RowKey> brushed_;
-  mutable std::map<std::shared_ptr<const Inspection>, RowsPtr> rows_;  ///< of inspection_ and pinned_ alone
-  std::shared_ptr<const Observation> observation_;                     ///< newer than results(); null = none
+  mutable std::map<std::shared_ptr<const Inspection>, RowsPtr> rows_;  ///< of the complete ones and pinned_ alone
   std::shared_ptr<const Tradeoff> tradeoff_, savedTradeoff_;
   std::shared_ptr<const Influence> influence_;
   InspectionRequest influenceFor_;

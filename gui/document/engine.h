@@ -9,8 +9,7 @@
 #include <vector>
 
 #include "core/diagnostics/influence.h"
-#include "core/inspect/inspection.h"
-#include "core/inspect/observation.h"
+#include "core/inspect/pipeline.h"
 #include "core/report/measured_lamps.h"
 #include "core/scene/convention_report.h"
 #include "core/scene/relinked.h"
@@ -50,21 +49,12 @@ struct Engine {
   /// MissingMesh for a scene whose mesh is not.
   /// @param instead  where these are now.
   std::function<Opened(const std::string& path, const Relinked& instead)> open;
-  /// As glint::inspect: throws Stopped and InputError.
-  std::function<Inspection(std::shared_ptr<const Scene>, const InspectionRequest&, const ProgressFn&, const Inspection* previous)>
-      inspect;
-  /// As glint::inspectOneFrame; may be empty: then nothing is shown before everything is computed.
-  std::function<Inspection(std::shared_ptr<const Scene>, const InspectionRequest&, int frame, const ProgressFn&,
-                           const Inspection* previous)>
-      inspectOneFrame;
-  /// As glint::firstLook; may be empty: then the frame is shown with all its models at once.
-  std::function<std::optional<Inspection>(std::shared_ptr<const Scene>, const InspectionRequest&, int frame, const ProgressFn&,
-                                          const Inspection* previous)>
-      firstLook;
-  /// As glint::observeFrame; may be empty: then what is observed comes with the models.
-  std::function<std::optional<Observation>(std::shared_ptr<const Scene>, const InspectionRequest&, int frame, const ProgressFn&,
-                                           const Inspection* known)>
-      observeFrame;
+  /// As Pipeline::ask: throws Stopped and InputError. Null for a part: it is not shown before everything is computed.
+  std::function<Pipeline::Answer(Pipeline&, const Question&, const ProgressFn&)> ask;
+  /// As Pipeline::contour; may be empty: then what is observed comes with the models.
+  std::function<std::optional<Observation>(const Pipeline&, const InspectionRequest&, int frame, const ProgressFn&,
+                                           const Inspection* shown)>
+      contour;
   /// The automatic choice of the model; throws Stopped and InputError. Needs no fitted model.
   std::function<glint::Selection(std::shared_ptr<const Scene>, const InspectionRequest&, std::optional<double> goodEnoughPct,
                                  const ProgressFn&, const Inspection* previous)>

@@ -13,14 +13,13 @@ Observer::Observer(const Engine& engine, Document& document, QObject* parent)
 void Observer::observe() {
   job_.drop();
   const auto known = document_.results();
-  if (!document_.stale()) return;               // results of this request were still there
-  if (!engine_.observeFrame || !known) return;  // before the first results there is nothing that could be behind
-  const auto observe = engine_.observeFrame;
-  job_.run([this, observe, scene = document_.sharedScene(), request = document_.request(), known,
+  if (!document_.stale()) return;          // results of this request were still there
+  if (!engine_.contour || !known) return;  // before the first results there is nothing that could be behind
+  job_.run([this, contour = engine_.contour, pipeline = document_.pipeline(), request = document_.request(), known,
             frame = document_.selection().frame]() -> LatestJob::Deliver {
     std::optional<Observation> seen;
     try {
-      seen = observe(scene, request, frame, {}, known.get());
+      seen = contour(*pipeline, request, frame, {}, known.get());
     } catch (const InputError&) {
       return {};  // the run beside it fails for the same reason, and says so
     }

@@ -19,6 +19,15 @@ OpenedPtr asked(std::shared_ptr<const Scene> scene, const InspectionRequest& req
   computedFor->request = request;
   return computedFor;
 }
+
+template <class Result>
+std::shared_ptr<const Result> shared(Result result) {
+  return std::make_shared<const Result>(std::move(result));
+}
+template <class Result>
+std::shared_ptr<const Result> shared(std::shared_ptr<const Result> result) {
+  return result;
+}
 }  // namespace
 
 Runner::Runner(Engine engine, QObject* parent) : QObject(parent), engine_(std::move(engine)) {
@@ -68,23 +77,22 @@ void Runner::open(const std::string& path, const Relinked& instead) {
   jobs_.start(work, done, Asks::Instead);  // results of the scene on screen are no longer needed; a save is
 }
 
-void Runner::inspect(std::shared_ptr<const Scene> scene, const InspectionRequest& request, InspectionPtr previous, int frame) {
-  auto stages = [this, previous = std::move(previous), frame](const JobToken& token, const OpenedPtr& asked,
-                                                              const std::shared_ptr<StageTimes>& times) mutable {
+void Runner::inspect(std::shared_ptr<Pipeline> pipeline, const InspectionRequest& request, int frame) {
+  const std::shared_ptr<const Scene> scene = pipeline->scene();
+  auto stages = [this, pipeline = std::move(pipeline), frame](const JobToken& token, const OpenedPtr& asked,
+                                                              const std::shared_ptr<StageTimes>& times) {
     ProgressFn progress = progressOf(token, cutOff_ ? kLongGraceMs : kGraceMs, times);
-    if (engine_.inspectOneFrame && frame >= 0) {
-      cutOff_ = true;
-      const auto show = [&](const InspectionPtr& ahead) {
-        if (!token.stopped()) token.deliver([this, ahead, frame] { emit frameFinished(ahead, frame); });
-        previous = ahead;
-      };
-      if (engine_.firstLook)
-        if (std::optional<Inspection> look = engine_.firstLook(asked->scene, asked->request, frame, progress, previous.get()))
-          show(std::make_shared<const Inspection>(*std::move(look)));
-      const auto ahead = std::make_shared<const Inspection>(
-          engine_.inspectOneFrame(asked->scene, asked->request, frame, progress, previous.get()));
-      show(ahead);
-      cutOff_ = false;
+    bool isAhead = false;
+    if (frame >= 0) {
+      const bool wasCutOff = std::exchange(cutOff_, true);
+      for (const Question::Part part : {Question::Part::FirstLook, Question::Part::Frame})
+        if (const InspectionPtr ahead = engine_.ask(*pipeline, {asked->request, part, frame}, progress)) {
+          if (!token.stopped()) token.deliver([this, ahead, frame] { emit frameFinished(ahead, frame); });
+          isAhead = true;
+        }
+      cutOff_ = wasCutOff && !isAhead;
+    }
+    if (isAhead) {
       QElapsedTimer pause;
       pause.start();
       while (sinceRest_.isValid() && sinceRest_.elapsed() < kRestEveryMs && pause.elapsed() < kPauseMs) {
@@ -93,15 +101,15 @@ void Runner::inspect(std::shared_ptr<const Scene> scene, const InspectionRequest
       }
       progress = progressOf(token, kRestGraceMs, times);
     }
-    Inspection all = engine_.inspect(asked->scene, asked->request, progress, previous.get());
+    InspectionPtr all = engine_.ask(*pipeline, {asked->request}, progress);
     sinceRest_.start();
     return all;
   };
-  const auto work = [this, stages = std::move(stages)](const JobToken& token, const OpenedPtr& asked) mutable {
+  const auto work = [this, stages = std::move(stages)](const JobToken& token, const OpenedPtr& asked) {
     const auto times = std::make_shared<StageTimes>();
     const auto say = [&](const QString& line) { token.deliver([this, line] { emit timed(line); }); };
     try {
-      Inspection all = stages(token, asked, times);
+      InspectionPtr all = stages(token, asked, times);
       say(tr("Computed: %1").arg(toQString(times->text())));
       return all;
     } catch (...) {
@@ -109,7 +117,7 @@ void Runner::inspect(std::shared_ptr<const Scene> scene, const InspectionRequest
       throw;
     }
   };
-  compute(asked(std::move(scene), request), work, &Runner::finished);
+  compute(asked(scene, request), work, &Runner::finished);
 }
 
 void Runner::choose(std::shared_ptr<const Scene> scene, const InspectionRequest& request, double goodEnoughPct,
@@ -148,7 +156,7 @@ template <class Work, class About, class Result>
 void Runner::compute(About about, Work work, void (Runner::*tell)(const std::shared_ptr<const Result>&, const About&)) {
   jobs_.start(
       [about, work = std::move(work)](const JobToken& token) mutable {
-        const auto result = std::make_shared<const Result>(work(token, about));
+        const std::shared_ptr<const Result> result = shared<Result>(work(token, about));
         if (token.stopped()) throw Stopped{};  // after its last report: nothing waits for it any longer
         return result;
       },

@@ -68,9 +68,8 @@ class Runner : public QObject {
   void open(const std::string& path, const Relinked& instead = {});
   /// Answers with finished(), and before it, where the engine can, with frameFinished(): twice where the first look at quick
   /// models is worth a step.
-  /// @param previous  earlier results on the same scene, so that unchanged stages are not repeated; may be null.
   /// @param frame  what the user looks at: computed first; -1 = none.
-  void inspect(std::shared_ptr<const Scene> scene, const InspectionRequest& request, InspectionPtr previous, int frame = -1);
+  void inspect(std::shared_ptr<Pipeline> pipeline, const InspectionRequest& request, int frame = -1);
   /// Writes a session without stopping what runs; nothing but cancel() stops it. Answers with saved().
   /// @param results  finished results of exactly `opened.request`, or null.
   void save(OpenedPtr opened, InspectionPtr results, const std::string& path);

@@ -156,7 +156,9 @@ void ComparisonPanel::compareWith(const QString& file) {
   job_.start(tr("Comparing with %1").arg(shownText(QFileInfo(file).fileName())),
              [this, file, fileA, a = document_.inspection()](const ProgressFn& progress) {
                const Opened opened = openedFor(engine_, file);
-               const Inspection b = engine_.inspect(opened.scene, opened.request, progress, nullptr);
+               Pipeline pipeline(opened.scene);
+               const Pipeline::Answer other = engine_.ask(pipeline, {opened.request}, progress);
+               const Inspection& b = *other;
                const auto result =
                    std::make_shared<const RunComparison>(compareRuns(sessionOf(*a, progress), *a, sessionOf(b, progress), b));
                return [this, result, a, fileA, file] {

@@ -436,8 +436,7 @@ void MainWindow::recompute() {
     if (std::exchange(runFailed_, false)) messageBar_->hide();
     return log(tr("Taken from before: the results of these settings were still there"));
   }
-  if (document_.scene() && engine_.inspect)
-    runner_.inspect(document_.sharedScene(), document_.request(), document_.computed(), document_.selection().frame);
+  if (document_.scene() && engine_.ask) runner_.inspect(document_.pipeline(), document_.request(), document_.selection().frame);
 }
 
 void MainWindow::showProblem(const QString& oneLine) {

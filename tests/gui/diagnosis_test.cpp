@@ -324,9 +324,9 @@ class DiagnosisTest : public QObject {
     QCOMPARE(lines(panel), old);
     const auto middle = std::make_shared<const Inspection>(inspect(document.sharedScene(), between));
     document.setRequest(after, "after");
-    document.setFrameInspection(
-        std::make_shared<const Inspection>(inspectOneFrame(document.sharedScene(), after, document.selection().frame)),
-        document.selection().frame);
+    document.setFrameInspection(std::make_shared<const Inspection>(
+                                    answer(document.sharedScene(), {after, Question::Part::Frame, document.selection().frame})),
+                                document.selection().frame);
     QCOMPARE(lines(panel), old);
     document.select({3, "limit-angle"});
     QCOMPARE(lines(panel), old);

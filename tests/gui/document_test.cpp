@@ -117,7 +117,7 @@ class DocumentTest : public QObject {
   void positionsThatASliderPassedGoFirst() {
     const auto first = showResults();
     const int drag = document_->newGesture();
-    for (int i = 0; i < 3 * int(RecentResults::kMost); ++i) {
+    for (int i = 0; i < 3 * int(Pipeline::kMost); ++i) {
       document_->setSetting("detect.level", 0.3 + 0.01 * i, drag);
       showResults();
     }
@@ -132,11 +132,11 @@ class DocumentTest : public QObject {
 
   void onlyAFewResultsAreKeptAndNoneOfAnotherScene() {
     showResults();
-    for (int i = 0; i < int(RecentResults::kMost); ++i) {
+    for (int i = 0; i < int(Pipeline::kMost); ++i) {
       document_->setSetting("detect.level", 0.3 + 0.01 * i);
       showResults();
     }
-    for (int i = 1; i < int(RecentResults::kMost); ++i) document_->undoStack()->undo();
+    for (int i = 1; i < int(Pipeline::kMost); ++i) document_->undoStack()->undo();
     QVERIFY(!document_->stale());
     document_->undoStack()->undo();
     QVERIFY(document_->stale());

@@ -94,25 +94,15 @@ Engine knownEngine(const QString& folder) {
     if (path.rfind(below, 0) != 0 || instead.any()) return open(path, instead);
     return known.open(path, [&] { return open(path, instead); });
   };
-  engine.inspect = [inspect = engine.inspect](std::shared_ptr<const Scene> scene, const InspectionRequest& request,
-                                              const ProgressFn& progress, const Inspection* previous) {
-    const auto before = known.resultOf(scene);
-    Inspection result = inspect(scene, request, progress, previous && previous->given == scene ? previous : before.get());
-    known.with(scene.get(), [&](KnownSession& session) {
-      if (!session.result) session.result = std::make_shared<const Inspection>(result);
+  engine.ask = [ask = engine.ask](Pipeline& pipeline, const Question& question, const ProgressFn& progress) {
+    const auto before = known.resultOf(pipeline.scene());
+    if (before && !pipeline.known(before->request)) pipeline.remember({before->request}, before);
+    const Pipeline::Answer result = ask(pipeline, question, progress);
+    known.with(pipeline.scene().get(), [&](KnownSession& session) {
+      if (!session.result && question.part == Question::Part::Everything) session.result = result;
     });
     return result;
   };
-  const auto ofFrame = [](auto function) {
-    return [function](std::shared_ptr<const Scene> scene, const InspectionRequest& request, int frame, const ProgressFn& progress,
-                      const Inspection* previous) {
-      const auto before = known.resultOf(scene);
-      return function(scene, request, frame, progress, previous && previous->given == scene ? previous : before.get());
-    };
-  };
-  engine.inspectOneFrame = ofFrame(engine.inspectOneFrame);
-  engine.firstLook = ofFrame(engine.firstLook);
-  engine.observeFrame = ofFrame(engine.observeFrame);
   engine.check = [check = engine.check](const Scene& scene, const ProgressFn& progress) {
     std::optional<ConventionReport> report;
     known.with(&scene, [&](const KnownSession& session) { report = session.report; });
@@ -182,14 +172,20 @@ void drag(QWidget* widget, const std::vector<QPoint>& points) {
   send(QEvent::MouseButtonRelease, points.back(), Qt::LeftButton, Qt::NoButton);
 }
 
+Pipeline::Answer drawn(const Pipeline& pipeline, const Question& question) {
+  return std::make_shared<const Inspection>(drawnCircles(pipeline.scene(), question.request));
+}
+
 Engine Fixture::engine() const {
   Engine engine;
   engine.open = [opened = opened()](const std::string& path, const Relinked&) {
     if (path != opened.path) throw InputError(path, "", "no such file");
     return opened;
   };
-  engine.inspect = [](std::shared_ptr<const Scene> scene, const InspectionRequest& request, const ProgressFn&,
-                      const Inspection*) { return drawnCircles(std::move(scene), request); };
+  engine.ask = [](Pipeline& pipeline, const Question& question, const ProgressFn&) -> Pipeline::Answer {
+    if (question.part != Question::Part::Everything) return nullptr;
+    return drawn(pipeline, question);
+  };
   engine.parseTrain = parseTrainSpec;
   return engine;
 }

@@ -34,6 +34,8 @@ class Fixture {
 
 /// The stand-in's result.
 Inspection drawnCircles(std::shared_ptr<const Scene> scene, const InspectionRequest& request);
+/// The same as an answer of an engine's `ask`.
+Pipeline::Answer drawn(const Pipeline& pipeline, const Question& question);
 
 /// The program's engine, which opens and computes each file below `folder` ("" = the sessions that ship) once in a process: tests
 /// open the same one in every function. Its known results serve as the earlier ones from which the next are computed, so that a

@@ -132,7 +132,9 @@ class HostileNamesTest : public QObject {
     Opened opened = engine.open((folder + "/scene.json").toStdString(), {});
     opened.request.train = "0-3";
     opened.request.models = {"canonical"};
-    const Inspection inspection = engine.inspect(opened.scene, opened.request, {}, nullptr);
+    Pipeline pipeline(opened.scene);
+    const Pipeline::Answer answer = engine.ask(pipeline, {opened.request}, {});
+    const Inspection& inspection = *answer;
     ReportContext context;
     context.input = (folder + kMarkup + kControls).toStdString();
     const QString html = exactQString(evaluationHtml(inspection, context));

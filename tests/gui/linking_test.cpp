@@ -347,7 +347,7 @@ class LinkingTest : public QObject {
     seen.frame = 0;
     seen.evidence = drawnCircles(document_->sharedScene(), seen.request).evidence[0];
     for (Pixel& p : seen.evidence.highlights[0].contour.points) p = Fixture::centre(0) + 1.5 * (p - Fixture::centre(0));
-    seen.inputs = StageInputs("another level");
+    seen.inputs.evidence = evidenceInputs(seen.request, false);
     document_->setObservation(std::make_shared<const Observation>(seen));
     QTRY_VERIFY(badge->isVisible());
     QTRY_VERIFY(captions->text().contains(QStringLiteral("earlier state")));

@@ -16,8 +16,9 @@ class ObserverTest : public QObject {
   void init() {
     asked_ = 0;
     engine_ = fixture_.engine();
-    engine_.observeFrame = [this](std::shared_ptr<const Scene> scene, const InspectionRequest& request, int frame,
-                                  const ProgressFn&, const Inspection*) -> std::optional<Observation> {
+    engine_.contour = [this](const Pipeline& pipeline, const InspectionRequest& request, int frame, const ProgressFn&,
+                             const Inspection*) -> std::optional<Observation> {
+      const std::shared_ptr<const Scene>& scene = pipeline.scene();
       ++asked_;
       if (request.settings.number("detect.level") == kFails) throw std::runtime_error("this level cannot be observed");
       Observation seen;
@@ -25,8 +26,8 @@ class ObserverTest : public QObject {
       seen.request = request;
       seen.frame = frame;
       seen.evidence = drawnCircles(scene, request).evidence[std::size_t(frame)];
-      seen.inputs = StageInputs(keyOf(request));
-      if (seen.inputs.is(Stage::Evidence, keyOf({}))) return std::nullopt;  // the results hold it
+      seen.inputs = inputsOf(request);
+      if (seen.inputs.same(Stage::Evidence, inputsOf({}))) return std::nullopt;  // the results hold it
       return seen;
     };
     document_ = std::make_unique<Document>(parseTrainSpec);
@@ -102,7 +103,7 @@ class ObserverTest : public QObject {
     other.request = document_->results()->request;
     other.request.settings.set("detect.level", 0.3);
     other.evidence = document_->results()->evidence[0];
-    other.inputs = StageInputs(keyOf(other.request));
+    other.inputs = inputsOf(other.request);
     document_->setObservation(std::make_shared<const Observation>(other));
     QCOMPARE(document_->frameInspection(), document_->results());
   }
@@ -137,10 +138,14 @@ class ObserverTest : public QObject {
   }
 
  private:
-  static std::string keyOf(const InspectionRequest& request) { return std::to_string(request.settings.number("detect.level")); }
+  static StageInputs inputsOf(const InspectionRequest& request) {
+    StageInputs inputs;
+    inputs.evidence = evidenceInputs(request, false);
+    return inputs;
+  }
   static std::shared_ptr<const Inspection> resultsOf(std::shared_ptr<const Scene> scene, const InspectionRequest& request) {
     Inspection results = drawnCircles(std::move(scene), request);
-    results.inputs = StageInputs(keyOf(request));
+    results.inputs = inputsOf(request);
     return std::make_shared<const Inspection>(std::move(results));
   }
   std::shared_ptr<const Inspection> resultsFor(const InspectionRequest& request) const {

@@ -19,7 +19,7 @@ class RunnerTest : public QObject {
     QSignalSpy finished(&runner, &Runner::finished);
     InspectionRequest request;
     request.train = "0-3";
-    runner.inspect(fixture_.scene(), request, nullptr);
+    runner.inspect(pipeline_, request);
     QVERIFY(runner.busy());
     QVERIFY(finished.wait());
     QCOMPARE(finished[0][0].value<InspectionPtr>()->train.frames, (std::vector<int>{0, 1, 2, 3}));
@@ -31,7 +31,7 @@ class RunnerTest : public QObject {
   void cancelStopsALongRun() {
     Runner runner(longEngine());
     QSignalSpy stopped(&runner, &Runner::stopped), finished(&runner, &Runner::finished), progressed(&runner, &Runner::progressed);
-    runner.inspect(fixture_.scene(), {}, nullptr);
+    runner.inspect(pipeline_, {});
     QTRY_VERIFY(progressed.count() > 0);
     QElapsedTimer clock;
     clock.start();
@@ -45,16 +45,15 @@ class RunnerTest : public QObject {
   void theNewestRequestWins() {
     std::atomic<int> completed{0};
     Engine engine = longEngine();
-    engine.inspect = [slow = engine.inspect, &completed](std::shared_ptr<const Scene> scene, const InspectionRequest& request,
-                                                         const ProgressFn& progress, const Inspection* previous) {
-      if (request.seed < 5) return slow(scene, request, progress, previous);
+    engine.ask = [slow = engine.ask, &completed](Pipeline& pipeline, const Question& q, const ProgressFn& progress) {
+      if (q.request.seed < 5) return slow(pipeline, q, progress);
       ++completed;
-      return drawnCircles(scene, request);
+      return drawn(pipeline, q);
     };
     Runner runner(engine);
     QSignalSpy finished(&runner, &Runner::finished), stopped(&runner, &Runner::stopped), failed(&runner, &Runner::failed);
     InspectionRequest request;
-    for (request.seed = 1; request.seed <= 5; ++request.seed) runner.inspect(fixture_.scene(), request, nullptr);
+    for (request.seed = 1; request.seed <= 5; ++request.seed) runner.inspect(pipeline_, request);
     QVERIFY(finished.wait());
     QTRY_VERIFY(!runner.busy());
     QCOMPARE(finished.count(), 1);
@@ -66,66 +65,52 @@ class RunnerTest : public QObject {
   void theFrameThatIsLookedAtComesFirst() {
     Engine engine = fixture_.engine();
     std::atomic<int> frameAsked{-1};
-    std::atomic<bool> tookOver{false};
-    engine.inspectOneFrame = [&](std::shared_ptr<const Scene> scene, const InspectionRequest& request, int frame,
-                                 const ProgressFn&, const Inspection*) {
-      frameAsked = frame;
-      Inspection one = drawnCircles(scene, request);
-      one.work.fits = 77;
-      return one;
-    };
-    engine.inspect = [&](std::shared_ptr<const Scene> scene, const InspectionRequest& request, const ProgressFn&,
-                         const Inspection* previous) {
-      tookOver = previous && previous->work.fits == 77;
-      return drawnCircles(scene, request);
+    engine.ask = [&](Pipeline& pipeline, const Question& q, const ProgressFn&) -> Pipeline::Answer {
+      if (q.part == Question::Part::FirstLook) return nullptr;
+      if (q.part == Question::Part::Frame) frameAsked = q.frame;
+      return drawn(pipeline, q);
     };
     Runner runner(engine);
     QStringList order;
     connect(&runner, &Runner::frameFinished, this, [&](const InspectionPtr&, int frame) { order << QString::number(frame); });
     connect(&runner, &Runner::finished, this, [&] { order << "all"; });
-    runner.inspect(fixture_.scene(), {}, nullptr, 3);
+    runner.inspect(pipeline_, {}, 3);
     QTRY_COMPARE(order, QStringList({"3", "all"}));
     QCOMPARE(frameAsked.load(), 3);
-    QVERIFY(tookOver.load());
     order.clear();
-    runner.inspect(fixture_.scene(), {}, nullptr);  // nobody looks at any
+    runner.inspect(pipeline_, {});  // nobody looks at any
     QTRY_COMPARE(order, QStringList({"all"}));
   }
 
-  /// Models that are quick are seen before those that are not, and what they took is not computed again.
+  /// Models that are quick are seen before those that are not.
   void quickModelsComeBeforeTheOthers() {
     Engine engine = fixture_.engine();
-    std::atomic<bool> tookOver{false}, worthIt{true};
-    engine.firstLook = [&](std::shared_ptr<const Scene> scene, const InspectionRequest& request, int, const ProgressFn&,
-                           const Inspection*) -> std::optional<Inspection> {
-      if (!worthIt) return std::nullopt;
-      Inspection quick = drawnCircles(scene, request);
+    std::atomic<bool> worthIt{true};
+    engine.ask = [&](Pipeline& pipeline, const Question& q, const ProgressFn&) -> Pipeline::Answer {
+      if (q.part != Question::Part::FirstLook) return drawn(pipeline, q);
+      if (!worthIt) return nullptr;
+      Inspection quick = *drawn(pipeline, q);
       quick.work.fits = 55;
-      return quick;
-    };
-    engine.inspectOneFrame = [&](std::shared_ptr<const Scene> scene, const InspectionRequest& request, int, const ProgressFn&,
-                                 const Inspection* previous) {
-      tookOver = previous && previous->work.fits == 55;
-      return drawnCircles(scene, request);
+      return std::make_shared<const Inspection>(std::move(quick));
     };
     Runner runner(engine);
     QStringList order;
     connect(&runner, &Runner::frameFinished, this,
             [&](const InspectionPtr& inspection, int) { order << (inspection->work.fits == 55 ? "quick" : "frame"); });
     connect(&runner, &Runner::finished, this, [&] { order << "all"; });
-    runner.inspect(fixture_.scene(), {}, nullptr, 3);
+    runner.inspect(pipeline_, {}, 3);
     QTRY_COMPARE(order, QStringList({"quick", "frame", "all"}));
-    QVERIFY(tookOver.load());
     order.clear();
     worthIt = false;
-    runner.inspect(fixture_.scene(), {}, nullptr, 3);
+    runner.inspect(pipeline_, {}, 3);
     QTRY_COMPARE(order, QStringList({"frame", "all"}));
   }
 
   void everyPositionOfADragGetsItsFrameAndTheLastOneEverything() {
     Engine engine = fixture_.engine();
-    engine.inspectOneFrame = [](std::shared_ptr<const Scene> scene, const InspectionRequest& request, int, const ProgressFn&,
-                                const Inspection*) { return drawnCircles(scene, request); };
+    engine.ask = [](Pipeline& pipeline, const Question& q, const ProgressFn&) -> Pipeline::Answer {
+      return q.part == Question::Part::FirstLook ? nullptr : drawn(pipeline, q);
+    };
     Runner runner(engine);
     std::vector<unsigned> frames, all;
     connect(&runner, &Runner::frameFinished, this,
@@ -134,7 +119,7 @@ class RunnerTest : public QObject {
             [&](const InspectionPtr&, const OpenedPtr& computedFor) { all.push_back(computedFor->request.seed); });
     InspectionRequest request;
     for (request.seed = 1; request.seed <= 8; ++request.seed) {
-      runner.inspect(fixture_.scene(), request, nullptr, 0);
+      runner.inspect(pipeline_, request, 0);
       QTRY_COMPARE(frames.size(), std::size_t(request.seed));
     }
     QTRY_VERIFY(!all.empty() && all.back() == 8u);
@@ -144,13 +129,13 @@ class RunnerTest : public QObject {
   /// A hand that keeps dragging does not wait for runs that take longer than their first allowance.
   void aSlowFrameIsSeenWhileTheHandMoves() {
     Engine engine = fixture_.engine();
-    engine.inspectOneFrame = [](std::shared_ptr<const Scene> scene, const InspectionRequest& request, int,
-                                const ProgressFn& progress, const Inspection*) {
-      for (int i = 0; i < 2 * Runner::kGraceMs / 10; ++i) {
+    engine.ask = [](Pipeline& pipeline, const Question& q, const ProgressFn& progress) -> Pipeline::Answer {
+      if (q.part == Question::Part::FirstLook) return nullptr;
+      for (int i = 0; q.part == Question::Part::Frame && i < 2 * Runner::kGraceMs / 10; ++i) {
         if (!report(progress, {"fit", i, 100})) throw Stopped{};
         QThread::msleep(10);
       }
-      return drawnCircles(scene, request);
+      return drawn(pipeline, q);
     };
     Runner runner(engine);
     QSignalSpy frames(&runner, &Runner::frameFinished);
@@ -159,7 +144,7 @@ class RunnerTest : public QObject {
     clock.start();
     while (frames.isEmpty() && clock.elapsed() < 20'000) {
       ++request.seed;
-      runner.inspect(fixture_.scene(), request, nullptr, 0);
+      runner.inspect(pipeline_, request, 0);
       QTest::qWait(Runner::kGraceMs / 5);
     }
     QVERIFY(!frames.isEmpty());
@@ -170,10 +155,10 @@ class RunnerTest : public QObject {
   void undoToFinishedResultsRunsNothing() {
     Engine engine = fixture_.engine();
     std::atomic<int> runs{0};
-    engine.inspect = [&runs](std::shared_ptr<const Scene> scene, const InspectionRequest& request, const ProgressFn&,
-                             const Inspection*) {
+    engine.ask = [&runs](Pipeline& pipeline, const Question& q, const ProgressFn&) -> Pipeline::Answer {
+      if (q.part != Question::Part::Everything) return nullptr;
       ++runs;
-      return drawnCircles(scene, request);
+      return drawn(pipeline, q);
     };
     MainWindow window(engine);
     window.open(toQString(fixture_.opened().path));
@@ -235,7 +220,7 @@ class RunnerTest : public QObject {
     {
       Runner runner(longEngine());
       QSignalSpy progressed(&runner, &Runner::progressed);
-      runner.inspect(fixture_.scene(), {}, nullptr);
+      runner.inspect(pipeline_, {});
       QTRY_VERIFY(progressed.count() > 0);
     }
     QVERIFY(clock.elapsed() < 30000);
@@ -244,17 +229,17 @@ class RunnerTest : public QObject {
  private:
   Engine longEngine() const {
     Engine engine = fixture_.engine();
-    engine.inspect = [](std::shared_ptr<const Scene> scene, const InspectionRequest& request, const ProgressFn& progress,
-                        const Inspection*) {
+    engine.ask = [](Pipeline& pipeline, const Question& q, const ProgressFn& progress) {
       for (int i = 0; i < 6000; ++i) {
         if (!report(progress, {"fit", i, 6000})) throw Stopped{};
         QThread::msleep(10);
       }
-      return drawnCircles(scene, request);
+      return drawn(pipeline, q);
     };
     return engine;
   }
   Fixture fixture_;
+  const std::shared_ptr<Pipeline> pipeline_ = std::make_shared<Pipeline>(fixture_.scene());
 };
 
 QObject* makeRunnerTest() { return new RunnerTest; }

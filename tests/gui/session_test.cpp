@@ -175,8 +175,7 @@ class SessionTest : public QObject {
     opened.viewPoints = {{{1, 2, 3}, {0, 0, 0}, {0, 1, 0}, 20}, {{3, 2, 1}, {0, 0, 0}, {0, 1, 0}, 20}};
     real.save(opened, nullptr, file.toStdString(), {});
     Engine engine = real;
-    engine.inspect = [](std::shared_ptr<const Scene>, const InspectionRequest&, const ProgressFn&,
-                        const Inspection*) -> Inspection { throw Stopped{}; };
+    engine.ask = [](Pipeline&, const Question&, const ProgressFn&) -> Pipeline::Answer { throw Stopped{}; };
     MainWindow window(engine);
     window.show();
     window.open(file);

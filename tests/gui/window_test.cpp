@@ -185,11 +185,9 @@ class WindowTest : public QObject, WindowFixture {
     Engine engine = fixture_.engine();
     QThread* interfaceThread = QThread::currentThread();
     std::atomic<bool> elsewhere{true};
-    engine.inspect = [inner = engine.inspect, interfaceThread, &elsewhere](std::shared_ptr<const Scene> scene,
-                                                                           const InspectionRequest& r, const ProgressFn& p,
-                                                                           const Inspection* before) {
+    engine.ask = [inner = engine.ask, interfaceThread, &elsewhere](Pipeline& pipeline, const Question& q, const ProgressFn& p) {
       if (QThread::currentThread() == interfaceThread) elsewhere = false;
-      return inner(scene, r, p, before);
+      return inner(pipeline, q, p);
     };
     MainWindow window(engine);
     show(window);
@@ -311,13 +309,12 @@ class WindowTest : public QObject, WindowFixture {
 
   void stopLeavesTheOldResultsMarkedAsOutOfDate() {
     Engine engine = fixture_.engine();
-    engine.inspect = [inner = engine.inspect](std::shared_ptr<const Scene> scene, const InspectionRequest& r, const ProgressFn& p,
-                                              const Inspection* before) {
-      for (int i = 0; r.settings.number("detect.level") < 0.3 && i < 6000; ++i) {
+    engine.ask = [inner = engine.ask](Pipeline& pipeline, const Question& q, const ProgressFn& p) {
+      for (int i = 0; q.request.settings.number("detect.level") < 0.3 && i < 6000; ++i) {
         if (!report(p, {"detect", i, 6000})) throw Stopped{};
         QThread::msleep(10);
       }
-      return inner(scene, r, p, before);
+      return inner(pipeline, q, p);
     };
     MainWindow window(engine);
     show(window);
@@ -430,15 +427,11 @@ class WindowTest : public QObject, WindowFixture {
   void theLadderAndTheDialDoNotWaitForTheOtherFrames() {
     Engine engine = fixture_.engine();
     std::atomic<bool> hold{true}, holdFrame{true};
-    engine.inspectOneFrame = [&holdFrame](std::shared_ptr<const Scene> scene, const InspectionRequest& request, int,
-                                          const ProgressFn&, const Inspection*) {
-      while (holdFrame) QThread::msleep(5);
-      return drawnCircles(std::move(scene), request);
-    };
-    engine.inspect = [inner = engine.inspect, &hold](std::shared_ptr<const Scene> scene, const InspectionRequest& r,
-                                                     const ProgressFn& p, const Inspection* before) {
-      while (hold) QThread::msleep(5);
-      return inner(std::move(scene), r, p, before);
+    engine.ask = [&hold, &holdFrame](Pipeline& pipeline, const Question& q, const ProgressFn&) -> Pipeline::Answer {
+      if (q.part == Question::Part::FirstLook) return nullptr;
+      const std::atomic<bool>& holds = q.part == Question::Part::Frame ? holdFrame : hold;
+      while (holds) QThread::msleep(5);
+      return drawn(pipeline, q);
     };
     MainWindow window(engine);
     show(window);
@@ -469,8 +462,8 @@ class WindowTest : public QObject, WindowFixture {
   /// A bug in a job does not end the program, and does not go unseen.
   void whatNobodyExpectedIsToldOnce() {
     Engine engine = fixture_.engine();
-    engine.observeFrame = [](std::shared_ptr<const Scene>, const InspectionRequest&, int, const ProgressFn&,
-                             const Inspection*) -> std::optional<Observation> { throw std::runtime_error("an empty vector"); };
+    engine.contour = [](const Pipeline&, const InspectionRequest&, int, const ProgressFn&,
+                        const Inspection*) -> std::optional<Observation> { throw std::runtime_error("an empty vector"); };
     MainWindow window(engine);
     show(window);
     openAndWait(window);

@@ -88,8 +88,8 @@ struct Compared {
 Compared compare(const test::ColouredCycles& c) {
   Compared r;
   for (int f = 0; f < static_cast<int>(c.scene->frames.size()); ++f) {
-    const FrameEvidence smooth = evidenceFor(*c.scene, f, requestFor(c, "smooth")),
-                        colours = evidenceFor(*c.scene, f, requestFor(c, "colours"));
+    const FrameEvidence smooth = evidenceFor(*c.scene, f, evidenceInputs(requestFor(c, "smooth"), false)),
+                        colours = evidenceFor(*c.scene, f, evidenceInputs(requestFor(c, "colours"), false));
     ++r.frames;
     r.smooth.add(smooth);
     if (colours.notSeparated.empty() && !colours.highlights.empty()) {

@@ -4,8 +4,10 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "core/inspect/inspection.h"
+#include "core/scene/decoded_images.h"
 #include "core/session/session.h"
 #include "tests/core/fit/painted_scene.h"
+#include "tests/core/inspect/questions.h"
 #include "tests/core/scene/scene_fixture.h"
 
 /// Whole inspections of photographs with painted spots: none of them trains.
@@ -194,6 +196,27 @@ TEST(PaintedInspection, LightsThatNobodyNamesAreToldApartWithoutTexture) {
   const Inspection all = inspect(photographed(painted(), folder, {}), request("spread:6"));
   EXPECT_GE(textures(all), 16u);
   for (const FrameEvidence& e : all.evidence) EXPECT_EQ(e.highlights.size(), 1u) << e.frame;
+}
+
+/// Six of twelve frames train. The others are looked at again where their contours are found a second time.
+TEST(PaintedInspection, APhotographThatTrainsIsDecodedOnce) {
+  const TemporaryFolder folder;
+  const auto scene = photographed(painted(), folder, {"lamp"});
+  const auto decoded = [&](const char* background, const char* evidence, const char* level = "0.5") {
+    InspectionRequest q = request("spread:6");
+    q.models = {"limit-angle", "reflectance"};
+    for (const auto& [key, value] :
+         {std::pair("detect.background", background), std::pair("fit.evidence", evidence), std::pair("detect.level", level)})
+      q.settings.setFromText(key, value);
+    const int before = timesDecoded();
+    (void)inspect(scene, q);
+    return timesDecoded() - before;
+  };
+  EXPECT_EQ(decoded("smooth", "contours"), 12);
+  EXPECT_EQ(decoded("smooth", "auto"), 12);
+  EXPECT_EQ(decoded("smooth", "levels"), 12);
+  EXPECT_EQ(decoded("smooth", "pixels", "0.4"), 12) << "the lobe's contours are at half the peak";
+  EXPECT_EQ(decoded("lobe", "auto"), 12 + 6);
 }
 
 TEST(PaintedInspection, WhatAHandHasLabelledStays) {

@@ -11,7 +11,7 @@ using test::Coloured;
 FrameEvidence evidenceOf(const Coloured& c, const std::string& background) {
   InspectionRequest request;
   request.settings.set("detect.background", background);
-  return evidenceFor(c.scene, 0, request);
+  return evidenceFor(c.scene, 0, evidenceInputs(request, false));
 }
 
 double errorPx(const Coloured& c, const FrameEvidence& e) {

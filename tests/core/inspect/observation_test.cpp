@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "tests/core/inspect/exact_scene.h"
+#include "tests/core/inspect/questions.h"
 
 namespace glint {
 namespace {

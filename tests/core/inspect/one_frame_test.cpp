@@ -5,6 +5,7 @@
 #include "core/inspect/photograph.h"
 #include "core/session/session.h"
 #include "tests/core/inspect/exact_scene.h"
+#include "tests/core/inspect/questions.h"
 
 namespace glint {
 namespace {

@@ -88,6 +88,64 @@ TEST(DecodedImages, AFileThatJustChangedIsNotKept) {
   EXPECT_FALSE(images.find("a", fresh));
 }
 
+TEST(DecodedImages, WhatIsHeldStaysAndWhatIsNotMakesRoomForIt) {
+  DecodedImages images(300, 600);
+  images.keep("other", versionAt(1), imageOf(200, 9));
+  images.hold({"a", "b", "c"});
+  images.keep("a", versionAt(1), imageOf(250, 1));
+  images.keep("b", versionAt(1), imageOf(250, 2));  // takes the room of the one that nobody holds
+  images.keep("c", versionAt(1), imageOf(250, 3));  // no room: those that came first stay
+  EXPECT_EQ(valueOf(images.find("a", versionAt(1))), 1);
+  EXPECT_EQ(valueOf(images.find("b", versionAt(1))), 2);
+  EXPECT_FALSE(images.find("c", versionAt(1)));
+  EXPECT_FALSE(images.find("other", versionAt(1)));
+  images.keep("other", versionAt(1), imageOf(10, 9));
+  EXPECT_FALSE(images.find("other", versionAt(1))) << "what is held takes more than all others may";
+  EXPECT_EQ(images.bytes(), 500u);
+  images.hold({"a"});
+  images.release({"a", "b", "c"});
+  EXPECT_LE(images.bytes(), 300u);
+  EXPECT_EQ(valueOf(images.find("a", versionAt(1))), 1) << "somebody else holds it";
+  EXPECT_FALSE(images.find("b", versionAt(1)));
+}
+
+TEST(DecodedImages, AFileThatJustChangedIsKeptAsLongAsItIsHeld) {
+  DecodedImages images(1000);
+  timespec now{};
+  ::clock_gettime(CLOCK_REALTIME, &now);
+  const FileVersion fresh = versionAt(std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec);
+  images.hold({"a"});
+  images.keep("a", fresh, imageOf(10, 7));
+  EXPECT_EQ(valueOf(images.find("a", fresh)), 7);
+  images.release({"a"});
+  EXPECT_FALSE(images.find("a", fresh));
+}
+
+TEST(DecodedImages, APhotographWithAlphaIsDecodedOnceForItsPixelsAndOnceForItsAlpha) {
+  const TemporaryFolder folder;
+  Scene scene;
+  scene.frames = {frameOf(4, 3, folder / "x.png")};
+  cv::Mat cutOut(3, 4, CV_8UC4, cv::Scalar(10, 20, 30, 255));
+  cutOut.at<cv::Vec4b>(1, 2)[3] = 0;
+  ASSERT_TRUE(cv::imwrite(scene.frames[0].image.string(), cutOut));
+  const Outcome<MaskedImage> alone = readMasked(scene.frames[0], FrameSource::Image);
+  ASSERT_TRUE(alone && alone->mask);
+  const PhotographsHeld held(scene, {0});
+  const int before = timesDecoded();
+  for (int pass = 0; pass < 3; ++pass) {
+    const Outcome<MaskedImage> image = readMasked(scene.frames[0], FrameSource::Image);
+    ASSERT_TRUE(image && image->mask);
+    EXPECT_EQ(image->linear.data, alone->linear.data);
+    EXPECT_EQ(image->mask->data, alone->mask->data);
+    EXPECT_EQ(image->mask->at(2, 1), 0.f);
+    EXPECT_EQ(image->mask->at(1, 1), 1.f);
+    const Outcome<std::optional<Image>> mask = readMask(scene.frames[0]);
+    ASSERT_TRUE(mask && *mask);
+    EXPECT_EQ((*mask)->data, alone->mask->data);
+  }
+  EXPECT_EQ(timesDecoded() - before, 2);
+}
+
 // Another picture of the same size in bytes, written into the same file, which is given its old time again: as hard to notice as
 // it can be.
 TEST(DecodedImages, AFrameWhoseFileChangesIsReadAgain) {
