@@ -37,9 +37,9 @@ struct FileVersion {
 };
 std::optional<FileVersion> versionOf(const std::filesystem::path& file);  ///< nothing where it cannot be looked at
 
-/// Decoded images by file. Where there is no room, a random one goes: passes over more frames than there is room for find some of them again, where
-/// the rule "the one that was not used for longest" would find none. Files that somebody holds stay, and take no one else's room: all that is kept
-/// is within the larger of the two bounds. Thread-safe.
+/// Decoded images by file. Where there is no room, a random one goes: passes over more frames than there is room for find some
+/// of them again, where the rule "the one that was not used for longest" would find none. Files that somebody holds stay, and
+/// take no one else's room: all that is kept is within the larger of the two bounds. Thread-safe.
 class DecodedImages {
  public:
   explicit DecodedImages(std::size_t mostBytes, std::size_t mostHeldBytes = 0)

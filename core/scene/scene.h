@@ -127,8 +127,8 @@ Outcome<Image> readPhotograph(const Frame& frame);
 /// For a program's start: from now on this process keeps decoded image files, up to this many bytes of pixels in all, for the
 /// next look at a frame. A file that changes is read again. 0, the value at the start of every process, keeps nothing.
 void keepDecodedImages(std::size_t mostBytes);
-/// While it lives, the photographs, radiance and masks of these frames are decoded once, as long as 256 MB of pixels hold them; what has no room is
-/// decoded again whenever it is looked at. Several may live at the same time.
+/// While it lives, the photographs, radiance and masks of these frames are decoded once, as long as 256 MB of pixels hold
+/// them; what has no room is decoded again whenever it is looked at. Several may live at the same time.
 class PhotographsHeld {
  public:
   PhotographsHeld(const Scene& scene, const std::vector<int>& frames);
@@ -139,7 +139,8 @@ class PhotographsHeld {
  private:
   std::vector<std::filesystem::path> files_;
 };
-/// 1 on the glossy object, 0 elsewhere; without a mask, 0 where the photograph is transparent. Nothing when the frame has neither. FrameUnreadable.
+/// 1 on the glossy object, 0 elsewhere; without a mask, 0 where the photograph is transparent. Nothing when the frame has
+/// neither. FrameUnreadable.
 Outcome<std::optional<Image>> readMask(const Frame& frame);
 /// Depth along the optical axis in metres, 0 = none (non-finite and negative values too); nothing when the frame has none. The
 /// depth of a separate depth camera is registered to the frame's camera (registeredDepth). FrameUnreadable, also for an integer
