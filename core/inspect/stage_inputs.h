@@ -21,11 +21,11 @@ struct TrainSpec;
 /// The stages of an inspection whose answers are remembered, in the order in which they run.
 enum class Stage { Evidence, Lobes, Views, Lights, Fits, Predictions };
 
-/// What each stage takes beside the answers of those before it. Of a what-if it holds the part that the stage sees
+/// What each stage takes beside the answers of those before it. It holds the part of a what-if that the stage sees
 /// (what_if.h), the rest at its default.
 using StageSettings = std::map<std::string, SettingValue>;
 
-/// Of the evidence of a frame, the user's changes to single highlights apart.
+/// Inputs of the evidence of a frame, the user's changes to single highlights apart.
 struct EvidenceInputs {
   FrameSource source = FrameSource::Radiance;
   std::string truthFolder;
@@ -42,7 +42,7 @@ struct TrainingInputs {
   friend bool operator==(const TrainingInputs&, const TrainingInputs&) = default;
 };
 
-/// Of the lobes that are fitted to pixels: the stage looks at evidence of its own, at half the peak.
+/// Inputs of the lobes that are fitted to pixels: the stage looks at evidence of its own, at half the peak.
 struct LobeInputs {
   EvidenceInputs evidence;
   StageSettings surface;
@@ -52,7 +52,7 @@ struct LobeInputs {
   friend bool operator==(const LobeInputs&, const LobeInputs&) = default;
 };
 
-/// Of the training views.
+/// Inputs of the training views.
 struct ViewInputs {
   StageSettings surface;
   TrainingInputs training;
@@ -63,7 +63,7 @@ struct ViewInputs {
   friend bool operator==(const ViewInputs&, const ViewInputs&) = default;
 };
 
-/// Of the estimates of lights. The keys are part of it: a look at one frame may not have seen them all.
+/// Inputs of the estimates of lights. The keys are part of it: a look at one frame may not have seen them all.
 struct LightInputs {
   StageSettings light;
   std::vector<FitKey> keys;

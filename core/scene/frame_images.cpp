@@ -130,7 +130,7 @@ Outcome<DecodedImage> decode(const fs::path& file, const Camera& camera) {
   return decodeOnce(file, file, camera, [&] { return decodeFile(file, camera); });
 }
 
-/// The picture of a frame. Of a video all decoders give 8 bits.
+/// The picture of a frame. All decoders give 8 bits of a video.
 Outcome<DecodedImage> decode(const Frame& frame, const fs::path& file) {
   if (!frame.ofVideo || file != frame.image) return decode(file, frame.camera);
   const auto read = [&]() -> Outcome<DecodedImage> {

@@ -22,8 +22,9 @@ std::vector<std::optional<SurfacePoint>> Surface::approximateHits(const std::vec
 }
 
 Eigen::Vector3d Surface::tangentAt(const SurfacePoint& p) const {
+  constexpr double kAlongY = 1e-6;  // sine of the angle to y: below it round-off would turn the tangent
   const Eigen::Vector3d around = Eigen::Vector3d::UnitY().cross(p.normal);
-  return around.norm() > 1e-6 ? around.normalized() : Eigen::Vector3d::UnitX();
+  return around.norm() > kAlongY ? around.normalized() : Eigen::Vector3d::UnitX();
 }
 
 namespace {

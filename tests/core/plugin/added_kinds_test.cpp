@@ -61,8 +61,8 @@ class TwoWidths final : public LobeProfile {
   }
 };
 
-// D of GGX with slopes of two widths (Walter, Heitz): 1 / (pi a b cos^4 (1 + tan^2 (cos^2 phi / a^2 + sin^2 phi / b^2))^2),
-// about a turned tangent.
+// D of GGX with slopes of two widths (Walter, Heitz), about a turned tangent:
+// 1 / (pi a b cos^4 (1 + tan^2 (cos^2 phi / a^2 + sin^2 phi / b^2))^2).
 TEST(AddedLobe, HasTwoWidthsAboutTheTangent) {
   const Lobe lobe = addLobe(std::make_unique<TwoWidths>());
   const double along = 0.1, across = 0.3, turned = 0.4;
