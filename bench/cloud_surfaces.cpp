@@ -17,7 +17,6 @@
 #include <string>
 
 #include "core/surface/mesh.h"
-#include "core/surface/point_mesh.h"
 #include "core/surface/point_surface.h"
 
 namespace glint {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <map>
 
-#include "core/base/parallel.h"
+#include "core/base/progress.h"
 #include "core/light/estimate.h"
 #include "core/model/fit_ellipsoid.h"
 #include "core/model/models.h"

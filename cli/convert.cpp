@@ -7,8 +7,7 @@
 #include "cli/scene_arguments.h"
 #include "core/base/number_text.h"
 #include "core/fit/given_labels.h"
-#include "core/scene/corrected_files.h"
-#include "core/scene/export_capture.h"
+#include "core/scene/correction.h"
 #include "core/scene/outputs.h"
 #include "core/scene/scene.h"
 

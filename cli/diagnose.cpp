@@ -6,7 +6,6 @@
 #include "core/diagnose/diagnosis.h"
 #include "core/diagnostics/camera_check.h"
 #include "core/inspect/summary.h"
-#include "core/report/diagnosis_report.h"
 #include "core/report/report.h"
 #include "core/scene/outputs.h"
 

@@ -5,7 +5,7 @@
 #include "core/base/version.h"
 #include "core/report/evaluation.h"
 #include "core/report/report.h"
-#include "core/report/warnings.h"
+#include "core/report/texts.h"
 #include "core/scene/outputs.h"
 
 namespace glint::cli {

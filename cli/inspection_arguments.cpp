@@ -9,9 +9,9 @@
 #include "core/fit/level_choice.h"
 #include "core/model/model.h"
 #include "core/report/evaluation.h"
-#include "core/scene/frame_spec.h"
+#include "core/scene/frame_name.h"
 #include "core/session/session.h"
-#include "core/tradeoff/choice.h"
+#include "core/tradeoff/tradeoff.h"
 
 namespace glint::cli {
 

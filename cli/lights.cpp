@@ -8,9 +8,9 @@
 #include "cli/scene_arguments.h"
 #include "core/base/number_text.h"
 #include "core/capture/capture.h"
-#include "core/report/lamps_on_csv.h"
+#include "core/report/lamps_report.h"
 #include "core/report/measured_lamps.h"
-#include "core/scene/frame_spec.h"
+#include "core/scene/frame_name.h"
 #include "core/scene/outputs.h"
 
 namespace glint::cli {

@@ -8,7 +8,7 @@
 #include "cli/inspection_arguments.h"
 #include "cli/picture_input.h"
 #include "core/inspect/photograph.h"
-#include "core/scene/frame_spec.h"
+#include "core/scene/frame_name.h"
 #include "core/scene/outputs.h"
 #include "viz/convert.h"
 #include "viz/offscreen.h"

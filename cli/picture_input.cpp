@@ -6,7 +6,7 @@
 
 #include "cli/inspection_arguments.h"
 #include "core/base/found_file.h"
-#include "core/base/plugin_hint.h"
+#include "core/base/words.h"
 
 namespace glint::cli {
 namespace {

@@ -8,12 +8,11 @@
 
 #include "cli/interrupt.h"
 #include "cli/terminal.h"
-#include "core/base/elapsed.h"
+#include "core/base/stage_times.h"
 #include "core/capture/pose_lines.h"
 #include "core/inspect/live_prediction.h"
-#include "core/report/band_text.h"
-#include "core/report/live_json.h"
-#include "core/report/warnings.h"
+#include "core/report/labels.h"
+#include "core/report/texts.h"
 
 namespace glint::cli {
 namespace {

@@ -3,9 +3,9 @@
 
 #include "cli/commands.h"
 #include "cli/inspection_arguments.h"
-#include "core/base/light_name.h"
 #include "core/base/number_text.h"
-#include "core/report/warnings.h"
+#include "core/base/words.h"
+#include "core/report/texts.h"
 #include "core/scene/outputs.h"
 #include "core/session/session.h"
 

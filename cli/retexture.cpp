@@ -7,9 +7,9 @@
 #include "cli/inspection_arguments.h"
 #include "core/base/number_text.h"
 #include "core/highlight/report.h"
-#include "core/report/warnings.h"
+#include "core/report/texts.h"
 #include "core/retexture/wish.h"
-#include "core/scene/frame_spec.h"
+#include "core/scene/frame_name.h"
 #include "core/scene/outputs.h"
 #include "core/session/session.h"
 

@@ -5,8 +5,8 @@
 #include "cli/inspection_arguments.h"
 #include "core/base/version.h"
 #include "core/report/evaluation.h"
-#include "core/report/warnings.h"
-#include "core/scene/frame_spec.h"
+#include "core/report/texts.h"
+#include "core/scene/frame_name.h"
 #include "core/scene/outputs.h"
 
 namespace glint::cli {

@@ -5,7 +5,7 @@
 #include "cli/inspection_arguments.h"
 #include "core/base/number_text.h"
 #include "core/base/version.h"
-#include "core/report/tradeoff_html.h"
+#include "core/report/report.h"
 #include "core/scene/outputs.h"
 #include "core/session/session.h"
 #include "core/trials/run.h"

@@ -281,7 +281,7 @@ axes change by at most {gaussian:.1f} % and the contours overlap by at least {io
 - The contour lies on the slope around the saturated core, at a level of the clipped maximum: the true peak is not known, so the true level is lower than the one named.
 - The highlight ends at the silhouette, where no level set does: the ellipse through such a contour reaches beyond the ball. It says where the highlight is, not what shape a lobe has.
 - Along the silhouette and the ball's grooves the contour has streaks, which join or leave the highlight between levels. They are cut off, and pieces of them beside the highlight are rejected (`withoutStreaks`,
-  `core/highlight/streaks.h`). Without that the ellipse of C2_S3 moved by 6.5 px between these levels.
+  `core/highlight/iso_contour.h`). Without that the ellipse of C2_S3 moved by 6.5 px between these levels.
 - Other highlights in the count are on the ball's stand and in its grooves. No mask was given.
 
 ## Two chrome balls

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "core/base/atomic_file.h"
-#include "core/base/base64.h"
+#include "core/base/bytes.h"
 #include "core/base/outcome.h"
 #include "core/base/permitted.h"
 #include "io/binary.h"

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "core/base/image.h"
 #include "core/base/number_text.h"
 #include "core/base/outcome.h"
-#include "core/base/srgb.h"
 
 namespace glint::viz {
 namespace {

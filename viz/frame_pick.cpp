@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/draw/frame_details.h"
-#include "core/draw/unmatched.h"
+#include "core/draw/selection.h"
 #include "core/geometry/polyline.h"
 #include "viz/style.h"
 

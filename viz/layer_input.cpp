@@ -11,7 +11,7 @@
 #include <numbers>
 
 #include "core/base/number_text.h"
-#include "core/base/unit_text.h"
+#include "core/base/words.h"
 #include "core/draw/on_surface.h"
 #include "core/fit/training.h"
 #include "core/inspect/photograph.h"

@@ -11,7 +11,6 @@
 #include <opencv2/core.hpp>
 
 #include "core/base/atomic_file.h"
-#include "core/base/atomic_folder.h"
 #include "core/base/number_text.h"
 #include "core/base/outcome.h"
 #include "core/base/quiet_libraries.h"

@@ -5,10 +5,9 @@
 #include <cmath>
 #include <limits>
 
-#include "core/base/error_text.h"
 #include "core/base/number_text.h"
 #include "core/draw/contrast.h"
-#include "core/draw/overlay_painter.h"
+#include "core/draw/frame_overlay.h"
 #include "core/draw/plots.h"
 #include "core/inspect/frame_score.h"
 #include "core/inspect/photograph.h"

@@ -3,7 +3,7 @@
 
 #include "core/base/atomic_file.h"
 #include "core/base/outcome.h"
-#include "core/draw/caption.h"
+#include "core/draw/painter.h"
 #include "core/draw/svg_painter.h"
 #include "viz/canvas.h"
 #include "viz/style.h"

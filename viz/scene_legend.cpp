@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <string_view>
 
-#include "core/base/error_text.h"
+#include "core/base/number_text.h"
 #include "core/draw/frame_overlay.h"
 #include "core/inspect/frame_score.h"
 #include "core/inspect/summary.h"

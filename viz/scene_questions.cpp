@@ -17,7 +17,7 @@
 #include <numeric>
 #include <set>
 
-#include "core/draw/unmatched.h"
+#include "core/draw/selection.h"
 #include "core/geometry/light.h"
 #include "core/surface/brightest_point.h"
 

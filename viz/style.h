@@ -4,7 +4,6 @@
 #include <string>
 
 #include "core/draw/colours.h"
-#include "core/draw/lamp_colour.h"
 #include "core/draw/selection.h"
 
 namespace glint::viz {

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/base/angle.h"
 #include "core/base/number_text.h"
+#include "core/base/numeric.h"
 
 namespace glint::viz {
 namespace {

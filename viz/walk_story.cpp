@@ -6,8 +6,8 @@
 #include <limits>
 #include <numbers>
 
-#include "core/base/angle.h"
 #include "core/base/number_text.h"
+#include "core/base/numeric.h"
 #include "core/draw/frame_details.h"
 #include "viz/annotations.h"
 #include "viz/layers.h"

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/base/atomic_folder.h"
-
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -12,6 +10,7 @@
 #include <system_error>
 #include <vector>
 
+#include "core/base/atomic_file.h"
 #include "core/base/outcome.h"
 #include "core/base/temporary_path.h"
 

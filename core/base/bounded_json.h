@@ -2,12 +2,16 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <string>
 
 #include "core/base/json_text.h"
 
 namespace glint {
+
+/// Range of a contour's level wherever one is given: a setting, a scene file, a synthetic scene.
+inline constexpr double kLeastLevel = 1e-6, kMostLevel = 1 - 1e-6;
 
 // Numbers of a scene within what its geometry can be computed for. Beyond, products of a few of them overflow, and the answer
 // would be a failure of some later step instead of a line with the place. InputError (file, place).
@@ -40,5 +44,19 @@ inline double positive(const JsonNode& node, double most) {
 inline Eigen::Vector3d lengths3(const JsonNode& node) { return boundedAll(node, kFarthest).vector3(); }
 /// A place in an image.
 inline Eigen::Vector2d pixel(const JsonNode& node) { return boundedAll(node, kFarthestPx).vector2(); }
+
+/// A name of a frame, light or surface: not empty, no control characters.
+inline bool isIdentifier(const std::string& id) {
+  return !id.empty() &&
+         std::none_of(id.begin(), id.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; });
+}
+
+/// @throw InputError with file and place
+inline std::string readIdJson(const JsonNode& node) {
+  const std::string id = node.text();
+  if (id.empty()) node.fail("must not be empty");
+  if (!isIdentifier(id)) node.fail("must not contain control characters");
+  return id;
+}
 
 }  // namespace glint

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/base/exif.h"
-
 #include <algorithm>
 #include <cstdint>
 
-#include "core/base/numbers_in_bytes.h"
+#include "core/base/bytes.h"
+#include "core/base/image_header.h"
 
 namespace glint {
 namespace {

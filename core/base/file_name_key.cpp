@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/base/file_name_key.h"
-
 #include <algorithm>
+
+#include "core/base/found_file.h"
 
 namespace glint {
 namespace {

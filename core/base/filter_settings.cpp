@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/base/filter_settings.h"
-
 #include <algorithm>
+
+#include "core/base/settings.h"
 
 namespace glint {
 

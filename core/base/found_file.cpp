@@ -6,8 +6,6 @@
 #include <fstream>
 #include <system_error>
 
-#include "core/base/file_name_key.h"
-
 namespace glint {
 namespace fs = std::filesystem;
 namespace {

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace glint {
@@ -53,5 +54,10 @@ std::string lowerEnding(const std::filesystem::path& file);
 
 /// With slashes in place of backslashes.
 std::string slashed(std::string name);
+
+/// Equal for names of files (UTF-8) that people take for the same: in small letters (Latin, Greek, Cyrillic), each accent as a
+/// mark of its own. Systems disagree about both: Windows and macOS find "IMG.PNG" as "img.png", and macOS hands out an accent
+/// apart from its letter. Bytes that are no UTF-8 stand for themselves.
+std::u32string fileNameKey(std::string_view name);
 
 }  // namespace glint

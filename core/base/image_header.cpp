@@ -6,7 +6,7 @@
 #include <limits>
 #include <optional>
 
-#include "core/base/numbers_in_bytes.h"
+#include "core/base/bytes.h"
 
 namespace glint {
 namespace {

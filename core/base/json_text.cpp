@@ -5,10 +5,12 @@
 #include <limits>
 #include <unordered_map>
 
+#include "core/base/atomic_file.h"
 #include "core/base/json_dom.h"
 #include "core/base/outcome.h"
 
 namespace glint {
+
 using json_dom::Json;
 
 struct JsonNode::Document {
@@ -208,5 +210,17 @@ std::vector<std::string> JsonNode::unknownKeys(const std::set<std::string>& know
 }
 
 std::string JsonNode::dump() const { return json(value_).dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+std::string documentKind(const std::filesystem::path& file) {
+  try {
+    const json_dom::Json root = json_dom::parse(readFile(file, Limit::JsonMegabytes), file.string());
+    if (!root.is_object()) return "";
+    for (const auto& [key, value] : root.items())
+      if (key.rfind("glint_", 0) == 0 && value.is_number_integer()) return key;
+  } catch (const std::exception&) {
+    // Whatever it is, it is no document of ours.
+  }
+  return "";
+}
 
 }  // namespace glint

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <set>
@@ -9,6 +10,7 @@
 #include <vector>
 
 namespace glint {
+
 namespace json_dom {
 struct NodeValue;  // core/base/json_dom.h
 }
@@ -64,5 +66,9 @@ class JsonNode {
   const void* value_;  // nlohmann::ordered_json
   std::string place_;
 };
+
+/// What a JSON file is, by the key at its top that names its format: "glint_scene", "glint_session", "glint_evaluation" and so
+/// on. "" if the file is missing, is no regular file, cannot be read or parsed, or has no such key. Never throws.
+std::string documentKind(const std::filesystem::path& file);
 
 }  // namespace glint

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/base/parallel.h"
-
 #include <algorithm>
 #include <atomic>
 #include <cstdlib>
@@ -11,8 +9,9 @@
 #include <thread>
 #include <vector>
 
-#include "core/base/image_memory.h"
+#include "core/base/memory.h"
 #include "core/base/number_text.h"
+#include "core/base/progress.h"
 
 namespace glint {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "core/base/median.h"
+#include "core/base/numeric.h"
 #include "core/base/outcome.h"
 
 namespace glint {

@@ -6,14 +6,10 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "core/base/added_choice.h"
-#include "core/base/depth_settings.h"
-#include "core/base/filter_settings.h"
-#include "core/base/level_range.h"
+#include "core/base/bounded_json.h"
 #include "core/base/number_text.h"
 #include "core/base/outcome.h"
-#include "core/base/plugin_hint.h"
-#include "core/base/similar_name.h"
+#include "core/base/words.h"
 
 namespace glint {
 

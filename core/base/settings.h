@@ -54,4 +54,14 @@ class Settings {
 /// The description of one key; InputError if it is unknown.
 const ParamSpec& paramSpec(const std::string& key);
 
+/// One more legal value of a setting that names one of several. Not thread-safe: before anything reads
+/// settings. std::invalid_argument for a setting that does not exist or has no list of values.
+void addChoice(const std::string& key, const std::string& choice);
+
+/// `others` with the settings `surface.depth_...` after those of other surfaces, for `allParams`.
+std::vector<ParamSpec> withDepthParams(std::vector<ParamSpec> others);
+
+/// `others` with the settings `predict.filter_...` after those of other predictions, for `allParams`.
+std::vector<ParamSpec> withFilterParams(std::vector<ParamSpec> others);
+
 }  // namespace glint

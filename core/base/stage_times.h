@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <chrono>
 #include <functional>
 #include <mutex>
 #include <string>
@@ -34,5 +35,10 @@ class StageTimes {
   std::size_t current_ = 0;
   double began_ = 0, since_ = 0;
 };
+
+using Clock = std::chrono::steady_clock;
+inline double microsecondsSince(Clock::time_point start) {
+  return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
+}
 
 }  // namespace glint

@@ -13,7 +13,7 @@
 #include "core/capture/image_sizes.h"
 #include "core/capture/parts.h"
 #include "core/capture/text_rows.h"
-#include "core/geometry/typed_pose.h"
+#include "core/geometry/transforms.h"
 #include "io/text_scan.h"
 
 // One scene of a data set in the format of BOP (Hodan et al., BOP: Benchmark for 6D Object Pose Estimation, ECCV 2018), as its

@@ -5,7 +5,7 @@
 #include "core/base/number_text.h"
 #include "core/capture/file_names.h"
 #include "core/capture/text_rows.h"
-#include "core/geometry/typed_pose.h"
+#include "core/geometry/transforms.h"
 
 namespace glint {
 namespace {

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "core/capture/added_reader.h"
 #include "core/capture/parts.h"
 
 namespace glint {

@@ -4,10 +4,9 @@
 #include <set>
 
 #include "core/base/atomic_file.h"
-#include "core/base/atomic_folder.h"
 #include "core/base/number_text.h"
+#include "core/capture/capture.h"
 #include "core/capture/colmap_parts.h"
-#include "core/capture/write.h"
 
 namespace glint {
 namespace fs = std::filesystem;

@@ -17,7 +17,7 @@
 #include "core/capture/file_names.h"
 #include "core/capture/image_sizes.h"
 #include "core/capture/parts.h"
-#include "core/geometry/pose_json.h"
+#include "core/geometry/camera_json.h"
 #include "io/cloud_reader.h"
 
 // transforms.json of nerfstudio, with what instant-ngp and the original NeRF data have besides.

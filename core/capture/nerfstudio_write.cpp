@@ -3,8 +3,8 @@
 
 #include "core/base/atomic_file.h"
 #include "core/base/json_dom.h"
+#include "core/capture/capture.h"
 #include "core/capture/parts.h"
-#include "core/capture/write.h"
 
 namespace glint {
 using json_dom::Json;

@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <queue>
+#include <tuple>
 
 #include "core/base/atomic_file.h"
 #include "core/base/bounded_json.h"
@@ -11,6 +14,7 @@
 #include "io/text_scan.h"
 
 namespace glint::capture {
+
 namespace fs = std::filesystem;
 
 Eigen::Quaterniond unitQuaternion(double w, double x, double y, double z, const std::string& file, const std::string& place,
@@ -141,6 +145,57 @@ long long integerAt(const Row& row, std::size_t word, const std::string& file) {
   const std::optional<std::int64_t> value = io::integerOf(row.words[word]);
   if (!value) throw InputError(file, row.place(), io::quoted(row.words[word]) + " is not a whole number");
   return *value;
+}
+
+double secondsOf(double time) {
+  constexpr double kMostSeconds = 1e11, kThousand = 1e3;
+  for (double unit = 1;; unit *= kThousand)
+    if (!(std::abs(time) >= kMostSeconds * unit) || unit >= 1e9) return time / unit;
+}
+
+std::vector<std::size_t> timePairs(const std::vector<double>& times, const std::vector<double>& others) {
+  struct Moment {
+    double time;
+    bool isOther;
+    std::size_t index, before, after;
+  };
+  std::vector<Moment> line;
+  for (std::size_t i = 0; i < times.size(); ++i) line.push_back({times[i], false, i, 0, 0});
+  for (std::size_t i = 0; i < others.size(); ++i) line.push_back({others[i], true, i, 0, 0});
+  std::sort(line.begin(), line.end(), [](const Moment& a, const Moment& b) {
+    return std::tie(a.time, a.isOther, a.index) < std::tie(b.time, b.isOther, b.index);
+  });
+  struct Neighbours {
+    double apart;
+    std::size_t left, right;
+    bool operator>(const Neighbours& b) const { return std::tie(apart, left) > std::tie(b.apart, b.left); }
+  };
+  std::priority_queue<Neighbours, std::vector<Neighbours>, std::greater<>> closest;
+  const auto consider = [&](std::size_t left, std::size_t right) {
+    if (left == kNoPair || right >= line.size() || line[left].isOther == line[right].isOther) return;
+    const double apart = line[right].time - line[left].time;
+    if (apart <= kApart) closest.push({apart, left, right});
+  };
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    line[i].before = i - 1;  // of the first: kNoPair
+    line[i].after = i + 1;
+    consider(i, i + 1);
+  }
+  std::vector<std::size_t> pairs(times.size(), kNoPair);
+  std::vector<char> used(line.size());
+  while (!closest.empty()) {
+    const auto [apart, left, right] = closest.top();
+    closest.pop();
+    if (used[left] || used[right]) continue;
+    used[left] = used[right] = true;
+    const bool turned = line[left].isOther;
+    pairs[line[turned ? right : left].index] = line[turned ? left : right].index;
+    const std::size_t before = line[left].before, after = line[right].after;
+    if (before != kNoPair) line[before].after = after;
+    if (after < line.size()) line[after].before = before;
+    consider(before, after);
+  }
+  return pairs;
 }
 
 }  // namespace glint::capture

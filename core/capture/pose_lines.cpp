@@ -8,12 +8,9 @@
 
 #include "core/base/atomic_file.h"
 #include "core/base/bounded_json.h"
-#include "core/base/identifier.h"
 #include "core/capture/parts.h"
 #include "core/capture/text_rows.h"
-#include "core/capture/time_pairs.h"
 #include "core/geometry/camera_json.h"
-#include "core/geometry/pose_json.h"
 #include "io/text_scan.h"
 
 namespace glint {

@@ -53,7 +53,8 @@ class PoseLineReader {
   /// @throw LostPose    for a line that says that there is no pose
   /// @throw CutPose     for a line with fewer numbers than a pose, or of JSON that the end of the file cuts
   /// @throw InputError  (name, "line 7" or "line 7: camera_from_world[0]") for a line without pose, longer than kLongestPoseLine,
-  ///                    or whose pose is not rigid (core/geometry/pose_json.h); with the name alone where the file cannot be read
+  ///                    or whose pose is not rigid (core/geometry/camera_json.h); with the name alone where the file cannot be
+  ///                    read
   std::optional<PoseLine> next();
 
   std::size_t line() const { return number_; }  ///< number of the line that was read last, from 1

@@ -7,17 +7,15 @@
 #include <map>
 
 #include "core/base/atomic_file.h"
-#include "core/base/exif.h"
-#include "core/base/file_name_key.h"
 #include "core/base/found_file.h"
+#include "core/base/image_header.h"
 #include "core/base/number_text.h"
 #include "core/capture/capture.h"
 #include "core/capture/image_sizes.h"
 #include "core/capture/parts.h"
 #include "core/capture/pose_lines.h"
 #include "core/capture/text_rows.h"
-#include "core/capture/time_pairs.h"
-#include "core/geometry/film_camera.h"
+#include "core/geometry/camera.h"
 #include "io/text_scan.h"
 
 namespace glint {

@@ -12,7 +12,6 @@
 #include "core/capture/image_sizes.h"
 #include "core/capture/parts.h"
 #include "core/capture/text_rows.h"
-#include "core/capture/time_pairs.h"
 #include "io/text_scan.h"
 
 // The RGB-D benchmark of TUM (Sturm et al., IROS 2012). Lists of images: `timestamp path`. Trajectory: `timestamp tx ty tz qx

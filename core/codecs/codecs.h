@@ -29,7 +29,7 @@ void loadCodecs();
 
 /// All channels in OpenCV's order (blue first), in the file's own depth, as cv::imdecode with IMREAD_UNCHANGED gives them. TIFF
 /// and EXR files that OpenCV cannot read are decoded by libtiff and OpenEXR themselves, without alpha and half floats as floats:
-/// of EXR files one layer (own_decoders.h).
+/// of EXR files one layer (codec_table.h).
 /// @param reason  says why a whole file of a known format is refused
 /// @return empty: refused, or not an image
 /// @throws std::exception  damaged data

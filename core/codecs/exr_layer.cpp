@@ -12,7 +12,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "core/codecs/own_decoders.h"
+#include "core/codecs/codec_table.h"
 
 namespace glint {
 namespace {

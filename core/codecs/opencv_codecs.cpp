@@ -5,7 +5,6 @@
 #include <opencv2/videoio.hpp>
 
 #include "core/codecs/codec_table.h"
-#include "core/codecs/own_decoders.h"
 
 namespace glint {
 namespace {

@@ -8,8 +8,8 @@
 #include <opencv2/core.hpp>
 #include <stdexcept>
 
-#include "core/base/numbers_in_bytes.h"
-#include "core/codecs/own_decoders.h"
+#include "core/base/bytes.h"
+#include "core/codecs/codec_table.h"
 
 namespace glint {
 namespace {

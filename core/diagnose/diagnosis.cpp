@@ -8,10 +8,8 @@
 #include <utility>
 
 #include "core/base/number_text.h"
-#include "core/diagnose/by_contours.h"
-#include "core/diagnose/candidates.h"
-#include "core/diagnose/model_causes.h"
-#include "core/scene/frame_spec.h"
+#include "core/diagnose/diagnosis_parts.h"
+#include "core/scene/frame_name.h"
 #include "core/selection/selection.h"
 
 namespace glint {

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/diagnose/fit_trace.h"
-
 #include <algorithm>
 #include <map>
 #include <utility>
 
 #include "core/base/number_text.h"
+#include "core/diagnose/diagnosis.h"
 #include "core/selection/leave_one_out.h"
 
 namespace glint {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/diagnose/shared_causes.h"
-
 #include <algorithm>
 #include <boost/math/distributions/hypergeometric.hpp>
 #include <cmath>
@@ -8,8 +6,9 @@
 #include <optional>
 #include <set>
 
-#include "core/base/light_name.h"
 #include "core/base/number_text.h"
+#include "core/base/words.h"
+#include "core/diagnose/highlight_evidence.h"
 #include "core/selection/selection.h"
 
 namespace glint {

@@ -7,11 +7,9 @@
 #include <map>
 #include <set>
 
-#include "core/base/median.h"
 #include "core/base/number_text.h"
+#include "core/base/numeric.h"
 #include "core/diagnostics/likely_mistakes.h"
-#include "core/diagnostics/shared_lamp.h"
-#include "core/diagnostics/valley.h"
 #include "core/fit/evidence.h"
 #include "core/fit/fit_engine.h"
 #include "core/fit/training.h"

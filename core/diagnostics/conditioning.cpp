@@ -7,9 +7,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/base/angle.h"
 #include "core/base/evenly.h"
 #include "core/base/number_text.h"
+#include "core/base/numeric.h"
 #include "core/highlight/peak.h"
 #include "core/light/estimate.h"
 #include "core/model/fit_ellipsoid.h"

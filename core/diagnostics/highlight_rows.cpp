@@ -6,8 +6,7 @@
 #include <map>
 #include <numeric>
 
-#include "core/base/angle.h"
-#include "core/base/median.h"
+#include "core/base/numeric.h"
 #include "core/geometry/polyline.h"
 #include "core/inspect/frame_score.h"
 #include "core/inspect/summary.h"

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "core/base/evenly.h"
-#include "core/base/parallel.h"
+#include "core/base/progress.h"
 #include "core/diagnostics/polar_residual.h"
 #include "core/score/comparison.h"
 #include "core/selection/leave_one_out.h"

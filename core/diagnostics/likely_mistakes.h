@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/geometry/camera.h"
-#include "core/geometry/similarity.h"
+#include "core/geometry/transforms.h"
 #include "core/highlight/highlight.h"
 #include "core/scene/correction.h"
 

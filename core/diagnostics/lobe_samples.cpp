@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/base/median.h"
+#include "core/base/numeric.h"
 #include "core/highlight/background.h"
 
 namespace glint {

@@ -6,7 +6,7 @@
 #include <limits>
 #include <numbers>
 
-#include "core/geometry/seen_window.h"
+#include "core/geometry/camera.h"
 
 namespace glint {
 namespace {

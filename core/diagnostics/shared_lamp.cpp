@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/diagnostics/shared_lamp.h"
-
 #include <algorithm>
 #include <cmath>
 
-#include "core/base/median.h"
+#include "core/base/numeric.h"
+#include "core/diagnostics/camera_check.h"
 
 namespace glint {
 namespace {

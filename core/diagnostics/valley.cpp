@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/diagnostics/valley.h"
-
 #include <Eigen/Eigenvalues>
+
+#include "core/diagnostics/camera_check.h"
 
 namespace glint {
 namespace {

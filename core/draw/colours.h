@@ -4,7 +4,7 @@
 #include <array>
 #include <string>
 
-#include "core/model/palette.h"
+#include "core/model/models.h"
 
 namespace glint::draw {
 
@@ -38,5 +38,11 @@ inline constexpr Colour kActiveView{0.184, 0.486, 0.769};  ///< the accent colou
 inline constexpr Colour kDarkBackground{0.10, 0.11, 0.13}, kLightBackground{0.97, 0.97, 0.97};
 inline constexpr Colour kTextOnDark{0.92, 0.92, 0.92}, kTextOnLight{0.10, 0.10, 0.10};
 inline constexpr Colour kHalo{0.12, 0.13, 0.15};  ///< dark stroke beneath what is white on every background
+
+inline constexpr Colour kMeasuredLamp{
+    0.42, 0.74, 0.13};  ///< neither a model's, nor that of a scene's lights; also of balls' refined outlines
+
+/// Colour of what the user points at elsewhere, such as a symbol. No model, light or axis has it; texts in it can be read.
+inline constexpr Colour kLitOnDark{0.35, 1.0, 1.0}, kLitOnLight{0.0, 0.47, 0.55};
 
 }  // namespace glint::draw

@@ -6,12 +6,10 @@
 #include <functional>
 #include <utility>
 
-#include "core/base/error_text.h"
 #include "core/base/number_text.h"
 #include "core/draw/frame_details.h"
-#include "core/draw/lobe_overlay.h"
 #include "core/draw/plots.h"
-#include "core/draw/unmatched.h"
+#include "core/draw/selection.h"
 #include "core/inspect/summary.h"
 #include "core/scene/scene_files.h"
 

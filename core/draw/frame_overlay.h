@@ -127,4 +127,18 @@ struct ContourRun {
 };
 std::vector<ContourRun> contourRuns(const PredictedHighlight& highlight);
 
+/// The highlight under every lobe that is fitted to its pixels: the contour at the level of the best lobe's peak, and in thinner
+/// lines the contour at kTailShare of that level, where lobes differ most. Lines look as in the plot "Every lobe". Each lobe has
+/// a caption, or the reason why it is missing.
+/// @param highlight  index into FrameEvidence::scored(); -1 = the first
+void addLobes(const FrameSamples& samples, int highlight, FrameOverlay& overlay);
+
+/// Share of the level: low enough to tell a long tail, high enough for LobeOptions::reach (GGX: 1.95 of 2.2 times the contour).
+inline constexpr double kTailShare = 0.3;
+
+/// Paints an overlay: photograph pixels of `crop` are stretched over `box` and cut at its border; marks are in or out by their
+/// place. Marks and widths keep their screen size times `inkScale`. @param hints  labels answer the mouse (Painter::hint)
+void paintOverlay(Painter& painter, const FrameOverlay& overlay, const Crop& crop, const Box& box, double inkScale = 1,
+                  bool hints = false);
+
 }  // namespace glint::draw

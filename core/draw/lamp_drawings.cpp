@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "core/base/number_text.h"
-#include "core/draw/lamp_colour.h"
+#include "core/draw/colours.h"
 
 namespace glint::draw {
 

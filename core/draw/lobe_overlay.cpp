@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/draw/lobe_overlay.h"
-
 #include "core/base/number_text.h"
-#include "core/draw/lobe_style.h"
+#include "core/draw/frame_overlay.h"
+#include "core/draw/plot_text.h"
 #include "core/draw/plots.h"
 
 namespace glint::draw {

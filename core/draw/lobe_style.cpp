@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/draw/lobe_style.h"
-
 #include <array>
 
 #include "core/base/number_text.h"
+#include "core/draw/plot_text.h"
 
 namespace glint::draw {
 

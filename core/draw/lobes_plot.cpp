@@ -2,9 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/base/angle.h"
 #include "core/base/number_text.h"
-#include "core/draw/lobe_style.h"
+#include "core/base/numeric.h"
 #include "core/draw/plot_text.h"
 #include "core/draw/plots.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/draw/overlay_painter.h"
+#include "core/draw/frame_overlay.h"
 
 namespace glint::draw {
 namespace {

@@ -49,4 +49,29 @@ class Painter {
 /// How far below a middle line the baseline lies of letters that are centred on it, px.
 inline double belowMiddle(double sizePx) { return 0.36 * sizePx; }
 
+/// A caption under a figure: lines that the width of the page broke.
+struct Caption {
+  std::vector<std::string> lines;
+  double sizePx = 0;
+  double height = 0;  ///< px, with the room above and below the lines; 0 = no caption
+};
+
+/// Breaks a caption at blanks; a word that is wider than the page is cut. What exceeds `mostHeight` ends in an ellipsis.
+/// @param painter  measures
+/// @param width    px of the whole picture
+Caption captionOf(const Painter& painter, const std::string& text, double sizePx, double width, double mostHeight);
+/// Paints it from `top` down; the ground is the caller's.
+void paintCaption(Painter& painter, const Caption& caption, double top, const Colour& ink);
+
+/// A polyline of at least two points.
+struct Chain {
+  std::vector<Eigen::Vector2d> points;
+  bool closed = false;
+};
+
+/// The part of a polyline in a box, border included. A line that leaves it becomes open pieces; one wholly inside stays as
+/// it is. Points that are not finite are left out. @param box  without width: everything
+/// @see Liang & Barsky, A New Concept and Method for Line Clipping, 1984.
+std::vector<Chain> chainsInside(const std::vector<Eigen::Vector2d>& points, bool closed, const Box& box);
+
 }  // namespace glint::draw

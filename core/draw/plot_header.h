@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
+#include <vector>
+
+#include "core/draw/painter.h"
 #include "core/draw/plot_painter.h"
 
 namespace glint::draw {
@@ -36,5 +40,11 @@ double paintPlotHeader(Painter& painter, const PlotData& plot, const PlotLook& l
 void paintCross(Painter& painter, const Eigen::Vector2d& at, const Colour& colour, const PlotLook& look);
 /// Around a sample of which PlotPoint::triangle is set.
 void paintTriangle(Painter& painter, const Eigen::Vector2d& at, const Colour& colour, const PlotLook& look);
+
+/// Where names are written that belong to points: beside their point, above to the right first, then below and to the left, then
+/// in rows farther away; inside `area`, and never over one another or over a point. Nothing for a name without room.
+/// @param widths  of the names, one for each point @param height  of a line @param scale  device pixels per screen px
+std::vector<std::optional<Box>> notePlaces(const std::vector<Eigen::Vector2d>& points, const std::vector<double>& widths,
+                                           double height, const Box& area, double scale);
 
 }  // namespace glint::draw

@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "core/draw/plot_header.h"
-#include "core/draw/plot_notes.h"
 
 namespace glint::draw {
 namespace {

@@ -4,6 +4,9 @@
 #include <string>
 #include <utility>
 
+#include "core/diagnostics/lobe_comparison.h"
+#include "core/draw/colours.h"
+#include "core/draw/painter.h"
 #include "core/draw/plot_data.h"
 #include "core/inspect/inspection.h"
 #include "core/inspect/summary.h"
@@ -38,5 +41,17 @@ inline bool isPoor(const ModelResult& result) { return !reasonsOf(result).poor.e
 inline std::string frameName(const Inspection& inspection, int frame) {
   return inspection.scene ? glint::frameName(*inspection.scene, frame) : std::to_string(frame);
 }
+
+/// A lobe's line in plots and over photographs: no model's colour, and told apart by the dash as well.
+struct LobeStyle {
+  Colour colour;
+  Dash dash;
+};
+
+/// @param place  of the lobe in LobeComparison::matches
+const LobeStyle& lobeStyle(std::size_t place);
+
+/// "ggx, m = 0.1203, rms 0.61 %, best", or the reason why it is missing.
+std::string lobeText(const LobeComparison& comparison, std::size_t place);
 
 }  // namespace glint::draw

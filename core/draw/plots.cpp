@@ -6,9 +6,9 @@
 #include <exception>
 #include <limits>
 
-#include "core/base/angle.h"
-#include "core/base/light_name.h"
 #include "core/base/number_text.h"
+#include "core/base/numeric.h"
+#include "core/base/words.h"
 #include "core/draw/plot_text.h"
 #include "core/inspect/frame_score.h"
 #include "core/inspect/photograph.h"

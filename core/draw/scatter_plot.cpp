@@ -6,8 +6,8 @@
 #include <limits>
 #include <map>
 
-#include "core/base/light_name.h"
 #include "core/base/number_text.h"
+#include "core/base/words.h"
 #include "core/draw/plot_text.h"
 
 namespace glint::draw {

@@ -7,8 +7,8 @@
 #include <limits>
 #include <numbers>
 
-#include "core/base/light_name.h"
 #include "core/base/number_text.h"
+#include "core/base/words.h"
 #include "core/draw/frame_overlay.h"
 #include "core/fit/training.h"
 #include "core/geometry/polyline.h"

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/base/base64.h"
+#include "core/base/bytes.h"
 #include "core/base/html_text.h"
 #include "core/base/number_text.h"
-#include "core/draw/clip.h"
+#include "core/draw/painter.h"
 
 namespace glint::draw {
 namespace {

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/draw/unmatched.h"
-
 #include <algorithm>
 
+#include "core/draw/selection.h"
 #include "core/inspect/frame_score.h"
 
 namespace glint::draw {

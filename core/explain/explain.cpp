@@ -10,12 +10,12 @@
 #include <map>
 #include <numeric>
 
-#include "core/base/angle.h"
+#include "core/base/numeric.h"
 #include "core/diagnostics/conditioning.h"
 #include "core/explain/explain_case.h"
 #include "core/fit/training.h"
+#include "core/geometry/camera.h"
 #include "core/geometry/epipolar.h"
-#include "core/geometry/seen_window.h"
 #include "core/highlight/peak.h"
 #include "core/light/estimate.h"
 

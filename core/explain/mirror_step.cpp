@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "core/base/angle.h"
+#include "core/base/numeric.h"
 #include "core/explain/explain_case.h"
 #include "core/light/estimate.h"
 

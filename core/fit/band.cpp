@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/fit/band.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "core/fit/fit_key.h"
+#include "core/fit/training.h"
 #include "core/light/refine_depth.h"
 #include "core/scene/scene.h"
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/base/median.h"
+#include "core/base/numeric.h"
 #include "core/surface/mesh_policy.h"
 
 namespace glint {

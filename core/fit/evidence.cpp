@@ -11,7 +11,7 @@
 #include "core/base/json_text.h"
 #include "core/base/number_text.h"
 #include "core/base/safe_text.h"
-#include "core/geometry/distortion.h"
+#include "core/geometry/camera.h"
 #include "core/highlight/clipped_flank.h"
 
 namespace glint {

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "core/base/parallel.h"
+#include "core/base/progress.h"
 #include "core/fit/training.h"
 #include "core/surface/mesh_policy.h"
 

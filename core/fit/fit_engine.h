@@ -3,10 +3,12 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "core/base/progress.h"
 #include "core/fit/surface_correction.h"
+#include "core/model/band.h"
 
 namespace glint {
 
@@ -33,5 +35,18 @@ FitInput fitInput(const HighlightModel& model, std::vector<TrainingView> views,
 Outcome<ModelFit> fitModel(const HighlightModel& model, std::vector<TrainingView> views,
                            const std::optional<Outcome<LightEstimate>>& light, const Settings& settings,
                            std::shared_ptr<const PixelFit> pixelFit = nullptr, const ProgressFn& progress = {});
+
+/// A fit's band (predict.band), and remarks about it, in words.
+struct FittedBand {
+  std::shared_ptr<const Band> band;  ///< null without one
+  std::vector<std::string> remarks;
+};
+
+/// The band of a fit with its alternatives: the other lobes of a reflectance fit, reflectance beside the limit angle, each by the
+/// share of evidence that its residuals leave it; and the fit repeated with the cameras that a scale or focal length off by its
+/// stated tolerance (input.scale_tolerance, input.focal_tolerance) amounts to. A few fits; nothing is cached.
+/// @param surfaceRefined  the views' surfaces are corrected depth maps or meshes
+FittedBand bandOf(const HighlightModel& model, const ModelFit& fit, const FitInput& input, const Settings& settings,
+                  bool surfaceRefined);
 
 }  // namespace glint

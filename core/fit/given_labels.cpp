@@ -10,11 +10,10 @@
 #include "core/base/atomic_file.h"
 #include "core/base/bounded_json.h"
 #include "core/base/json_text.h"
-#include "core/base/level_range.h"
 #include "core/base/number_text.h"
 #include "core/base/safe_text.h"
 #include "core/fit/evidence.h"
-#include "core/geometry/distortion.h"
+#include "core/geometry/camera.h"
 
 // COCO's object detection format (Lin et al., Microsoft COCO: Common objects in context, ECCV 2014; cocodataset.org).
 

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/fit/highlight_quality.h"
-
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
-#include "core/base/median.h"
 #include "core/base/number_text.h"
+#include "core/base/numeric.h"
+#include "core/fit/evidence.h"
 #include "core/highlight/background.h"
 #include "core/highlight/clipped_flank.h"
-#include "core/highlight/pixel_noise.h"
+#include "core/highlight/frame_blur.h"
 #include "core/light/estimate.h"
 
 namespace glint {

@@ -7,11 +7,10 @@
 #include <map>
 #include <optional>
 
-#include "core/base/median.h"
 #include "core/base/number_text.h"
-#include "core/base/parallel.h"
+#include "core/base/numeric.h"
+#include "core/base/progress.h"
 #include "core/fit/evidence.h"
-#include "core/fit/highlight_quality.h"
 
 namespace glint {
 namespace {

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/fit/several_lights.h"
-
 #include <algorithm>
 #include <map>
 #include <set>
 
-#include "core/base/parallel.h"
+#include "core/base/progress.h"
+#include "core/fit/evidence.h"
 #include "core/light/track.h"
 
 namespace glint {

@@ -7,8 +7,6 @@
 #include "core/light/contour_evidence.h"
 #include "core/light/estimate.h"
 #include "core/light/left_out.h"
-#include "core/light/ray_condition.h"
-#include "core/light/refine_poses.h"
 #include "core/model/models.h"
 #include "core/model/plausible.h"
 #include "core/model/walk.h"

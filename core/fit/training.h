@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <compare>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "core/base/settings.h"
@@ -10,6 +13,17 @@
 #include "core/surface/surface.h"
 
 namespace glint {
+
+/// Whose estimate, fit or correction it is: that of a light, on one surface alone where every surface has its own models
+/// (TrainSpec::perSurface).
+struct FitKey {
+  std::string light;                        ///< id
+  std::optional<std::string> surface = {};  ///< SurfaceCache::keyOf(); none: of all surfaces together
+  friend auto operator<=>(const FitKey&, const FitKey&) = default;
+};
+
+/// "lamp", or "lamp@g03": for people, and in the names of key results.
+inline std::string textOf(const FitKey& key) { return key.surface ? key.light + "@" + *key.surface : key.light; }
 
 /// Evidence of one training highlight with what the geometry adds: observed brightest point, tangent plane, virtual
 /// camera (method.md sections 3 and 5). `failure` is set where the peak misses the surface or the frame has none.

@@ -2,9 +2,8 @@
 #include "core/geometry/camera.h"
 
 #include <Eigen/LU>
+#include <cmath>
 #include <limits>
-
-#include "core/geometry/distortion.h"
 
 namespace glint {
 
@@ -45,6 +44,49 @@ Outcome<Pixel> withoutDistortion(const Camera& camera, const Pixel& measured) {
   const Outcome<Eigen::Vector2d> x = undistorted(camera.lens, h.head<2>() / h.z());
   if (!x) return x.failure();
   return Pixel((camera.pixelFromRay * x->homogeneous()).head<2>());
+}
+
+namespace {
+
+constexpr int kSteps = 8;  // along each side: its middle, where a border bulges most, is one of them
+
+/// Where the ray of an ideal pixel is cut off: at 85 degrees from the axis, in its own direction.
+Pixel withinReach(const Camera& camera, const Pixel& ideal) {
+  static const double kLongest = std::tan(85 * EIGEN_PI / 180);
+  const Eigen::Vector2d ray =
+      (camera.pixelFromRay.topLeftCorner<2, 2>().inverse() * (ideal - camera.pixelFromRay.topRightCorner<2, 1>()));
+  if (ray.norm() <= kLongest) return ideal;
+  return camera.pixelFromRay.topRightCorner<2, 1>() + camera.pixelFromRay.topLeftCorner<2, 2>() * (kLongest * ray.normalized());
+}
+
+}  // namespace
+
+Eigen::AlignedBox2d seenWindow(const Camera& camera) {
+  const Eigen::AlignedBox2d measured(Pixel(-0.5, -0.5), Pixel(camera.width - 0.5, camera.height - 0.5));
+  if (!camera.hasDistortion()) return measured;
+  Eigen::AlignedBox2d seen;
+  const Pixel centre = camera.pixelFromRay.topRightCorner<2, 1>();
+  const auto add = [&](const Pixel& border) {
+    if (const Outcome<Pixel> ideal = withoutDistortion(camera, border))
+      seen.extend(withinReach(camera, *ideal));
+    else if (ideal.failure().reason == Reason::OutsideImage)  // at 90 degrees and more: all up to where the window ends
+      seen.extend(withinReach(camera, centre + 1e6 * (border - centre)));
+  };
+  for (int i = 0; i <= kSteps; ++i) {
+    const double share = double(i) / kSteps;
+    const Pixel along = measured.min() + share * measured.sizes();
+    for (const Pixel& border : {Pixel(along.x(), measured.min().y()), Pixel(along.x(), measured.max().y()),
+                                Pixel(measured.min().x(), along.y()), Pixel(measured.max().x(), along.y())})
+      add(border);
+  }
+  // A strong distortion that shows nothing along the whole border, or an optical axis outside of the image.
+  return seen.isEmpty() || !((seen.max() - seen.min()).minCoeff() > 0) ? measured : seen;
+}
+
+bool isInPhotograph(const Camera& camera, const Pixel& ideal, double marginPx) {
+  const Pixel p = camera.hasDistortion() ? camera.distorted(ideal) : ideal;
+  return p.x() >= -marginPx && p.y() >= -marginPx && p.x() <= camera.width - 1 + marginPx &&
+         p.y() <= camera.height - 1 + marginPx;
 }
 
 }  // namespace glint

@@ -10,8 +10,10 @@
 
 #include "core/base/bounded_json.h"
 #include "core/base/limits.h"
+#include "core/geometry/transforms.h"
 
 namespace glint {
+
 namespace {
 
 /// Keys that other programs write and that would move what a camera sees or where a surface is: to keep them and go on would
@@ -109,6 +111,18 @@ Camera readCameraJson(const JsonNode& node) {
   refuseGeometry(node, kCameraGeometry);
   camera.lens = readLens(node);
   return camera;
+}
+
+Eigen::Isometry3d readPoseJson(const JsonNode& node, std::string* warning) {
+  const Eigen::Matrix4d m = node.matrix4();
+  for (std::size_t i = 0; i < 3; ++i) bounded(node.at(i).at(3), kFarthest);
+  if (m.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) node.fail("must be rigid: the last row must be 0 0 0 1");
+  const TypedPose typed = typedPose(m.topLeftCorner<3, 3>(), m.topRightCorner<3, 1>());
+  if (typed.rotation == TypedRotation::NotARotation) node.fail("must be rigid: the 3x3 block is not a rotation");
+  if (typed.rotation == TypedRotation::Mirrored) node.fail("must be rigid: the 3x3 block is mirrored (determinant -1)");
+  if (warning && typed.rotation == TypedRotation::Repaired)
+    *warning = node.place() + ": not exactly a rotation, replaced by the nearest one";
+  return typed.pose;
 }
 
 }  // namespace glint

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <Eigen/Geometry>
 #include <set>
 #include <string>
 
@@ -22,5 +23,8 @@ Camera readCameraJson(const JsonNode& node);
 void refuseGeometry(const JsonNode& node, const std::set<std::string>& keys);
 /// The same for a frame: keys that state its pose otherwise than `camera_from_world` does.
 void refuseFrameGeometry(const JsonNode& frame);
+
+/// 4x4 rigid transform: finite, last row 0 0 0 1, the rest as typedPose takes it; `warning` says where a rotation was repaired.
+Eigen::Isometry3d readPoseJson(const JsonNode& node, std::string* warning = nullptr);
 
 }  // namespace glint

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <Eigen/Geometry>
 #include <optional>
 #include <vector>
 
@@ -28,5 +29,11 @@ std::vector<Pixel> resample(const Polyline& line, int n);
 std::vector<Pixel> thinned(const Polyline& line, int n);
 /// Consecutive repeated points (closer than `tolerancePx`) removed.
 Polyline withoutRepeats(const Polyline& line, double tolerancePx = 1e-9);
+
+/// The part of a closed polyline inside a box; empty if none is (Sutherland, Hodgman, Reentrant polygon clipping, CACM 1974).
+/// One that leaves the box and comes back stays one: its parts are joined along the border by segments that enclose nothing, so
+/// that the signed area and the even-odd interior are those of the intersection. Points inside stay as they are.
+/// @param closed  finite
+Polyline clippedTo(const Eigen::AlignedBox2d& box, const Polyline& closed);
 
 }  // namespace glint

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "core/base/dense_algebra.h"
-#include "core/base/median.h"
+#include "core/base/numeric.h"
 
 namespace glint {
 namespace {

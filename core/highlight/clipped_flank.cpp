@@ -8,10 +8,9 @@
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
-#include "core/base/median.h"
 #include "core/base/number_text.h"
+#include "core/base/numeric.h"
 #include "core/highlight/iso_contour.h"
-#include "core/highlight/streaks.h"
 
 namespace glint {
 namespace {

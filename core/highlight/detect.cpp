@@ -6,14 +6,13 @@
 #include <optional>
 #include <utility>
 
-#include "core/base/median.h"
+#include "core/base/numeric.h"
 #include "core/highlight/background.h"
 #include "core/highlight/clipped_flank.h"
+#include "core/highlight/frame_blur.h"
 #include "core/highlight/highlight.h"
 #include "core/highlight/iso_contour.h"
 #include "core/highlight/peak.h"
-#include "core/highlight/pixel_noise.h"
-#include "core/highlight/streaks.h"
 
 namespace glint {
 namespace {

@@ -8,11 +8,11 @@
 #include <optional>
 #include <string>
 
-#include "core/base/median.h"
+#include "core/base/numeric.h"
 #include "core/geometry/camera.h"
-#include "core/highlight/pixel_noise.h"
 
 namespace glint {
+
 namespace {
 
 constexpr int kDirections = 8;          // of edges, over half a turn
@@ -174,6 +174,21 @@ Outcome<FrameBlur> measureBlur(const Image& image, double clipValue) {
     blur.sigmaPx = std::sqrt(right.head(used).minCoeff());  // no direction is sharper than the blur
   }
   return blur;
+}
+
+double pixelNoise(const Image& image, const std::vector<char>& usable) {
+  const int w = image.width, h = image.height;
+  std::vector<float> response;
+  const int stride = std::max(1, static_cast<int>(std::sqrt(static_cast<double>(w) * h / 50000)));
+  for (int y = 1; y + 1 < h; y += stride)
+    for (int x = 1; x + 1 < w; x += stride) {
+      if (!usable[static_cast<std::size_t>(y) * w + x]) continue;
+      const auto v = [&](int dx, int dy) { return image.at(x + dx, y + dy); };
+      response.push_back(
+          std::abs(v(-1, -1) + v(1, -1) + v(-1, 1) + v(1, 1) - 2 * (v(0, -1) + v(0, 1) + v(-1, 0) + v(1, 0)) + 4 * v(0, 0)));
+    }
+  if (response.empty()) return 0;
+  return 1.4826 * upperMedian(std::move(response)) / 6.0;  // the mask's own norm is 6
 }
 
 }  // namespace glint

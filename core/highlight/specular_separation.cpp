@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "core/base/number_text.h"
-#include "core/highlight/pixel_noise.h"
+#include "core/highlight/frame_blur.h"
 
 namespace glint {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/highlight/streaks.h"
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <vector>
+
+#include "core/highlight/iso_contour.h"
 
 namespace glint {
 namespace {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/base/error_text.h"
+#include "core/base/number_text.h"
 
 namespace glint {
 

@@ -14,8 +14,7 @@
 
 #include "core/base/number_text.h"
 #include "core/fit/evidence.h"
-#include "core/geometry/distortion.h"
-#include "core/geometry/seen_window.h"
+#include "core/geometry/camera.h"
 #include "core/highlight/peak.h"
 
 namespace glint {

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "core/fit/corrected_depth.h"
-#include "core/scene/frame_spec.h"
+#include "core/scene/frame_name.h"
 #include "core/surface/mesh_policy.h"
 
 namespace glint {

@@ -9,9 +9,9 @@
 
 #include "core/base/progress.h"
 #include "core/base/settings.h"
-#include "core/fit/fit_key.h"
 #include "core/fit/frame_evidence.h"
 #include "core/fit/surface_correction.h"
+#include "core/fit/training.h"
 #include "core/inspect/stage_inputs.h"
 #include "core/model/model.h"
 #include "core/scene/scene.h"

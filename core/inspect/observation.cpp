@@ -9,10 +9,8 @@
 #include "core/fit/corrected_depth.h"
 #include "core/fit/evidence.h"
 #include "core/fit/highlight_motion.h"
-#include "core/fit/several_lights.h"
 #include "core/inspect/hand_edits.h"
 #include "core/inspect/lobe_stage.h"
-#include "core/inspect/requested_evidence.h"
 #include "core/inspect/stage_inputs.h"
 #include "core/surface/mesh_policy.h"
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/base/srgb.h"
+#include "core/base/image.h"
 #include "core/synth/synth.h"
 #include "core/what_if/what_if.h"
 

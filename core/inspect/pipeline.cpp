@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "core/fit/corrected_depth.h"
+#include "core/inspect/hand_edits.h"
 #include "core/inspect/lobe_stage.h"
-#include "core/inspect/requested_evidence.h"
 #include "core/inspect/stage_run.h"
 
 namespace glint {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/inspect/probe.h"
 
-#include "core/geometry/distortion.h"
+#include "core/geometry/camera.h"
 #include "core/geometry/light.h"
 #include "core/surface/mesh_policy.h"
 

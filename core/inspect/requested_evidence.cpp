@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/inspect/requested_evidence.h"
-
 #include <algorithm>
 #include <set>
 
 #include "core/fit/evidence.h"
-#include "core/fit/several_lights.h"
 #include "core/inspect/hand_edits.h"
 
 namespace glint {

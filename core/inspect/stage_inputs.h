@@ -9,7 +9,7 @@
 
 #include "core/base/settings.h"
 #include "core/fit/detect_settings.h"
-#include "core/fit/fit_key.h"
+#include "core/fit/training.h"
 #include "core/scene/scene.h"
 #include "core/what_if/what_if.h"
 

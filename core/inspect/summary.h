@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/inspect/inspection.h"
-#include "core/score/statistic.h"
+#include "core/score/metrics.h"
 
 namespace glint {
 

@@ -8,8 +8,8 @@
 #include <limits>
 #include <numbers>
 
-#include "core/base/median.h"
-#include "core/base/srgb.h"
+#include "core/base/image.h"
+#include "core/base/numeric.h"
 
 namespace glint {
 namespace {

@@ -7,9 +7,9 @@
 #include <opencv2/imgproc.hpp>
 #include <string>
 
-#include "core/base/median.h"
+#include "core/base/image.h"
 #include "core/base/number_text.h"
-#include "core/base/srgb.h"
+#include "core/base/numeric.h"
 #include "core/geometry/polyline.h"
 #include "core/highlight/iso_contour.h"
 

@@ -51,4 +51,8 @@ struct OutlineChoice {
 /// @param given  with its covariance
 OutlineChoice chosenOutline(const Outcome<RefinedOutline>& found, const RefinedOutline& given);
 
+/// The circle through three points of a ball's rim, px: its centre is the point at equal distances from them.
+/// @return  RankDeficient if they lie on a line, or so nearly that the circle is a million times their distance; NotFinite
+Outcome<BallOutline> circleThrough(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c);
+
 }  // namespace glint

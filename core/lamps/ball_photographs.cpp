@@ -9,16 +9,14 @@
 
 #include "core/base/atomic_file.h"
 #include "core/base/bounded_json.h"
-#include "core/base/exif.h"
 #include "core/base/found_file.h"
 #include "core/base/image_header.h"
 #include "core/base/number_text.h"
-#include "core/base/parallel.h"
-#include "core/geometry/film_camera.h"
+#include "core/base/progress.h"
+#include "core/geometry/camera.h"
 #include "core/lamps/ball_highlights.h"
 #include "core/lamps/ball_outline.h"
-#include "core/lamps/glossy_ball.h"
-#include "core/scene/frame_spec.h"
+#include "core/scene/frame_name.h"
 #include "core/scene/scene.h"
 
 namespace glint {

@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/lamps/glossy_ball.h"
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <memory>
 #include <numbers>
 
-#include "core/base/angle.h"
-#include "core/base/median.h"
+#include "core/base/numeric.h"
 #include "core/geometry/polyline.h"
 #include "core/inspect/inspection.h"
-#include "core/lamps/scene_lamps.h"
+#include "core/lamps/ball_photographs.h"
+#include "core/lamps/lamp_answer.h"
 
 namespace glint {
 namespace {

@@ -7,7 +7,9 @@
 #include <vector>
 
 #include "core/base/outcome.h"
+#include "core/base/progress.h"
 #include "core/geometry/camera.h"
+#include "core/geometry/ellipsoid.h"
 
 namespace glint {
 
@@ -68,5 +70,27 @@ struct LampAnswer {
   std::string solver;                ///< of a scene: "pixels", "contours", "bundle", "triangulated", "mirror rays"
   std::vector<std::string> remarks;  ///< what makes the answer doubtful, in words
 };
+
+// Where a lamp is with a probability of 95 %, if its errors are normal and as large as its covariance says.
+
+/// { x : (x - p)^T C^-1 (x - p) <= q }, q the 95 % quantile of chi squared with 3 degrees of freedom. World units.
+/// @return  NotReached without a position; what Ellipsoid::fromCentreAndShape says of the covariance.
+Outcome<Ellipsoid> positionRegion(const LampAnswer& lamp);
+
+/// Radius of the cone that holds the true direction, rad: with two equal coordinates P(angle > t) = exp(-t^2 / sigma^2),
+/// sigma the rms angle. @return  at most pi; 0 without a spread.
+double directionRegion(const LampAnswer& lamp);
+
+struct Inspection;
+/// Where the lights of a scene are, from the highlights of its frames. The true lights that the scene may hold are not read.
+///
+/// For each light: drops by name views whose mirrored rays contradict others (least median of the angles over pairs of rays). The
+/// rest goes through the fit of `evaluate`, the reflectance model of pixels or contours, which knows that a rough surface is not
+/// brightest where it mirrors the light. If that fails, through the contours' bundle; else the mean of the mirrored rays gives a
+/// direction. A position is given if the inverse distance is five standard deviations from 0, seen from the middle of the object.
+/// @param inspection  of inspect() without models: evidence and views of all frames that count
+/// @return  one answer for each light that a frame names or shows, in the order of the frames; `id` is the light's. World, m.
+///          Failures of single lamps: NoHighlight, PeakOffSurface and what else became of its views. Throws Stopped.
+std::vector<LampAnswer> lampsOfScene(const Inspection& inspection, const ProgressFn& progress = {});
 
 }  // namespace glint

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <set>
 
-#include "core/base/median.h"
 #include "core/base/number_text.h"
+#include "core/base/numeric.h"
 
 namespace glint {
 namespace {

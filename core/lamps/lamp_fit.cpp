@@ -10,8 +10,8 @@
 #include <numbers>
 #include <opencv2/imgproc.hpp>
 
-#include "core/base/angle.h"
 #include "core/base/number_text.h"
+#include "core/base/numeric.h"
 #include "core/geometry/plane.h"
 #include "core/lamps/lamp_consensus.h"
 #include "core/lamps/lamp_problem.h"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/lamps/lamp_regions.h"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include "core/lamps/lamp_answer.h"
 
 namespace glint {
 

@@ -7,11 +7,11 @@
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
-#include "core/base/median.h"
-#include "core/base/parallel.h"
+#include "core/base/numeric.h"
+#include "core/base/progress.h"
 #include "core/fit/evidence.h"
 #include "core/fit/highlight_motion.h"
-#include "core/highlight/pixel_noise.h"
+#include "core/highlight/frame_blur.h"
 #include "core/inspect/live_prediction.h"
 
 namespace glint {

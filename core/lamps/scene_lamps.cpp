@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/lamps/scene_lamps.h"
-
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -9,13 +7,14 @@
 #include <functional>
 #include <set>
 
-#include "core/base/angle.h"
-#include "core/base/median.h"
 #include "core/base/number_text.h"
-#include "core/base/parallel.h"
+#include "core/base/numeric.h"
+#include "core/base/progress.h"
 #include "core/fit/fit_engine.h"
 #include "core/fit/training.h"
 #include "core/geometry/plane.h"
+#include "core/inspect/inspection.h"
+#include "core/lamps/lamp_answer.h"
 #include "core/light/estimate.h"
 #include "core/light/left_out.h"
 #include "core/model/plausible.h"

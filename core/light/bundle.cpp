@@ -8,9 +8,9 @@
 #include <map>
 
 #include "core/base/dense_algebra.h"
-#include "core/base/median.h"
 #include "core/base/number_text.h"
-#include "core/base/parallel.h"
+#include "core/base/numeric.h"
+#include "core/base/progress.h"
 #include "core/base/residual_spread.h"
 #include "core/base/solver_trace.h"
 #include "core/light/bundle_attempt.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <map>
 
-#include "core/base/median.h"
+#include "core/base/numeric.h"
 
 namespace glint::bundling {
 namespace {

@@ -59,3 +59,15 @@ Outcome<LeftOutErrors> leftOutErrors(const std::vector<ContourEvidence>& evidenc
                                      const Light& start, const BundleOptions& options, int atMost);
 
 }  // namespace glint
+
+namespace glint::refining {
+
+// What the refinements of poses, depth and normals agree on.
+
+/// Share of the points that count as independent, from which residuals are noise. Below it they keep their sign along contours,
+/// and something systematic is left; white noise leaves nearly all of them.
+inline constexpr double kSystematic = 0.5;
+/// The accuracy of detection (px): below it poses, depth and normals would be bent to round-off.
+inline constexpr double kLeastNoisePx = 0.02;
+
+}  // namespace glint::refining

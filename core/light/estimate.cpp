@@ -8,7 +8,6 @@
 
 #include "core/base/dense_algebra.h"
 #include "core/geometry/plane.h"
-#include "core/light/ray_condition.h"
 
 namespace glint {
 

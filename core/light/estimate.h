@@ -80,4 +80,23 @@ struct LeftOutErrors {
 Outcome<LeftOutErrors> leftOutErrors(const std::vector<BundleView>& views, const Light& start, const BundleOptions& options,
                                      int atMost);
 
+/// Triangulation::condition of any rays, also of those that give no light: smallest over largest eigenvalue of sum (I - r r^T),
+/// in [0, 1]; small = nearly parallel. 0 below two rays.
+double conditionOf(const std::vector<ReflectedRay>& rays);
+
+struct PoseRefinement {
+  Bundle bundle;                ///< with the refined cameras
+  std::vector<Camera> cameras;  ///< one per view
+  double movedPx = 0;           ///< RMS over views and axes of the correction, px at the surface
+};
+
+/// Light, limit angle and a small correction of every camera together: each view may turn by `sigmaPx` / f about each of its axes
+/// and shift by `sigmaPx` Z / f along each (standard deviations of a Gaussian prior, Z its distance from the surface). Minimises
+/// the robust sum of squared contour distances in pixels plus the prior, by Gauss-Newton steps on the joint Jacobian (QR), from a
+/// bundle with the given cameras. Where the residuals of the plain bundle are white, or below 0.02 px, nothing speaks against the
+/// poses and they stay as they are. The contours do not show what turns light and cameras alike (any rotation about a sphere's
+/// centre), so nothing is gained there. The bundle's own failures.
+Outcome<PoseRefinement> refinePoses(const std::vector<BundleView>& views, const Light& start, double sigmaPx,
+                                    const BundleOptions& options = {});
+
 }  // namespace glint

@@ -16,7 +16,6 @@
 #include "core/light/contour_evidence.h"
 #include "core/light/dense_solver.h"
 #include "core/light/left_out.h"
-#include "core/light/refining.h"
 
 namespace glint {
 namespace {

@@ -9,12 +9,11 @@
 #include <limits>
 
 #include "core/base/dense_algebra.h"
-#include "core/base/median.h"
+#include "core/base/numeric.h"
 #include "core/base/residual_spread.h"
 #include "core/geometry/polyline.h"
 #include "core/light/contour_evidence.h"
 #include "core/light/left_out.h"
-#include "core/light/refining.h"
 
 namespace glint {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/light/estimate.h"
-#include "core/surface/normal_correction.h"
+#include "core/surface/mesh.h"
 
 namespace glint {
 

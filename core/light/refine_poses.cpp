@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/light/refine_poses.h"
-
 #include <Eigen/Geometry>
 #include <Eigen/QR>
 #include <algorithm>
@@ -8,7 +6,7 @@
 
 #include "core/geometry/polyline.h"
 #include "core/light/contour_evidence.h"
-#include "core/light/refining.h"
+#include "core/light/estimate.h"
 
 namespace glint {
 namespace {

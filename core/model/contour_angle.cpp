@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/base/median.h"
+#include "core/base/numeric.h"
 #include "core/model/models.h"
 
 namespace glint {

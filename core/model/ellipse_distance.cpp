@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/model/ellipse_distance.h"
-
 #include <algorithm>
 #include <cmath>
+
+#include "core/model/reconstruct_detail.h"
 
 namespace glint {
 

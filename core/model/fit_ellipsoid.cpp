@@ -11,8 +11,8 @@
 #include "core/base/number_text.h"
 #include "core/base/residual_spread.h"
 #include "core/light/estimate.h"
-#include "core/model/ellipse_distance.h"
 #include "core/model/plausible.h"
+#include "core/model/reconstruct_detail.h"
 
 namespace glint {
 namespace {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/geometry/seen_window.h"
+#include "core/geometry/camera.h"
 #include "core/model/models.h"
 #include "core/surface/level_set.h"
 

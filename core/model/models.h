@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <memory>
+#include <string>
 
+#include "core/base/number_text.h"
 #include "core/model/model.h"
 
 namespace glint {
@@ -33,5 +36,17 @@ double medianContourAngle(const std::vector<TrainingView>& views, const Light& l
 /// Leaves one highlight where several brightest points share one contour: those whose peak lies inside a larger predicted
 /// contour are dropped (method.md section 8: a component that encloses several brightest points is returned once).
 void dropEnclosed(std::vector<PredictedHighlight>& highlights);
+
+/// Colour of a model (ModelTraits::rgb); grey for an unknown one.
+inline std::array<int, 3> modelRgb(const std::string& model) {
+  const HighlightModel* const found = findModel(model);
+  return found ? found->traits().rgb : std::array<int, 3>{153, 153, 153};
+}
+
+/// The same as HTML writes it, "#d55e00".
+inline std::string modelHex(const std::string& model) {
+  const std::array<int, 3> c = modelRgb(model);
+  return formatted("#%02x%02x%02x", c[0], c[1], c[2]);
+}
 
 }  // namespace glint

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/base/median.h"
 #include "core/base/number_text.h"
+#include "core/base/numeric.h"
 
 namespace glint {
 namespace {

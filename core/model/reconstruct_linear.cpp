@@ -6,9 +6,8 @@
 #include <numbers>
 
 #include "core/base/dense_algebra.h"
-#include "core/base/median.h"
 #include "core/base/number_text.h"
-#include "core/model/ellipse_distance.h"
+#include "core/base/numeric.h"
 #include "core/model/reconstruct_detail.h"
 
 namespace glint {

@@ -9,7 +9,6 @@
 #include "core/base/dense_algebra.h"
 #include "core/base/number_text.h"
 #include "core/base/solver_trace.h"
-#include "core/model/ellipse_distance.h"
 #include "core/model/reconstruct_detail.h"
 
 namespace glint {

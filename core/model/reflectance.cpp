@@ -11,10 +11,10 @@
 #include "core/model/models.h"
 #include "core/model/pixel_evidence.h"
 #include "core/model/plausible.h"
-#include "core/model/radiance_star.h"
 #include "core/model/reflectance_settings.h"
+#include "core/model/star_level_set.h"
 #include "core/model/uncertainty.h"
-#include "core/reflectance/fit_search.h"
+#include "core/reflectance/fit.h"
 #include "core/reflectance/light_radiance.h"
 #include "core/reflectance/radiance_field.h"
 

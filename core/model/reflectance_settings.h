@@ -10,7 +10,6 @@
 #include "core/model/model.h"
 #include "core/reflectance/added_lobe.h"
 #include "core/reflectance/fit.h"
-#include "core/reflectance/fit_search.h"
 
 namespace glint {
 

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/model/region_check.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "core/model/pixel_sampler.h"
+#include "core/model/star_level_set.h"
 
 namespace glint {
 namespace {

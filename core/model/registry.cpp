@@ -2,8 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/base/plugin_hint.h"
-#include "core/base/similar_name.h"
+#include "core/base/words.h"
 #include "core/model/models.h"
 
 namespace glint {

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "core/base/outcome.h"
 #include "core/geometry/light.h"
 #include "core/model/level_set_prediction.h"
+#include "core/model/model.h"
+#include "core/reflectance/radiance_field.h"
 #include "core/surface/part_bounds.h"
 
 namespace glint {
@@ -64,5 +67,21 @@ Outcome<StarOutline> starAround(const StarField& field, const Camera& camera, co
 Outcome<std::vector<PredictedHighlight>> starHighlights(const StarField& field, const Camera& camera, const Surface& surface,
                                                         const std::vector<Summit>& summits, double level,
                                                         const Settings& settings);
+
+/// The contours of a reflectance fit and its light by one walk per direction around the maxima beside the mirror points: those of
+/// predictLevelSet, to 0.01 % of the diameter, at a twentieth of its time. Where that is not certain, the reason: that of
+/// summitNear or starHighlights, or NoBrightestPoint where the brightest maximum lies `faintest` or more (in log I) down the
+/// lobe.
+Outcome<std::vector<PredictedHighlight>> radianceStars(const RadianceField& radiance, const ReflectanceFit& fit,
+                                                       const Light& light, const std::vector<BrightestPoint>& mirrorPoints,
+                                                       double faintest, const Camera& camera, const Surface& surface,
+                                                       const Settings& settings);
+
+/// Why it is not certain that, between two corners of the image, only what the outlines enclose of the visible, lit surface is
+/// inside { value < level }; empty where it is certain. Surfaces that know bounds of their parts rule out all others by them;
+/// elsewhere a grid of rays stands for the parts. Rays a few pixels apart look at what remains and is not near an outline.
+std::optional<Failure> somethingElseInside(const StarField& field, const Camera& camera, const Surface& surface,
+                                           const std::vector<StarOutline>& outlines, double level, const Pixel& min,
+                                           const Pixel& max);
 
 }  // namespace glint

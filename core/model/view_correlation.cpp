@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/base/median.h"
+#include "core/base/numeric.h"
 #include "core/base/outcome.h"
 
 namespace glint {

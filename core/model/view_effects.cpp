@@ -10,7 +10,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/base/median.h"
+#include "core/base/numeric.h"
 #include "core/base/outcome.h"
 #include "core/base/uncertainty.h"
 #include "core/model/view_correlation.h"

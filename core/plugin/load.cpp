@@ -11,7 +11,7 @@
 
 #include "core/base/number_text.h"
 #include "core/base/safe_text.h"
-#include "core/capture/added_reader.h"
+#include "core/capture/capture.h"
 
 namespace glint {
 namespace {

@@ -5,9 +5,9 @@
 #include <array>
 #include <deque>
 
-#include "core/base/added_choice.h"
 #include "core/base/number_text.h"
 #include "core/base/outcome.h"
+#include "core/base/settings.h"
 #include "core/reflectance/lobe_terms.h"
 
 namespace glint {

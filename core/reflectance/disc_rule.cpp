@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "core/base/quadrature.h"
+#include "core/base/numeric.h"
 
 namespace glint::lobe {
 namespace {

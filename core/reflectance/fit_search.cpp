@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/reflectance/fit_search.h"
-
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -9,6 +7,7 @@
 
 #include "core/reflectance/added_lobe.h"
 #include "core/reflectance/extended_fit.h"
+#include "core/reflectance/fit.h"
 
 namespace glint {
 namespace {

@@ -4,9 +4,9 @@
 #include <Eigen/Geometry>
 #include <array>
 
+#include "core/base/numeric.h"
 #include "core/base/outcome.h"
 #include "core/base/overload.h"
-#include "core/base/quadrature.h"
 
 namespace glint {
 namespace {

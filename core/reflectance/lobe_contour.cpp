@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/reflectance/lobe_contour.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
 
-#include "core/geometry/distortion.h"
+#include "core/geometry/camera.h"
 #include "core/highlight/clipped_flank.h"
+#include "core/reflectance/pixel_fit.h"
 #include "core/reflectance/radiance_field.h"
 
 namespace glint {

@@ -8,6 +8,7 @@
 
 #include "core/base/progress.h"
 #include "core/base/uncertainty.h"
+#include "core/highlight/highlight.h"
 #include "core/reflectance/lamp.h"
 #include "core/reflectance/lobe.h"
 #include "core/reflectance/pixel_patch.h"
@@ -95,5 +96,22 @@ bool asksForExtent(const PixelFit& point);
 /// cost, or so much less that the noise of the independent cells cannot be the reason. (Noise is most of the cost of a grainy
 /// image, whatever the lamp.)
 bool explainsClearlyBetter(const PixelFit& larger, const PixelFit& smaller);
+
+/// The highlights of one light in one frame, found again with what a known lobe leaves as background (method.md section 15, "Bias
+/// of the detected level"): I = K S + b gives b and K, and contours are taken at q K S_peak of I - b. A background that is fitted
+/// to the pixels around a highlight without the lobe takes in the tail of a long-tailed one, so that contours come out 2 % too
+/// small (GGX).
+///
+/// Where the highlight is clipped, its peak is the lobe's. Where the contour at q lies in clipped pixels, the highlight as found
+/// is returned, with the level at which it really lies.
+/// @param found      of one light, ideal pixels, as detected
+/// @param others     of other lights in this frame
+/// @param options    as they were detected with (level, smallest area, contrast)
+/// @return           the same highlights in the same order, each contoured again. NoBrightestPoint where the lobe does not reach
+///                   them; NotConverged where it does not explain the frame; TooFewPoints.
+Outcome<std::vector<Highlight>> contourWithLobe(const LinearPixels& pixels, const Camera& camera, const Surface& surface,
+                                                int frame, const std::vector<Highlight>& found,
+                                                const std::vector<Highlight>& others, const LobeModel& model,
+                                                BackgroundKind background, const DetectOptions& options);
 
 }  // namespace glint

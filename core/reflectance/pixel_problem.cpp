@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/base/parallel.h"
+#include "core/base/progress.h"
 #include "core/base/solver_trace.h"
 #include "core/light/dense_solver.h"
 #include "core/reflectance/light_radiance.h"

@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "core/geometry/seen_window.h"
+#include "core/geometry/camera.h"
 #include "core/reflectance/light_radiance.h"
 #include "core/surface/occlusion.h"
 

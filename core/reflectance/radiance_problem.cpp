@@ -9,7 +9,7 @@
 #include <cmath>
 #include <memory>
 
-#include "core/base/median.h"
+#include "core/base/numeric.h"
 #include "core/base/solver_trace.h"
 #include "core/light/dense_solver.h"
 #include "core/reflectance/light_radiance.h"

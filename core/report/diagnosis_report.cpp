@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/report/diagnosis_report.h"
-
 #include <algorithm>
 
-#include "core/base/angle.h"
 #include "core/base/json_dom.h"
-#include "core/base/light_name.h"
 #include "core/base/number_text.h"
+#include "core/base/numeric.h"
 #include "core/base/version.h"
-#include "core/report/command_text.h"
+#include "core/base/words.h"
+#include "core/diagnose/diagnosis.h"
+#include "core/report/report.h"
+#include "core/report/texts.h"
 #include "core/scene/frame_name.h"
 
 namespace glint {

@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/report/evaluation_json.h"
-
 #include <cmath>
 
 #include "core/base/csv_text.h"
 #include "core/base/json_dom.h"
 #include "core/base/settings_dom.h"
-#include "core/diagnose/mismatch.h"
+#include "core/diagnose/highlight_evidence.h"
 #include "core/model/star.h"
-#include "core/report/band_text.h"
-#include "core/report/detection_error.h"
-#include "core/report/warnings.h"
+#include "core/report/evaluation_words.h"
+#include "core/report/texts.h"
 #include "core/scene/frame_name.h"
 #include "core/what_if/what_if_dom.h"
 

@@ -9,13 +9,13 @@
 #include "core/base/number_text.h"
 #include "core/inspect/frame_score.h"
 #include "core/inspect/summary.h"
-#include "core/report/detection_error.h"
 #include "core/report/evaluation.h"
-#include "core/report/evaluation_json.h"
-#include "core/report/warnings.h"
+#include "core/report/texts.h"
 #include "core/scene/frame_name.h"
+#include "core/score/metrics.h"
 
 namespace glint {
+
 namespace {
 
 constexpr int kFewHighlights = 5;       // a mean of fewer says little about the next frame
@@ -196,6 +196,31 @@ EvaluationWords evaluationWords(const Inspection& inspection, const ReportContex
   addDoubtsOfTheRun(inspection, words.doubts);
   addWarnings(inspection, words.best, words.doubts);
   return words;
+}
+
+std::optional<DetectionError> detectionError(const Inspection& inspection) {
+  DetectionError error;
+  std::vector<double> percent, pixels;
+  for (const FrameEvidence& e : inspection.evidence) {
+    if (e.frame < 0 || !e.againstTruth || e.truthFailure || e.truth.empty()) continue;
+    std::vector<Polyline> truth, found;
+    for (const Highlight& h : e.truth) truth.push_back(h.contour);
+    for (const Highlight& h : e.highlights) found.push_back(h.contour);
+    const std::vector<std::pair<int, int>> pairs = matchByOverlap(truth, found);
+    ++error.frames;
+    error.missed += static_cast<int>(truth.size() - pairs.size());
+    for (const auto& [t, f] : pairs) {
+      const Highlight& own = e.highlights[static_cast<std::size_t>(f)];
+      const ContourMetrics m = compareContours(truth[static_cast<std::size_t>(t)], own.contour, {}, own.ellipse,
+                                               e.truth[static_cast<std::size_t>(t)].peak, own.peak);
+      percent.push_back(m.contourErrorPct);
+      pixels.push_back(m.contourErrorPx);
+    }
+  }
+  if (percent.empty()) return std::nullopt;
+  error.contourErrorPct = statisticOf(percent);
+  error.contourErrorPx = statisticOf(pixels);
+  return error;
 }
 
 }  // namespace glint

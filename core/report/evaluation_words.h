@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/inspect/inspection.h"
+#include "core/inspect/summary.h"
 #include "core/report/report.h"
+#include "core/score/metrics.h"
 
 namespace glint {
 
@@ -29,4 +33,21 @@ struct ErrorDifference {
 };
 ErrorDifference errorDifference(const Inspection& inspection, const std::string& best, const std::string& other);
 
+/// Distance of the contours detected in the frames' own pixels from the truth of `--truth`: whether to trust an error against
+/// own detection depends on it.
+struct DetectionError {
+  Statistic contourErrorPct, contourErrorPx;  ///< over highlights that overlap a true one, all frames
+  int frames = 0;                             ///< with truth
+  int missed = 0;                             ///< true highlights without a detected one
+};
+/// None without truth, or where no frame's highlights were detected.
+std::optional<DetectionError> detectionError(const Inspection& inspection);
+
 }  // namespace glint
+
+namespace glint::evaluation {
+
+/// By name, in the order of the request.
+BestModel bestOf(const std::vector<std::pair<std::string, ModelSummary>>& models);
+
+}  // namespace glint::evaluation

@@ -6,7 +6,7 @@
 
 #include "core/base/html_text.h"
 #include "core/codecs/codecs.h"
-#include "core/draw/overlay_painter.h"
+#include "core/draw/frame_overlay.h"
 #include "core/draw/plot_painter.h"
 #include "core/draw/plots.h"
 #include "core/draw/svg_painter.h"

@@ -3,12 +3,11 @@
 #include <cmath>
 
 #include "core/base/html_text.h"
-#include "core/base/light_name.h"
-#include "core/diagnose/mismatch.h"
-#include "core/model/palette.h"
-#include "core/report/band_text.h"
+#include "core/base/words.h"
+#include "core/diagnose/highlight_evidence.h"
+#include "core/model/models.h"
 #include "core/report/html_parts.h"
-#include "core/report/warnings.h"
+#include "core/report/texts.h"
 #include "core/scene/frame_name.h"
 
 namespace glint::html {

@@ -5,7 +5,7 @@
 #include "core/report/evaluation_words.h"
 #include "core/report/html_parts.h"
 #include "core/report/report.h"
-#include "core/report/warnings.h"
+#include "core/report/texts.h"
 #include "core/what_if/knobs.h"
 
 namespace glint {

@@ -7,7 +7,7 @@
 #include <set>
 #include <system_error>
 
-#include "core/geometry/clip.h"
+#include "core/geometry/polyline.h"
 #include "core/inspect/live_prediction.h"
 
 namespace glint {

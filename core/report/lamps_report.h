@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/lamps/lamp_fit.h"
+#include "core/lamps/lamps_on.h"
 #include "core/scene/scene.h"
 
 namespace glint {
@@ -43,5 +44,12 @@ std::string lampsCsv(const LampsReport& report);
 std::string lampsLp(const LampsReport& report);
 /// A plain-text table for people.
 std::string lampsTable(const LampsReport& report);
+
+/// The first line of `lampsOnCsv`.
+extern const char* const kLampsOnCsvHeader;
+/// docs/formats.md, "lights --on": one row for each lamp in each frame, then one for each highlight that no lamp explains.
+std::string lampsOnCsv(const LampsOn& lamps, const Scene& scene);
+/// One line for people: how many lamps are on, off and so on.
+std::string lampsOnSummary(const LampsOn& lamps);
 
 }  // namespace glint

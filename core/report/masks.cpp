@@ -11,12 +11,10 @@
 #include <sstream>
 
 #include "core/base/atomic_file.h"
-#include "core/base/atomic_folder.h"
-#include "core/base/parallel.h"
+#include "core/base/progress.h"
 #include "core/codecs/codecs.h"
 #include "core/geometry/polyline.h"
 #include "core/report/labels.h"
-#include "core/report/yolo.h"
 #include "core/scene/outputs.h"
 
 namespace glint {

@@ -7,11 +7,11 @@
 #include <utility>
 
 #include "core/base/atomic_file.h"
-#include "core/base/exif.h"
+#include "core/base/image_header.h"
 #include "core/base/number_text.h"
-#include "core/base/shortest_text.h"
-#include "core/lamps/scene_lamps.h"
-#include "core/report/command_text.h"
+#include "core/inspect/inspection.h"
+#include "core/lamps/lamp_answer.h"
+#include "core/report/texts.h"
 
 namespace glint {
 

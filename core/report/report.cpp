@@ -7,10 +7,8 @@
 #include "core/base/number_text.h"
 #include "core/inspect/summary.h"
 #include "core/model/star.h"
-#include "core/report/band_text.h"
-#include "core/report/detection_error.h"
-#include "core/report/evaluation_json.h"
-#include "core/report/warnings.h"
+#include "core/report/evaluation_words.h"
+#include "core/report/texts.h"
 
 namespace glint {
 namespace {

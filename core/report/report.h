@@ -39,4 +39,17 @@ std::string evaluationTable(const Inspection& inspection);
 /// One self-contained page: table, error over frames per model, the worst frames with overlays.
 std::string evaluationHtml(const Inspection& inspection, const ReportContext& context);
 
+struct Diagnosis;
+/// docs/formats.md, "diagnose --json".
+/// @param input  as given
+std::string diagnosisJson(const Inspection& inspection, const Diagnosis& diagnosis, const std::string& input);
+/// For a person: the verdict, the remedies as flags, and their reasons, one cause per model that is not good; --json has all.
+std::string diagnosisText(const Inspection& inspection, const Diagnosis& diagnosis);
+/// ReportContext::advice.
+std::vector<std::string> adviceOf(const Diagnosis& diagnosis);
+
+struct Tradeoff;
+/// A page that needs no other file: the front as SVG, the points, what was pruned and why.
+std::string tradeoffHtml(const Tradeoff& tradeoff);
+
 }  // namespace glint

@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <set>
 
-#include "core/base/base64.h"
+#include "core/base/bytes.h"
 #include "core/base/html_text.h"
 #include "core/base/sha256.h"
 #include "core/draw/colours.h"
 #include "core/inspect/frame_score.h"
-#include "core/model/palette.h"
+#include "core/model/models.h"
 #include "core/report/share_parts.h"
 
 namespace glint {

@@ -4,7 +4,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "core/base/base64.h"
+#include "core/base/bytes.h"
 #include "core/codecs/codecs.h"
 #include "core/inspect/photograph.h"
 #include "core/report/share_parts.h"

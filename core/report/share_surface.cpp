@@ -7,7 +7,7 @@
 #include <numbers>
 #include <unordered_map>
 
-#include "core/base/base64.h"
+#include "core/base/bytes.h"
 #include "core/draw/on_surface.h"
 #include "core/report/share_parts.h"
 #include "core/surface/mesh_policy.h"

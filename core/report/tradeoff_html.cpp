@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/report/tradeoff_html.h"
-
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -10,7 +8,8 @@
 #include "core/draw/plot_painter.h"
 #include "core/draw/plots.h"
 #include "core/draw/svg_painter.h"
-#include "core/model/palette.h"
+#include "core/model/models.h"
+#include "core/report/report.h"
 #include "core/tradeoff/tradeoff.h"
 
 namespace glint {

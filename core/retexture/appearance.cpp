@@ -6,14 +6,14 @@
 #include <cmath>
 #include <map>
 
-#include "core/base/median.h"
 #include "core/base/number_text.h"
+#include "core/base/numeric.h"
 #include "core/highlight/background.h"
 #include "core/light/directed_limit.h"
 #include "core/model/reflectance_settings.h"
 #include "core/reflectance/pixel_fit.h"
 #include "core/reflectance/radiance_field.h"
-#include "core/retexture/frame_pixels.h"
+#include "core/retexture/pixels.h"
 
 namespace glint {
 namespace {

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/fit/fit_key.h"
+#include "core/fit/training.h"
 #include "core/geometry/polyline.h"
 #include "core/inspect/inspection.h"
 #include "core/retexture/fall_profile.h"

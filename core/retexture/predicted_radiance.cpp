@@ -5,11 +5,11 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "core/base/light_name.h"
 #include "core/base/number_text.h"
+#include "core/base/words.h"
 #include "core/model/reflectance_settings.h"
 #include "core/reflectance/radiance_field.h"
-#include "core/retexture/camera_pixels.h"
+#include "core/retexture/pixels.h"
 #include "core/surface/occlusion.h"
 
 namespace glint {

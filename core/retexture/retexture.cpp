@@ -7,11 +7,10 @@
 #include <opencv2/photo.hpp>
 #include <utility>
 
-#include "core/base/median.h"
+#include "core/base/image.h"
 #include "core/base/number_text.h"
-#include "core/base/srgb.h"
-#include "core/retexture/camera_pixels.h"
-#include "core/retexture/frame_pixels.h"
+#include "core/base/numeric.h"
+#include "core/retexture/pixels.h"
 #include "core/retexture/shading.h"
 #include "core/surface/mesh_policy.h"
 

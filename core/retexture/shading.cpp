@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "core/base/median.h"
-#include "core/retexture/camera_pixels.h"
+#include "core/base/numeric.h"
+#include "core/retexture/pixels.h"
 #include "core/surface/occlusion.h"
 
 namespace glint {

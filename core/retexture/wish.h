@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "core/base/image.h"
+#include "core/geometry/camera.h"
 #include "core/retexture/retexture.h"
 
 namespace glint {
@@ -41,5 +44,14 @@ struct RetexturedFrame {
 RetexturedFrame retextureAsWished(std::shared_ptr<const Scene> scene, InspectionRequest request, int frame,
                                   const RetextureWish& wish, const ProgressFn& progress = {},
                                   const Inspection* previous = nullptr);
+
+/// A picture that a person gives, in linear light: 8- and 16-bit codes through the inverse sRGB curve (16 bits that say so are
+/// linear), float as stored. 3 channels. Header, size and limits are checked before anything is decoded.
+/// @param flag  for the message, "--texture".
+/// InputError (file, flag): missing, damaged, beyond a limit, or values that are negative or not finite.
+Image readTexture(const std::filesystem::path& file, const std::string& flag);
+
+/// The same, of the size of the camera's frames; InputError names both sizes.
+Image readBackground(const std::filesystem::path& file, const Camera& camera, const std::string& flag);
 
 }  // namespace glint

@@ -7,9 +7,9 @@
 #include <optional>
 
 #include "core/base/atomic_file.h"
+#include "core/base/image.h"
 #include "core/base/number_text.h"
 #include "core/base/outcome.h"
-#include "core/base/srgb.h"
 #include "io/text_scan.h"
 
 namespace glint {

@@ -6,9 +6,9 @@
 #include <limits>
 #include <map>
 
-#include "core/base/median.h"
 #include "core/base/number_text.h"
-#include "core/scene/corrected_files.h"
+#include "core/base/numeric.h"
+#include "core/scene/correction.h"
 #include "core/scene/geometry_check.h"
 #include "core/scene/image_scale.h"
 #include "core/scene/scene_reader.h"

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/scene/corrected_files.h"
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -11,6 +9,7 @@
 #include "core/base/atomic_file.h"
 #include "core/base/found_file.h"
 #include "core/base/safe_text.h"
+#include "core/scene/correction.h"
 #include "core/scene/geometry_check.h"
 #include "core/scene/scene_reader.h"
 

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/scene/export_capture.h"
-
 #include <algorithm>
 
 #include "core/capture/capture.h"
-#include "core/capture/write.h"
+#include "core/scene/outputs.h"
 
 namespace glint {
 namespace fs = std::filesystem;

@@ -7,19 +7,18 @@
 #include <opencv2/core.hpp>
 
 #include "core/base/atomic_file.h"
-#include "core/base/exif.h"
-#include "core/base/image_memory.h"
+#include "core/base/image.h"
+#include "core/base/image_header.h"
 #include "core/base/limits.h"
-#include "core/base/median.h"
+#include "core/base/memory.h"
 #include "core/base/number_text.h"
-#include "core/base/srgb.h"
+#include "core/base/numeric.h"
 #include "core/scene/decoded_images.h"
 #include "core/scene/image_decode.h"
 #include "core/scene/image_scale.h"
 #include "core/scene/scene.h"
 #include "core/scene/scene_files.h"
-#include "core/surface/depth_noise.h"
-#include "core/surface/depth_registration.h"
+#include "core/surface/depth_images.h"
 
 namespace glint {
 namespace fs = std::filesystem;

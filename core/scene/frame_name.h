@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/base/number_list.h"
+#include "core/base/words.h"
 #include "core/scene/scene.h"
 
 namespace glint {
@@ -29,5 +29,14 @@ inline std::vector<std::string> frameIds(const Scene& scene, const std::vector<i
 inline std::string framesText(const std::vector<std::string>& ids) {
   return (ids.size() == 1 ? "frame " : "frames ") + shortList(ids);
 }
+
+/// Frame numbers named by a SPEC (docs/formats.md, "Frame SPEC"): ids or numbers, ranges ("0-5", "0,14,28"), "first:K",
+/// "spread:K". Sorted and unique. InputError (place: `flag`) when it does not parse or names a frame that does not exist.
+std::vector<int> parseFrames(const std::string& text, const Scene& scene, const std::string& flag);
+
+/// A SPEC of ids and ranges of ids that names these frames in this scene; numbers stand where an id would be read as something
+/// else (a comma, a range). "" for no frame.
+/// @param frames  sorted and unique
+std::string frameSpec(const std::vector<int>& frames, const Scene& scene);
 
 }  // namespace glint

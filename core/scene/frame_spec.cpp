@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/scene/frame_spec.h"
-
 #include <charconv>
 #include <map>
 #include <optional>
@@ -9,6 +7,7 @@
 #include <utility>
 
 #include "core/base/outcome.h"
+#include "core/scene/frame_name.h"
 
 namespace glint {
 namespace {

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "core/base/bounded_json.h"
+#include "core/base/number_text.h"
 #include "core/base/outcome.h"
-#include "core/base/shortest_text.h"
 #include "core/scene/scene_dom.h"
 #include "io/text_scan.h"
 

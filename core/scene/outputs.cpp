@@ -6,8 +6,8 @@
 #include <set>
 #include <sstream>
 
-#include "core/base/document_kind.h"
 #include "core/base/found_file.h"
+#include "core/base/json_text.h"
 #include "core/base/number_text.h"
 #include "core/base/output_place.h"
 #include "core/base/safe_text.h"

@@ -2,10 +2,9 @@
 // Which reader understands an input.
 #include <algorithm>
 
-#include "core/base/image_memory.h"
 #include "core/base/limits.h"
-#include "core/base/plugin_hint.h"
-#include "core/scene/folder_below.h"
+#include "core/base/memory.h"
+#include "core/base/words.h"
 #include "core/scene/scene.h"
 #include "core/scene/scene_reader.h"
 

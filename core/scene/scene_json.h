@@ -6,10 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "core/base/identifier.h"
+#include "core/base/bounded_json.h"
 #include "core/base/json_text.h"
 #include "core/geometry/camera_json.h"
-#include "core/geometry/pose_json.h"
 #include "core/scene/scene.h"
 
 namespace glint {

@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "core/base/evenly.h"
-#include "core/base/median.h"
 #include "core/base/number_text.h"
-#include "core/base/parallel.h"
+#include "core/base/numeric.h"
+#include "core/base/progress.h"
 #include "core/capture/capture.h"
 #include "core/scene/scene_reader.h"
 

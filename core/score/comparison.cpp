@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/geometry/seen_window.h"
-#include "core/model/contour_feet.h"
+#include "core/geometry/camera.h"
+#include "core/model/band.h"
 #include "core/model/view_effects.h"
 
 namespace glint {

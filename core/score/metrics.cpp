@@ -9,7 +9,9 @@
 #include <optional>
 
 // Our own distances of polylines: the libraries' polygons have no gaps, which predictions have where directions fail.
+
 namespace glint {
+
 namespace {
 
 using Segment = std::pair<Pixel, Pixel>;
@@ -320,6 +322,28 @@ ContourMetrics compareContours(const Polyline& observed, const Polyline& predict
     m.angleErrorDeg = (ro > 0.99 || rp > 0.99) ? 0 : std::min(angle, 180 - angle);  // a circle has no axis
   }
   return m;
+}
+
+double quantileOf(const std::vector<double>& sorted, double q) {
+  if (sorted.empty()) return std::nan("");
+  const double at = q * double(sorted.size() - 1);
+  const std::size_t i = static_cast<std::size_t>(at);
+  const double t = at - double(i);
+  return i + 1 < sorted.size() ? (1 - t) * sorted[i] + t * sorted[i + 1] : sorted[i];
+}
+
+Statistic statisticOf(std::vector<double> values) {
+  std::erase_if(values, [](double v) { return !std::isfinite(v); });
+  std::sort(values.begin(), values.end());
+  Statistic s;
+  s.count = static_cast<int>(values.size());
+  double sum = 0;
+  for (const double v : values) sum += v;
+  s.mean = values.empty() ? std::nan("") : sum / double(values.size());
+  s.median = quantileOf(values, 0.5);
+  s.p95 = quantileOf(values, 0.95);
+  s.max = values.empty() ? std::nan("") : values.back();
+  return s;
 }
 
 }  // namespace glint

@@ -7,9 +7,9 @@
 #include <numbers>
 #include <set>
 
-#include "core/base/elapsed.h"
 #include "core/base/evenly.h"
-#include "core/base/parallel.h"
+#include "core/base/progress.h"
+#include "core/base/stage_times.h"
 #include "core/inspect/lobe_stage.h"
 #include "core/score/metrics.h"
 

@@ -6,13 +6,13 @@
 #include <mutex>
 #include <utility>
 
-#include "core/base/elapsed.h"
 #include "core/base/evenly.h"
 #include "core/base/number_text.h"
-#include "core/base/parallel.h"
+#include "core/base/progress.h"
+#include "core/base/stage_times.h"
 #include "core/fit/training.h"
 #include "core/light/left_out.h"
-#include "core/score/statistic.h"
+#include "core/score/metrics.h"
 #include "core/surface/mesh_policy.h"
 
 namespace glint {

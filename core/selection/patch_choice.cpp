@@ -4,13 +4,12 @@
 #include <limits>
 #include <set>
 
-#include "core/base/elapsed.h"
 #include "core/base/evenly.h"
 #include "core/base/number_text.h"
+#include "core/base/stage_times.h"
 #include "core/fit/training.h"
 #include "core/model/star.h"
 #include "core/score/metrics.h"
-#include "core/score/statistic.h"
 #include "core/selection/leave_one_out.h"
 
 namespace glint {

@@ -7,7 +7,7 @@
 #include <map>
 #include <set>
 
-#include "core/base/atomic_folder.h"
+#include "core/base/atomic_file.h"
 #include "core/base/minimal_subset.h"
 #include "core/base/number_text.h"
 #include "core/base/safe_text.h"

@@ -7,7 +7,6 @@
 #include "core/base/number_text.h"
 #include "core/base/sha256.h"
 #include "core/inspect/summary.h"
-#include "core/session/key_result_difference.h"
 #include "core/session/session.h"
 
 namespace glint {

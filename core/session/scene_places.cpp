@@ -6,7 +6,6 @@
 #include <set>
 
 #include "core/scene/scene_files.h"
-#include "core/session/session_rights.h"
 
 namespace glint {
 namespace fs = std::filesystem;

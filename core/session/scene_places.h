@@ -35,4 +35,8 @@ struct ScenePlaces {
   void check(Scene& scene) const;
 };
 
+/// OutsidePath if the truth folder that the session's request names lies in no folder that the session may name, and the
+/// session has no right to others (`allowOutsidePaths`).
+void requirePermittedTruth(const Session& session, const Relinked& instead);
+
 }  // namespace glint

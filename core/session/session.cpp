@@ -18,8 +18,8 @@
 #include "core/scene/scene_files.h"
 #include "core/scene/scene_json.h"
 #include "core/scene/session_input.h"
+#include "core/session/scene_places.h"
 #include "core/session/session_plugins.h"
-#include "core/session/session_rights.h"
 #include "core/tradeoff/tradeoff_dom.h"
 #include "core/what_if/what_if_dom.h"
 

@@ -143,4 +143,9 @@ struct Replay {
 /// @throw InputError if the session has no results, or (naming the first) an input changed or is missing; OutsidePath; Stopped.
 Replay replay(const Session& session, const Relinked& instead = {}, const ProgressFn& progress = {});
 
+/// Distance of two values of one key result, relative to the larger one plus a least size, so that a zero may be one that came
+/// out as round-off: 1 px or 1 % for distances between contours and peaks, 1e-3 for the rest. 0 for two NaN, infinite for one.
+/// @param keyResult  its name, as in KeyResults ("dual.contour_error_px.mean")
+double keyResultDifference(const std::string& keyResult, double was, double is);
+
 }  // namespace glint

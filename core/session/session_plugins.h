@@ -6,7 +6,7 @@
 #include <typeinfo>
 #include <vector>
 
-#include "core/base/plugin_hint.h"
+#include "core/base/words.h"
 #include "core/session/session.h"
 
 namespace glint {

@@ -10,11 +10,11 @@
 #include <numbers>
 
 #include "core/base/number_text.h"
+#include "core/geometry/camera.h"
 #include "core/geometry/plane.h"
-#include "core/geometry/seen_window.h"
-#include "core/surface/filled_parts.h"
 #include "core/surface/mirror_places.h"
 #include "core/surface/occlusion.h"
+#include "core/surface/surface.h"
 
 namespace glint {
 

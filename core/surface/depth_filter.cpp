@@ -10,9 +10,9 @@
 #include <optional>
 #include <utility>
 
-#include "core/base/median.h"
+#include "core/base/numeric.h"
 #include "core/base/outcome.h"
-#include "core/base/parallel.h"
+#include "core/base/progress.h"
 
 namespace glint {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <optional>
 
-#include "core/base/median.h"
+#include "core/base/numeric.h"
 #include "core/base/outcome.h"
 #include "core/surface/depth_filter.h"
 

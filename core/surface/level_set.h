@@ -34,7 +34,7 @@ struct LevelSetComponent {
 
 /// All components, largest first. Vertices are polished on `field` itself, whatever the batch returned.
 /// Components are whole regions: one that encloses several minima is returned once; holes are not returned.
-/// @param window  of the image, with the outer edges of its pixels (seenWindow, core/geometry/seen_window.h)
+/// @param window  of the image, with the outer edges of its pixels (seenWindow, core/geometry/camera.h)
 std::vector<LevelSetComponent> traceLevelSets(const PixelField& field, const PixelFieldBatch& batch, double level,
                                               const Eigen::AlignedBox2d& window, const LevelSetOptions& options = {});
 /// The same in an image without distortion.

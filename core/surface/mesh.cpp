@@ -9,11 +9,11 @@
 #include <mutex>
 
 #include "core/geometry/plane.h"
-#include "core/surface/filled_parts.h"
 #include "core/surface/mesh_rays.h"
 #include "core/surface/mesh_topology.h"
 #include "core/surface/mirror_places.h"
 #include "core/surface/occlusion.h"
+#include "core/surface/surface.h"
 
 namespace glint {
 

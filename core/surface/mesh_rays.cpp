@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "core/base/task_memory.h"
+#include "core/base/memory.h"
 #include "core/geometry/plane.h"
 
 namespace glint {

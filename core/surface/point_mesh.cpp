@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/surface/point_mesh.h"
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -10,6 +8,7 @@
 #include <unordered_map>
 
 #include "core/geometry/plane.h"
+#include "core/surface/point_surface.h"
 
 namespace glint {
 namespace {

@@ -14,11 +14,10 @@
 #include <limits>
 #include <numeric>
 
-#include "core/base/median.h"
 #include "core/base/number_text.h"
-#include "core/base/parallel.h"
+#include "core/base/numeric.h"
+#include "core/base/progress.h"
 #include "core/surface/mesh_topology.h"
-#include "core/surface/point_mesh.h"
 
 namespace glint {
 namespace {

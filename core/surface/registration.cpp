@@ -13,9 +13,9 @@
 #include <optional>
 
 #include "core/base/evenly.h"
-#include "core/base/median.h"
 #include "core/base/number_text.h"
-#include "core/base/parallel.h"
+#include "core/base/numeric.h"
+#include "core/base/progress.h"
 #include "core/surface/mesh.h"
 #include "core/surface/mesh_topology.h"
 #include "core/surface/registration_starts.h"

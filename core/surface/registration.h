@@ -8,7 +8,7 @@
 
 #include "core/base/outcome.h"
 #include "core/base/progress.h"
-#include "core/geometry/similarity.h"
+#include "core/geometry/transforms.h"
 #include "core/surface/surface.h"
 
 namespace glint {

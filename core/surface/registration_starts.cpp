@@ -16,8 +16,8 @@
 #include <utility>
 
 #include "core/base/evenly.h"
-#include "core/base/median.h"
-#include "core/base/parallel.h"
+#include "core/base/numeric.h"
+#include "core/base/progress.h"
 
 namespace glint {
 namespace {

@@ -11,9 +11,30 @@
 
 #include "core/base/outcome.h"
 #include "core/geometry/camera.h"
-#include "core/surface/depth_policy.h"
 
 namespace glint {
+
+/// How measured depth is smoothed before it becomes a surface.
+/// None: as measured. Bilateral: weighted mean of inverse depths, near in the image and alike in depth (OpenCV). Fit: quadratic
+/// in inverse depth, fitted to the neighbours on the same surface; it gives the normal as well.
+enum class DepthSmoothing { None, Bilateral, Fit };
+/// Plane: fitted to the neighbours within a radius (PCL). Integral: from integral images of the covariance, over a square of
+/// pixels of that size (PCL).
+enum class DepthNormals { Plane, Integral };
+
+/// How a depth map becomes a surface. The defaults suit depth without noise.
+struct DepthPolicy {
+  DepthSmoothing smoothing = DepthSmoothing::None;
+  DepthNormals normals = DepthNormals::Plane;
+  /// Radius, m, of the neighbourhood that gives a point its normal and its smoothed depth; 0 = a share of the median depth.
+  double radius = 0;
+  int largestHolePx = 400;  ///< holes of at most this many pixels that touch no image border are filled; 0 = none
+  int fusedFrames = 0;      ///< other frames whose depth is averaged in, where the object stands still
+  double noise = 0;         ///< trials only: noise like that of a first Kinect is added, times this
+  int seed = 1;             ///< of that noise
+
+  auto operator<=>(const DepthPolicy&) const = default;
+};
 
 /// A point on a surface, world frame.
 struct SurfacePoint {
@@ -91,6 +112,14 @@ class Surface {
   virtual Eigen::AlignedBox3d bounds() const = 0;
   /// Triangles for display, clipped to `region` where the surface is unbounded; about `resolution` cells a side.
   virtual TriangleMesh tessellate(const Eigen::AlignedBox3d& region, int resolution) const = 0;
+};
+
+/// A surface that was not measured everywhere: holes in its depth were filled, so that contours can cross them.
+class FilledParts {
+ public:
+  virtual ~FilledParts() = default;
+  /// Whether the point lies on what was filled: a contour may pass there, but it is no evidence of where a peak is.
+  virtual bool filledAt(const SurfacePoint& p) const = 0;
 };
 
 }  // namespace glint

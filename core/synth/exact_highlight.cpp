@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/geometry/camera.h"
 #include "core/geometry/light.h"
-#include "core/geometry/seen_window.h"
 #include "core/surface/brightest_point.h"
 #include "core/surface/level_set.h"
 #include "core/surface/occlusion.h"

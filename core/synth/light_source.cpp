@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "core/base/quadrature.h"
+#include "core/base/numeric.h"
 #include "core/surface/occlusion.h"
 
 namespace glint {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/synth/output_folder.h"
-
 #include <algorithm>
 
 #include "core/base/atomic_file.h"
@@ -8,6 +6,7 @@
 #include "core/base/outcome.h"
 #include "core/base/output_place.h"
 #include "core/scene/scene_json.h"
+#include "core/synth/synth.h"
 
 namespace glint {
 namespace fs = std::filesystem;

@@ -9,13 +9,11 @@
 #include <set>
 
 #include "core/base/atomic_file.h"
-#include "core/base/atomic_folder.h"
-#include "core/base/light_name.h"
-#include "core/base/parallel.h"
+#include "core/base/progress.h"
 #include "core/base/safe_text.h"
+#include "core/base/words.h"
 #include "core/codecs/codecs.h"
 #include "core/scene/scene_json.h"
-#include "core/synth/output_folder.h"
 #include "core/synth/synth.h"
 
 namespace glint {

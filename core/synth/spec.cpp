@@ -6,7 +6,6 @@
 #include "core/base/atomic_file.h"
 #include "core/base/bounded_json.h"
 #include "core/base/json_text.h"
-#include "core/base/level_range.h"
 #include "core/base/limits.h"
 #include "core/base/number_text.h"
 #include "core/reflectance/added_lobe.h"

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <vector>
 
 #include "core/base/image.h"
 #include "core/base/progress.h"
@@ -66,5 +67,12 @@ RenderedRadiance renderRadiance(const Surface& surface, const Camera& camera, co
 /// Makes everything that the specification asks for in `folder`: scene.json last, so that a folder with it is complete.
 /// @return the scene as written. InputError when something cannot be written; Stopped.
 Scene synthesise(const SynthSpec& spec, const std::filesystem::path& folder, const ProgressFn& progress = {});
+
+/// Whether `synth` may write these files into `folder`: none of them exists, or an earlier run of it made the folder, which the
+/// folder's scene.json says ("made_by"). The names of files are no sign of it: anyone may name highlights and files as `synth`
+/// does. The write checks again (expectOutput).
+/// @param names  relative to the folder
+/// @throw InputError (the file that exists)
+void requireSynthFolder(const std::filesystem::path& folder, const std::vector<std::filesystem::path>& names);
 
 }  // namespace glint

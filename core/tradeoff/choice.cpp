@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/tradeoff/choice.h"
-
 #include <algorithm>
 #include <cmath>
 
 #include "core/base/number_text.h"
 #include "core/base/outcome.h"
 #include "core/tradeoff/pareto.h"
+#include "core/tradeoff/tradeoff.h"
 
 namespace glint {
 namespace {

@@ -6,7 +6,7 @@
 #include "core/base/json_text.h"
 #include "core/base/outcome.h"
 #include "core/base/settings_dom.h"
-#include "core/tradeoff/knobs.h"
+#include "core/tradeoff/tradeoff.h"
 #include "core/tradeoff/tradeoff_dom.h"
 
 namespace glint {

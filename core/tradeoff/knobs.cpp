@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/tradeoff/knobs.h"
-
 #include <algorithm>
 #include <charconv>
 #include <map>

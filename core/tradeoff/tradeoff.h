@@ -85,4 +85,32 @@ std::string presetNote(const Tradeoff& tradeoff);
 /// A plain-text table of the front and the presets.
 std::string tradeoffTable(const Tradeoff& tradeoff);
 
+/// What the user asks of the choice; at most one is set, none means the balanced preset.
+struct TradeoffBound {
+  std::optional<double> budgetUs = {}, maxErrorPct = {};
+};
+
+/// Sorts the points by time, marks the front, finds the presets, picks a point and says why in one sentence.
+/// If no point meets the bound, `chosen` stays empty and `reason` names the nearest point.
+void choosePoint(Tradeoff& tradeoff, const TradeoffBound& bound);
+
+/// The point that a preset's name means: "fast", "balanced", "exact", or "chosen". InputError (place "--preset NAME").
+const TradeoffPoint& pointOfPreset(const Tradeoff& tradeoff, const std::string& name);
+
+/// A setting that trades speed against accuracy, with the values worth trying.
+struct Knob {
+  std::string key;                   ///< dotted name
+  std::vector<SettingValue> values;  ///< the base value among them
+  std::string onlyModel = {};        ///< the one model that looks at it; "" = any
+};
+
+/// The knobs of `params` (method.md section 12), so that a setting which is added later is tried without further work: of the
+/// stages surface, light, fit and predict every choice and switch, the numbers that have a ladder in knobs.cpp, and every other
+/// number of `predict.` at half and twice its value. What changes the problem (detection), how a noisy fit is weighted, or
+/// only the description of a contour (the uncertainty band) is no knob.
+std::vector<Knob> knobsOf(const Settings& base, const std::vector<ParamSpec>& params = allParams());
+
+/// "24", "1e-06", "refined", "true".
+std::string textOf(const SettingValue& value);
+
 }  // namespace glint

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "core/base/words.h"
+
 #include <array>
 #include <map>
 
-#include "core/base/number_list.h"
 #include "core/base/number_text.h"
 #include "core/tradeoff/tradeoff.h"
 

@@ -4,18 +4,25 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <fstream>
+#include <limits>
 #include <numeric>
 #include <set>
+#include <string>
 
-#include "core/base/elapsed.h"
 #include "core/base/evenly.h"
 #include "core/base/sha256.h"
+#include "core/base/stage_times.h"
 #include "core/fit/fit_engine.h"
 #include "core/inspect/summary.h"
 #include "core/surface/mesh_policy.h"
-#include "core/trials/memory.h"
+
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 namespace glint {
+
 namespace {
 
 constexpr int kFewHeldOut = 12;       // enough to tell errors apart by a tenth, few enough for hundreds of trials
@@ -266,6 +273,23 @@ Outcome<TradeoffPoint> TradeoffBench::full(const Trial& trial) {
   p.predictUs = medianOf(std::move(times));
   p.fitUs = fitUs(r, trial);
   return p;
+}
+
+bool restartPeakMemory() {
+#ifdef __GLIBC__
+  malloc_trim(0);
+#endif
+  // "5" resets VmHWM to the present resident size (proc(5)).
+  std::ofstream file("/proc/self/clear_refs");
+  file << "5" << std::flush;
+  return file.good();
+}
+
+double peakMemoryMb() {
+  std::ifstream file("/proc/self/status");
+  for (std::string line; std::getline(file, line);)
+    if (line.rfind("VmHWM:", 0) == 0) return static_cast<double>(std::stoll(line.substr(6))) / 1024;  // given in kB
+  return std::numeric_limits<double>::quiet_NaN();
 }
 
 }  // namespace glint

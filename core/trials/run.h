@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/inspect/inspection.h"
-#include "core/tradeoff/choice.h"
+#include "core/tradeoff/tradeoff.h"
 #include "core/trials/search.h"
 
 namespace glint {

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "core/base/outcome.h"
-#include "core/tradeoff/knobs.h"
 #include "core/tradeoff/tradeoff.h"
 
 namespace glint {

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <optional>
 
-#include "core/base/angle.h"
-#include "core/base/light_name.h"
 #include "core/base/number_text.h"
+#include "core/base/numeric.h"
+#include "core/base/words.h"
 
 namespace glint {
 

@@ -3,8 +3,7 @@
 
 #include <cstddef>
 
-#include "core/base/freed_memory.h"
-#include "core/base/task_memory.h"
+#include "core/base/memory.h"
 #include "core/scene/scene.h"
 
 namespace glint::gui {

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/draw/clip.h"
+#include "core/draw/painter.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
 

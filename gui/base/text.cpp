@@ -6,8 +6,8 @@
 #include <QStringList>
 #include <cmath>
 
-#include "core/base/light_name.h"
 #include "core/base/safe_text.h"
+#include "core/base/words.h"
 #include "gui/base/unit_text.h"
 
 namespace glint::gui {

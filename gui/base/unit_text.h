@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "core/base/unit_text.h"
+#include "core/base/words.h"
 #include "gui/base/text.h"
 
 namespace glint::gui {

@@ -6,7 +6,7 @@
 
 #include "core/draw/frame_overlay.h"
 #include "core/explain/explain.h"
-#include "core/scene/frame_spec.h"
+#include "core/scene/frame_name.h"
 #include "gui/base/text.h"
 #include "gui/document/selection_words.h"
 #include "gui/document/state_command.h"

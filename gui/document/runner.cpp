@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "core/scene/folder_below.h"
+#include "core/scene/scene_reader.h"
 #include "core/session/session.h"
 #include "gui/base/text.h"
 #include "gui/document/allowed_folders.h"

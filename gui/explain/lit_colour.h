@@ -3,7 +3,7 @@
 
 #include <QColor>
 
-#include "core/draw/lit_colour.h"
+#include "core/draw/colours.h"
 #include "gui/base/theme.h"
 
 namespace glint::gui {

@@ -6,7 +6,7 @@
 #include <QImage>
 #include <QString>
 
-#include "core/draw/caption.h"
+#include "core/draw/painter.h"
 #include "gui/document/document.h"
 #include "gui/export/figure_dialog.h"
 

@@ -12,7 +12,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/draw/overlay_painter.h"
+#include "core/draw/frame_overlay.h"
 #include "gui/base/focus_frame.h"
 #include "gui/base/picture_access.h"
 #include "gui/base/qt_painter.h"

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "core/base/error_text.h"
+#include "core/base/number_text.h"
 #include "core/scene/scene_files.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"

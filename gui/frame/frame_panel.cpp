@@ -13,7 +13,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/draw/unmatched.h"
+#include "core/draw/selection.h"
 #include "core/geometry/polyline.h"
 #include "core/what_if/knobs.h"
 #include "gui/base/flow_layout.h"

@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include "core/base/angle.h"
+#include "core/base/numeric.h"
 #include "gui/base/decoded_frames.h"
 #include "gui/base/text.h"
 #include "viz/develop.h"

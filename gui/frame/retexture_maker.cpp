@@ -5,7 +5,7 @@
 #include <tuple>
 #include <utility>
 
-#include "core/retexture/picture_file.h"
+#include "core/retexture/wish.h"
 #include "gui/base/text.h"
 
 namespace glint::gui {

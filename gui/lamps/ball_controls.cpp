@@ -11,7 +11,7 @@
 #include <QPushButton>
 #include <QVBoxLayout>
 
-#include "core/base/shortest_text.h"
+#include "core/base/number_text.h"
 #include "core/scene/input_choices.h"
 #include "gui/base/complaint.h"
 #include "gui/base/number_box.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/base/number_text.h"
-#include "core/lamps/ball_by_hand.h"
+#include "core/lamps/ball_outline.h"
 #include "gui/base/text.h"
 
 namespace glint::gui {

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/base/angle.h"
+#include "core/base/numeric.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
 

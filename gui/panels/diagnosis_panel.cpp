@@ -13,8 +13,7 @@
 #include <algorithm>
 #include <set>
 
-#include "core/diagnose/mismatch.h"
-#include "core/diagnose/shared_causes.h"
+#include "core/diagnose/highlight_evidence.h"
 #include "core/inspect/summary.h"
 #include "core/selection/selection.h"
 #include "gui/base/eliding_delegate.h"

@@ -24,7 +24,7 @@
 #include "core/base/csv_text.h"
 #include "core/draw/frame_overlay.h"
 #include "core/inspect/summary.h"
-#include "core/report/warnings.h"
+#include "core/report/texts.h"
 #include "gui/base/flow_layout.h"
 #include "gui/base/stale_badge.h"
 #include "gui/base/text.h"

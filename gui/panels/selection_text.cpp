@@ -8,10 +8,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/diagnose/mismatch.h"
+#include "core/diagnose/highlight_evidence.h"
 #include "core/diagnostics/conditioning.h"
 #include "core/diagnostics/polar_residual.h"
-#include "core/draw/unmatched.h"
+#include "core/draw/selection.h"
 #include "core/scene/scene_files.h"
 #include "gui/base/text.h"
 #include "gui/base/unit_text.h"

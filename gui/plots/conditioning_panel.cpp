@@ -10,9 +10,9 @@
 #include <QVariant>
 #include <algorithm>
 
-#include "core/base/light_name.h"
+#include "core/base/words.h"
 #include "core/inspect/summary.h"
-#include "core/report/warnings.h"
+#include "core/report/texts.h"
 #include "gui/base/elided_label.h"
 #include "gui/base/stale_badge.h"
 #include "gui/base/text.h"

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/diagnose/mismatch.h"
+#include "core/diagnose/highlight_evidence.h"
 #include "core/diagnostics/influence.h"
 #include "core/geometry/ellipsoid.h"
 #include "gui/base/text.h"

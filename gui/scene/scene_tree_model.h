@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "core/draw/unmatched.h"
+#include "core/draw/selection.h"
 #include "gui/document/document.h"
 #include "viz/hidden_objects.h"
 

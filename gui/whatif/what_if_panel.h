@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/inspect/fitted_lobe.h"
+#include "core/inspect/fits.h"
 #include "core/what_if/knobs.h"
 #include "gui/document/document.h"
 

@@ -5,7 +5,7 @@
 
 #include "core/base/limits.h"
 #include "core/base/outcome.h"
-#include "core/base/similar_name.h"
+#include "core/base/words.h"
 #include "gui/window/layouts.h"
 
 namespace glint::gui {

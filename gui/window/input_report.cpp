@@ -6,7 +6,7 @@
 #include <QFileInfo>
 #include <QStandardPaths>
 
-#include "core/scene/corrected_files.h"
+#include "core/scene/correction.h"
 #include "core/scene/outputs.h"
 #include "gui/base/text.h"
 #include "gui/document/own_files.h"

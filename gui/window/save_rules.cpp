@@ -7,7 +7,7 @@
 #include <QMessageBox>
 #include <QPushButton>
 
-#include "core/base/document_kind.h"
+#include "core/base/json_text.h"
 #include "gui/base/text.h"
 #include "gui/document/own_files.h"
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/base/outcome.h"
-#include "core/base/similar_name.h"
+#include "core/base/words.h"
 
 namespace glint::gui {
 

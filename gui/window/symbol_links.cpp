@@ -4,7 +4,7 @@
 #include <QMouseEvent>
 #include <algorithm>
 
-#include "core/draw/lit_colour.h"
+#include "core/draw/colours.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
 #include "gui/base/vtk_canvas.h"

@@ -2,7 +2,6 @@
 // Images and depth maps: the header that is checked before anything is decoded, and the decoders behind it.
 #include <opencv2/core.hpp>
 
-#include "core/base/exif.h"
 #include "core/base/image_header.h"
 #include "core/scene/image_decode.h"
 #include "tests/fuzz/readers.h"

@@ -14,7 +14,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/base/angle.h"
+#include "core/base/numeric.h"
 #include "gui/base/text.h"
 #include "gui/whatif/what_if_panel.h"
 #include "gui/window/main_window.h"

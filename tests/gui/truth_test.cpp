@@ -8,7 +8,7 @@
 #include <QStatusBar>
 #include <QTextDocument>
 
-#include "core/base/error_text.h"
+#include "core/base/number_text.h"
 #include "gui/base/stale_badge.h"
 #include "gui/base/text.h"
 #include "gui/frame/frame_canvas.h"

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "core/base/base64.h"
+#include "core/base/bytes.h"
 #include "io/mesh_reader.h"
 #include "tests/core/scene/scene_fixture.h"
 #include "tests/io/allocation_meter.h"

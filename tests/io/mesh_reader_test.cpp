@@ -13,7 +13,7 @@
 #include <locale>
 #include <set>
 
-#include "core/base/shortest_text.h"
+#include "core/base/number_text.h"
 #include "tests/core/scene/scene_fixture.h"
 #include "tests/io/mesh_texts.h"
 

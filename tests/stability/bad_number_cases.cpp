@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 
-#include "core/geometry/distortion.h"
+#include "core/geometry/camera.h"
 #include "core/geometry/ellipsoid.h"
 #include "core/highlight/highlight.h"
 #include "core/light/estimate.h"

@@ -4,7 +4,7 @@
 #include <functional>
 #include <utility>
 
-#include "core/geometry/distortion.h"
+#include "core/geometry/camera.h"
 #include "core/geometry/plane.h"
 #include "tests/stability/cases.h"
 #include "tests/stability/fifty_digits.h"

@@ -4,7 +4,6 @@
 
 #include "core/light/estimate.h"
 #include "core/light/refine_depth.h"
-#include "core/light/refine_poses.h"
 #include "tests/stability/cases.h"
 #include "tests/stability/fifty_digits.h"
 #include "tests/stability/scene.h"

@@ -21,7 +21,7 @@
 #include <string>
 #include <vector>
 
-#include "core/base/error_text.h"
+#include "core/base/number_text.h"
 #include "tests/viz/image_checks.h"
 #include "viz/canvas.h"
 #include "viz/convert.h"

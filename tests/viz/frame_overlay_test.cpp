@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "core/draw/plots.h"
-#include "core/model/palette.h"
+#include "core/model/models.h"
 #include "tests/tolerances.h"
 #include "tests/viz/small_inspection.h"
 #include "viz/layers.h"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/draw/contrast.h"
-#include "core/draw/overlay_painter.h"
+#include "core/draw/frame_overlay.h"
 #include "core/scene/scene.h"
 #include "tests/viz/image_checks.h"
 #include "tests/viz/small_inspection.h"

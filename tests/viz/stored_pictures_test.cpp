@@ -17,7 +17,7 @@
 
 #include "core/base/outcome.h"
 #include "core/draw/epipolar_overlay.h"
-#include "core/draw/overlay_painter.h"
+#include "core/draw/frame_overlay.h"
 #include "core/draw/plots.h"
 #include "tests/viz/image_checks.h"
 #include "tests/viz/perceptual.h"

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A contour is taken away from its prediction: both must look, be picked and be described as what has no partner.
-#include "core/draw/unmatched.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
 #include "core/draw/frame_overlay.h"
 #include "core/draw/plots.h"
+#include "core/draw/selection.h"
 #include "core/score/comparison.h"
 #include "tests/viz/small_inspection.h"
 #include "viz/frame_pick.h"

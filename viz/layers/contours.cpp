@@ -3,7 +3,7 @@
 #include <set>
 
 #include "core/draw/frame_overlay.h"
-#include "core/draw/unmatched.h"
+#include "core/draw/selection.h"
 #include "core/geometry/polyline.h"
 #include "viz/glyphs.h"
 #include "viz/layers.h"

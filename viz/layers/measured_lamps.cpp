@@ -3,9 +3,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/base/angle.h"
 #include "core/base/number_text.h"
-#include "core/lamps/lamp_regions.h"
+#include "core/base/numeric.h"
+#include "core/lamps/lamp_answer.h"
 #include "viz/glyphs.h"
 #include "viz/layers.h"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "viz/solver_runs.h"
 
-#include "core/base/light_name.h"
 #include "core/base/number_text.h"
+#include "core/base/words.h"
 #include "viz/glyphs.h"
 #include "viz/layers.h"
 

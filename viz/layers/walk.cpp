@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/base/angle.h"
+#include "core/base/numeric.h"
 #include "viz/glyphs.h"
 #include "viz/layers.h"
 #include "viz/lit_parts.h"

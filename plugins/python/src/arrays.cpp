@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "core/geometry/typed_pose.h"
+#include "core/geometry/transforms.h"
 
 namespace glint::python {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "core/fit/level_choice.h"
 #include "core/report/evaluation.h"
-#include "core/scene/frame_spec.h"
+#include "core/scene/frame_name.h"
 #include "plugins/python/src/failures.h"
 #include "plugins/python/src/options.h"
 #include "plugins/python/src/progress.h"

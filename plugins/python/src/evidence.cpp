@@ -7,7 +7,7 @@
 
 #include "core/base/number_text.h"
 #include "core/fit/training.h"
-#include "core/geometry/distortion.h"
+#include "core/geometry/camera.h"
 #include "plugins/python/src/arrays.h"
 #include "plugins/python/src/failures.h"
 #include "plugins/python/src/options.h"

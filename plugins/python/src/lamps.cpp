@@ -5,7 +5,7 @@
 
 #include "core/lamps/ball_photographs.h"
 #include "core/report/measured_lamps.h"
-#include "core/scene/frame_spec.h"
+#include "core/scene/frame_name.h"
 #include "plugins/python/src/arrays.h"
 #include "plugins/python/src/failures.h"
 #include "plugins/python/src/options.h"

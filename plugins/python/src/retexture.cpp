@@ -7,7 +7,7 @@
 
 #include "core/highlight/report.h"
 #include "core/report/evaluation.h"
-#include "core/report/warnings.h"
+#include "core/report/texts.h"
 #include "core/retexture/wish.h"
 #include "core/scene/outputs.h"
 #include "plugins/python/src/arrays.h"

@@ -2,7 +2,7 @@
 #include <pybind11/stl.h>
 
 #include "core/base/number_text.h"
-#include "core/base/parallel.h"
+#include "core/base/progress.h"
 #include "core/geometry/light.h"
 #include "core/surface/analytic.h"
 #include "core/surface/brightest_point.h"

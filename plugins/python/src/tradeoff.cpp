@@ -5,7 +5,7 @@
 
 #include "core/base/version.h"
 #include "core/report/evaluation.h"
-#include "core/report/tradeoff_html.h"
+#include "core/report/report.h"
 #include "core/trials/run.h"
 #include "plugins/python/src/arrays.h"
 #include "plugins/python/src/evaluation.h"

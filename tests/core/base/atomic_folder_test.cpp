@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A folder is there whole or not at all.
-#include "core/base/atomic_folder.h"
-
 #include <gtest/gtest.h>
 #include <stdlib.h>
 
 #include <fstream>
 #include <stdexcept>
 
+#include "core/base/atomic_file.h"
 #include "core/base/outcome.h"
 
 namespace glint {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/base/exif.h"
-
 #include <gtest/gtest.h>
 
 #include <string>
+
+#include "core/base/image_header.h"
 
 namespace glint::exif_tests {
 

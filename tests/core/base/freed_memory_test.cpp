@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/base/freed_memory.h"
-
 #include <gtest/gtest.h>
 
 #include <cstdlib>
 #include <vector>
+
+#include "core/base/memory.h"
 
 #ifdef __GLIBC__
 #include <malloc.h>

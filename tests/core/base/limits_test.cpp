@@ -9,9 +9,9 @@
 #include <thread>
 
 #include "core/base/atomic_file.h"
-#include "core/base/image_memory.h"
 #include "core/base/json_text.h"
-#include "core/base/parallel.h"
+#include "core/base/memory.h"
+#include "core/base/progress.h"
 #include "tests/core/scene/scene_fixture.h"
 
 namespace glint {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/base/parallel.h"
-
 #include <gtest/gtest.h>
 
 #include <atomic>
 #include <numeric>
 #include <stdexcept>
 #include <vector>
+
+#include "core/base/progress.h"
 
 namespace glint {
 namespace {

@@ -8,7 +8,7 @@
 #include <set>
 #include <string>
 
-#include "core/base/light_name.h"
+#include "core/base/words.h"
 
 namespace glint {
 namespace {

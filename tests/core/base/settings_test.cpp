@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "core/base/outcome.h"
-#include "core/base/parallel.h"
+#include "core/base/progress.h"
 
 namespace glint {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/base/similar_name.h"
-
 #include <gtest/gtest.h>
+
+#include "core/base/words.h"
 
 namespace glint::similar_name_tests {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 
-#include "core/capture/write.h"
+#include "core/capture/capture.h"
 #include "tests/core/capture/colmap_fixture.h"
 #include "tests/tolerances.h"
 

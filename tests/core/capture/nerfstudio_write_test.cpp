@@ -6,7 +6,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "core/capture/write.h"
+#include "core/capture/capture.h"
 #include "tests/core/capture/nerfstudio_fixture.h"
 #include "tests/core/scene/scene_fixture.h"
 #include "tests/tolerances.h"

@@ -8,9 +8,9 @@
 #include <map>
 #include <random>
 
-#include "core/base/angle.h"
+#include "core/base/numeric.h"
 #include "core/inspect/summary.h"
-#include "core/report/diagnosis_report.h"
+#include "core/report/report.h"
 #include "core/selection/leave_one_out.h"
 #include "core/selection/selection.h"
 #include "tests/core/diagnose/eared_ball.h"

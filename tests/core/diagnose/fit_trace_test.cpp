@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Exact contours of a known lamp: where a fit starts, where it ends, and what is left are known.
-#include "core/diagnose/fit_trace.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <random>
 
 #include "core/diagnose/diagnosis.h"
-#include "core/report/diagnosis_report.h"
+#include "core/report/report.h"
 #include "tests/core/inspect/exact_scene.h"
 
 namespace glint::fit_trace_tests {

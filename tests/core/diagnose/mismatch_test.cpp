@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Exact predictions are moved, shrunk and turned away; the reason must be the one that was made.
-#include "core/diagnose/mismatch.h"
-
 #include <gmock/gmock.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/base/angle.h"
+#include "core/base/numeric.h"
+#include "core/diagnose/highlight_evidence.h"
 #include "tests/core/diagnose/exact_sphere.h"
 
 namespace glint::mismatch_tests {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Rows by hand; chances from the closed form of the hypergeometric distribution.
-#include "core/diagnose/shared_causes.h"
-
 #include <gmock/gmock.h>
 
 #include <cmath>
 #include <random>
+
+#include "core/diagnose/highlight_evidence.h"
 
 namespace glint {
 namespace shared_causes_tests {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/base/angle.h"
+#include "core/base/numeric.h"
 #include "core/diagnostics/row_changes.h"
 
 namespace glint {

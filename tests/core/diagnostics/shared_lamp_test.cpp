@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/diagnostics/shared_lamp.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
+
+#include "core/diagnostics/camera_check.h"
 
 namespace glint {
 namespace {

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <sstream>
 
-#include "core/base/base64.h"
-#include "core/draw/caption.h"
+#include "core/base/bytes.h"
 #include "core/draw/contrast.h"
-#include "core/draw/overlay_painter.h"
-#include "core/draw/plot_notes.h"
+#include "core/draw/frame_overlay.h"
+#include "core/draw/painter.h"
+#include "core/draw/plot_header.h"
 #include "core/draw/plot_view.h"
 #include "core/draw/svg_painter.h"
 

@@ -10,7 +10,7 @@
 #include "core/base/uncertainty.h"
 #include "core/inspect/inspection.h"
 #include "core/model/view_effects.h"
-#include "core/report/band_text.h"
+#include "core/report/texts.h"
 #include "tests/core/inspect/exact_scene.h"
 
 namespace glint {

@@ -11,8 +11,8 @@
 
 #include "core/base/number_text.h"
 #include "core/fit/evidence.h"
+#include "core/inspect/hand_edits.h"
 #include "core/inspect/inspection.h"
-#include "core/inspect/requested_evidence.h"
 #include "core/inspect/summary.h"
 #include "tests/core/highlight/highlight_images.h"
 #include "tests/shared_data.h"

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/fit/highlight_quality.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "core/fit/evidence.h"
 #include "tests/core/highlight/highlight_images.h"
 
 /// Uncertainties of the contour of a round Gaussian lobe h exp(-r^2 / a^2), whose slope at radius r is 2 r v / a^2 in closed

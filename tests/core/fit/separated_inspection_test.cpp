@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // detect.background = colours in an inspection: contours on the specular part, and a warning where the colours do not tell it.
-#include "core/inspect/requested_evidence.h"
-#include "core/report/warnings.h"
+#include "core/inspect/hand_edits.h"
+#include "core/report/texts.h"
 #include "tests/core/fit/coloured_scene.h"
 
 namespace glint::separated_inspection_tests {

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/geometry/clip.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
+#include "core/geometry/polyline.h"
 #include "tests/tolerances.h"
 
 namespace glint::clip_tests {

@@ -10,7 +10,7 @@
 #include <opencv2/calib3d.hpp>
 #include <sstream>
 
-#include "core/geometry/distortion.h"
+#include "core/geometry/camera.h"
 #include "tests/tolerances.h"
 
 namespace glint {

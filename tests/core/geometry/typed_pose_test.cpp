@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Poses as people type them. The rotation is (0.36 0.48 -0.8; -0.8 0.6 0; 0.48 0.64 0.6), whose digits are exact.
-#include "core/geometry/typed_pose.h"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
 #include <limits>
+
+#include "core/geometry/transforms.h"
 
 namespace glint::typed_pose_tests {
 namespace {

@@ -7,7 +7,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "core/base/srgb.h"
+#include "core/base/image.h"
 #include "core/highlight/highlight.h"
 #include "tests/shared_data.h"
 

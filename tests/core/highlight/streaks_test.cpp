@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/highlight/streaks.h"
-
 #include <gtest/gtest.h>
 
 #include <random>
 
 #include "core/geometry/conic.h"
 #include "core/highlight/highlight.h"
+#include "core/highlight/iso_contour.h"
 #include "highlight_images.h"
 
 namespace glint::streaks_test {

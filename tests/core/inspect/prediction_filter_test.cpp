@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the filters take out: discs of known area, brightest points tilted by a known angle, and a ball in its own way.
-#include "core/inspect/prediction_filter.h"
-
 #include <gmock/gmock.h>
 
 #include <cmath>
 
+#include "core/inspect/live_prediction.h"
 #include "core/inspect/summary.h"
 #include "core/surface/analytic.h"
 #include "tests/core/inspect/exact_scene.h"

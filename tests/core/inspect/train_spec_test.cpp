@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "core/inspect/inspection.h"
-#include "core/scene/frame_spec.h"
+#include "core/scene/frame_name.h"
 #include "tests/core/scene/scene_fixture.h"
 
 namespace glint {

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A region of 95 % holds 95 % of what is drawn with the covariance that it is made of.
-#include "core/lamps/lamp_regions.h"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
@@ -9,6 +7,8 @@
 #include <limits>
 #include <numbers>
 #include <random>
+
+#include "core/lamps/lamp_answer.h"
 
 namespace glint::lamp_regions_tests {
 

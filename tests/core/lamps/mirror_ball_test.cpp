@@ -6,7 +6,7 @@
 #include <array>
 #include <random>
 
-#include "core/lamps/ball_by_hand.h"
+#include "core/lamps/ball_outline.h"
 #include "tests/core/lamps/ball_scene.h"
 
 namespace glint::mirror_ball_tests {

@@ -11,7 +11,7 @@
 
 #include "core/geometry/polyline.h"
 #include "core/light/contour_evidence.h"
-#include "core/light/ray_condition.h"
+#include "core/light/estimate.h"
 #include "core/model/models.h"
 #include "tests/core/model/exact_views.h"
 #include "tests/tolerances.h"

@@ -12,8 +12,8 @@
 #include <random>
 
 #include "core/geometry/plane.h"
-#include "core/model/ellipse_distance.h"
 #include "core/model/fit_ellipsoid.h"
+#include "core/model/reconstruct_detail.h"
 #include "tests/shared_data.h"
 #include "tests/tolerances.h"
 

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Joint refinement of light and poses: what it gains where poses are off, and that it does no harm where they are not.
-#include "core/light/refine_poses.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <random>
 
+#include "core/light/estimate.h"
 #include "tests/core/model/coverage_trials.h"
 #include "tests/tolerances.h"
 

@@ -8,7 +8,6 @@
 #include <cmath>
 
 #include "core/model/models.h"
-#include "core/model/radiance_star.h"
 #include "core/reflectance/lobe_terms.h"
 #include "core/score/metrics.h"
 #include "core/surface/mesh.h"

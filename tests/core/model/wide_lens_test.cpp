@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "core/geometry/seen_window.h"
+#include "core/geometry/camera.h"
 #include "core/inspect/inspection.h"
 #include "core/surface/analytic.h"
 #include "core/surface/brightest_point.h"

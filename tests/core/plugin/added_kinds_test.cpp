@@ -6,7 +6,7 @@
 #include <random>
 #include <set>
 
-#include "core/diagnose/candidates.h"
+#include "core/diagnose/diagnosis_parts.h"
 #include "core/reflectance/added_lobe.h"
 #include "core/reflectance/light_radiance.h"
 #include "core/reflectance/lobe_terms.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/model/model.h"
-#include "core/reflectance/fit_search.h"
+#include "core/reflectance/fit.h"
 #include "tests/core/reflectance/radiance_views.h"
 
 namespace glint {

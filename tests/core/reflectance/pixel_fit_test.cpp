@@ -8,7 +8,6 @@
 #include <numbers>
 #include <random>
 
-#include "core/reflectance/lobe_contour.h"
 #include "core/reflectance/pixel_problem.h"
 #include "core/surface/analytic.h"
 #include "tests/core/surface/surfaces.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "core/reflectance/extended_fit.h"
-#include "core/reflectance/fit_search.h"
+#include "core/reflectance/fit.h"
 #include "tests/core/reflectance/radiance_views.h"
 
 namespace glint {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/report/command_text.h"
-
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -8,7 +6,8 @@
 #include <cstdio>
 #include <memory>
 
-#include "core/scene/frame_spec.h"
+#include "core/report/texts.h"
+#include "core/scene/frame_name.h"
 
 namespace glint {
 namespace {

@@ -5,7 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/report/diagnosis_report.h"
+#include "core/diagnose/diagnosis.h"
+#include "core/report/report.h"
 #include "tests/core/inspect/exact_scene.h"
 
 namespace glint::evaluation_words_tests {

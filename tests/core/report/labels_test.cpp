@@ -14,7 +14,6 @@
 #include "core/fit/given_labels.h"
 #include "core/report/label_shapes.h"
 #include "core/report/masks.h"
-#include "core/report/yolo.h"
 #include "core/surface/analytic.h"
 #include "tests/core/inspect/exact_scene.h"
 #include "tests/core/scene/scene_fixture.h"

@@ -7,10 +7,9 @@
 
 #include "core/model/plausible.h"
 #include "core/report/labels.h"
-#include "core/report/live_json.h"
 #include "core/report/report.h"
 #include "core/report/share.h"
-#include "core/report/warnings.h"
+#include "core/report/texts.h"
 #include "tests/core/inspect/exact_scene.h"
 
 namespace glint::poor_fits_tests {

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <random>
 
-#include "core/base/base64.h"
+#include "core/base/bytes.h"
 #include "core/report/share_parts.h"
 
 namespace glint::share_surface_tests {

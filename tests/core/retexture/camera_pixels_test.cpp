@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The pixels of a camera: against the pinhole's closed form, and the lens model run forwards.
-#include "core/retexture/camera_pixels.h"
-
 #include <gtest/gtest.h>
 
+#include "core/retexture/pixels.h"
 #include "core/surface/analytic.h"
 
 namespace glint::camera_pixels_tests {

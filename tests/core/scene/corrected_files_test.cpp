@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Corrections that write a mesh. tests/formats/fixes.py has the whole way, against a mesh of another language.
-#include "core/scene/corrected_files.h"
-
 #include <gmock/gmock.h>
 
 #include <Eigen/Geometry>
 #include <fstream>
 
 #include "core/base/number_text.h"
+#include "core/scene/correction.h"
 #include "core/scene/geometry_check.h"
 #include "tests/core/scene/scene_fixture.h"
 

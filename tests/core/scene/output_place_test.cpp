@@ -9,7 +9,6 @@
 #include <thread>
 
 #include "core/base/atomic_file.h"
-#include "core/base/atomic_folder.h"
 #include "core/scene/outputs.h"
 #include "tests/core/scene/scene_fixture.h"
 

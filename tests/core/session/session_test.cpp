@@ -9,7 +9,6 @@
 #include <limits>
 
 #include "core/base/sha256.h"
-#include "core/session/key_result_difference.h"
 #include "tests/core/scene/scene_fixture.h"
 #include "tests/shared_data.h"
 

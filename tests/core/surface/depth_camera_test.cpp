@@ -9,9 +9,8 @@
 #include "core/surface/brightest_point.h"
 #include "core/surface/depth_filter.h"
 #include "core/surface/depth_fusion.h"
+#include "core/surface/depth_images.h"
 #include "core/surface/depth_map.h"
-#include "core/surface/depth_noise.h"
-#include "core/surface/depth_registration.h"
 #include "tests/core/surface/surfaces.h"
 
 namespace glint::depth_camera_tests {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/surface/normal_correction.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/tradeoff/choice.h"
-
 #include <gmock/gmock.h>
 
 #include <limits>
 
 #include "core/base/outcome.h"
+#include "core/tradeoff/tradeoff.h"
 #include "tests/core/tradeoff/points.h"
 
 namespace glint {

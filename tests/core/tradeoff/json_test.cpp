@@ -7,8 +7,8 @@
 
 #include "core/base/html_text.h"
 #include "core/base/outcome.h"
-#include "core/report/tradeoff_html.h"
-#include "core/tradeoff/choice.h"
+#include "core/report/report.h"
+#include "core/tradeoff/tradeoff.h"
 #include "tests/core/tradeoff/points.h"
 
 namespace glint {

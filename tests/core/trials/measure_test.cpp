@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The measurement on an exact scene: its numbers are those of `evaluate`, and it can be stopped and resumed.
+#include "core/trials/measure.h"
+
 #include <gmock/gmock.h>
 
 #include <filesystem>
 
 #include "core/inspect/summary.h"
-#include "core/trials/memory.h"
 #include "core/trials/run.h"
 #include "tests/core/inspect/exact_scene.h"
 #include "tests/core/scene/scene_fixture.h"

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A hand in the picture: what it holds goes where it goes.
-#include "core/what_if/drag.h"
-
 #include <gtest/gtest.h>
 
 #include "core/geometry/polyline.h"
+#include "core/what_if/what_if.h"
 #include "tests/core/inspect/exact_scene.h"
 
 namespace glint {

@@ -6,11 +6,11 @@
 #include <functional>
 #include <set>
 
-#include "core/inspect/fitted_lobe.h"
+#include "core/inspect/fits.h"
 #include "core/inspect/inspection.h"
 #include "core/session/session.h"
-#include "core/what_if/what_if_dom.h"
 #include "core/what_if/knobs.h"
+#include "core/what_if/what_if_dom.h"
 #include "tests/core/inspect/exact_scene.h"
 
 namespace glint {
