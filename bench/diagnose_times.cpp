@@ -6,9 +6,9 @@
 #include <memory>
 #include <string>
 
-#include "core/diagnose/diagnosis.h"
-#include "core/inspect/inspection.h"
+#include "core/advise/diagnosis.h"
 #include "core/model/model.h"
+#include "core/pipeline/inspection.h"
 #include "core/scene/scene.h"
 
 namespace {

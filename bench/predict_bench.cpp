@@ -10,7 +10,7 @@
 #include "core/model/fit_ellipsoid.h"
 #include "core/model/models.h"
 #include "core/model/walk.h"
-#include "core/score/comparison.h"
+#include "core/pipeline/comparison.h"
 #include "core/surface/mesh.h"
 #include "core/synth/synth.h"
 #include "tests/core/model/exact_views.h"

@@ -10,6 +10,7 @@
 
 #include "cli/interrupt.h"
 #include "cli/terminal.h"
+#include "core/app/load_plugins.h"
 #include "core/base/limits.h"
 #include "core/base/memory.h"
 #include "core/base/number_text.h"
@@ -17,7 +18,6 @@
 #include "core/base/version.h"
 #include "core/base/words.h"
 #include "core/codecs/codecs.h"
-#include "core/plugin/load.h"
 #include "viz/added_layer.h"
 
 namespace glint::cli {

@@ -6,7 +6,7 @@
 #include "cli/commands.h"
 #include "cli/scene_arguments.h"
 #include "core/base/number_text.h"
-#include "core/fit/given_labels.h"
+#include "core/pipeline/given_labels.h"
 #include "core/scene/correction.h"
 #include "core/scene/outputs.h"
 #include "core/scene/scene.h"

@@ -13,10 +13,10 @@
 #include "core/base/image.h"
 #include "core/base/number_text.h"
 #include "core/base/progress.h"
-#include "core/fit/depth_motion.h"
-#include "core/fit/evidence.h"
-#include "core/fit/level_choice.h"
 #include "core/highlight/report.h"
+#include "core/pipeline/depth_motion.h"
+#include "core/pipeline/evidence.h"
+#include "core/pipeline/level_choice.h"
 #include "core/scene/outputs.h"
 #include "core/surface/mesh_policy.h"
 

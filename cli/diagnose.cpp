@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/commands.h"
 #include "cli/inspection_arguments.h"
+#include "core/advise/camera_check.h"
+#include "core/advise/diagnosis.h"
 #include "core/base/number_text.h"
 #include "core/base/version.h"
-#include "core/diagnose/diagnosis.h"
-#include "core/diagnostics/camera_check.h"
-#include "core/inspect/summary.h"
+#include "core/pipeline/summary.h"
 #include "core/report/report.h"
 #include "core/scene/outputs.h"
 

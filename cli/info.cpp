@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/commands.h"
 #include "cli/scene_arguments.h"
-#include "core/diagnostics/camera_check.h"
+#include "core/advise/camera_check.h"
 #include "core/scene/convention_report.h"
 #include "core/scene/outputs.h"
 #include "core/scene/scene.h"

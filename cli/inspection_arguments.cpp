@@ -6,12 +6,12 @@
 #include <filesystem>
 #include <sstream>
 
-#include "core/fit/level_choice.h"
+#include "core/app/session.h"
+#include "core/choice/tradeoff.h"
 #include "core/model/model.h"
+#include "core/pipeline/level_choice.h"
 #include "core/report/evaluation.h"
 #include "core/scene/frame_name.h"
-#include "core/session/session.h"
-#include "core/tradeoff/tradeoff.h"
 
 namespace glint::cli {
 

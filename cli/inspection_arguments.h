@@ -9,7 +9,7 @@
 
 #include "cli/command.h"
 #include "cli/scene_arguments.h"
-#include "core/inspect/inspection.h"
+#include "core/pipeline/inspection.h"
 
 namespace glint {
 struct Session;

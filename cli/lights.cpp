@@ -7,9 +7,9 @@
 #include "cli/inspection_arguments.h"
 #include "cli/scene_arguments.h"
 #include "core/base/number_text.h"
-#include "core/capture/capture.h"
 #include "core/report/lamps_report.h"
 #include "core/report/measured_lamps.h"
+#include "core/scene/capture.h"
 #include "core/scene/frame_name.h"
 #include "core/scene/outputs.h"
 

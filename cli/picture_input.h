@@ -9,7 +9,7 @@
 
 #include "cli/command.h"
 #include "cli/scene_arguments.h"
-#include "core/session/session.h"
+#include "core/app/session.h"
 #include "viz/scene_view.h"
 
 namespace glint::cli {

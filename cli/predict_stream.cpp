@@ -9,10 +9,10 @@
 #include "cli/interrupt.h"
 #include "cli/terminal.h"
 #include "core/base/stage_times.h"
-#include "core/capture/pose_lines.h"
-#include "core/inspect/live_prediction.h"
+#include "core/pipeline/live_prediction.h"
 #include "core/report/labels.h"
 #include "core/report/texts.h"
+#include "core/scene/pose_lines.h"
 
 namespace glint::cli {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "cli/command.h"
-#include "core/session/session.h"
+#include "core/app/session.h"
 
 namespace glint::cli {
 

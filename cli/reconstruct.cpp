@@ -3,11 +3,11 @@
 
 #include "cli/commands.h"
 #include "cli/inspection_arguments.h"
+#include "core/app/session.h"
 #include "core/base/number_text.h"
 #include "core/base/words.h"
 #include "core/report/texts.h"
 #include "core/scene/outputs.h"
-#include "core/session/session.h"
 
 namespace glint::cli {
 namespace {

@@ -4,7 +4,7 @@
 #include "cli/commands.h"
 #include "cli/inspection_arguments.h"
 #include "cli/picture_input.h"
-#include "core/inspect/photograph.h"
+#include "core/pipeline/photograph.h"
 #include "core/scene/frame_name.h"
 #include "core/scene/outputs.h"
 #include "viz/offscreen.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/commands.h"
 #include "cli/scene_arguments.h"
+#include "core/app/session.h"
 #include "core/base/number_text.h"
-#include "core/session/session.h"
 
 namespace glint::cli {
 

@@ -5,13 +5,13 @@
 
 #include "cli/commands.h"
 #include "cli/inspection_arguments.h"
+#include "core/app/session.h"
 #include "core/base/number_text.h"
 #include "core/highlight/report.h"
 #include "core/report/texts.h"
 #include "core/retexture/wish.h"
 #include "core/scene/frame_name.h"
 #include "core/scene/outputs.h"
-#include "core/session/session.h"
 
 namespace glint::cli {
 namespace {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "cli/command.h"
-#include "core/session/scene_places.h"
+#include "core/app/scene_places.h"
 
 namespace glint::cli {
 

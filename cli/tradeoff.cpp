@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/tradeoff/tradeoff.h"
+#include "core/choice/tradeoff.h"
 
 #include "cli/commands.h"
 #include "cli/inspection_arguments.h"
+#include "core/app/session.h"
+#include "core/app/tradeoff_run.h"
 #include "core/base/number_text.h"
 #include "core/base/version.h"
 #include "core/report/report.h"
 #include "core/scene/outputs.h"
-#include "core/session/session.h"
-#include "core/trials/run.h"
 
 namespace glint::cli {
 namespace {

@@ -12,10 +12,10 @@
 #include <string>
 #include <vector>
 
+#include "core/app/load_plugins.h"
 #include "core/base/limits.h"
 #include "core/base/outcome.h"
 #include "core/base/version.h"
-#include "core/plugin/load.h"
 #include "core/scene/outputs.h"
 #include "gui/base/error_line.h"
 #include "gui/base/input_rules.h"

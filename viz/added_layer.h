@@ -8,7 +8,7 @@
 
 namespace glint::viz {
 
-/// Takes the layers that a plugin adds (core/plugin/plugin.h, GLINT_PLUGIN_WITH_LAYERS).
+/// Takes the layers that a plugin adds (core/app/plugin.h, GLINT_PLUGIN_WITH_LAYERS).
 class LayerRegistry {
  public:
   virtual ~LayerRegistry() = default;

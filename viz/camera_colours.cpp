@@ -7,7 +7,7 @@
 
 #include "core/base/number_text.h"
 #include "core/draw/frame_overlay.h"
-#include "core/inspect/frame_score.h"
+#include "core/pipeline/frame_score.h"
 #include "viz/style.h"
 
 namespace glint::viz {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/explain/duality.h"
+#include "core/advise/duality.h"
 #include "viz/drawn_picture.h"
 
 namespace glint::viz {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 
-#include "core/plugin/load.h"
+#include "core/app/load_plugins.h"
 #include "viz/added_layer.h"
 #include "viz/layers.h"
 

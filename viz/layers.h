@@ -16,10 +16,10 @@
 #include <string>
 #include <vector>
 
+#include "core/app/lamp_answer.h"
 #include "core/draw/scene_drawing.h"
-#include "core/inspect/inspection.h"
-#include "core/inspect/summary.h"
-#include "core/lamps/lamp_answer.h"
+#include "core/pipeline/inspection.h"
+#include "core/pipeline/summary.h"
 #include "viz/convert.h"
 #include "viz/hidden_objects.h"
 #include "viz/scene_view.h"

@@ -9,9 +9,9 @@
 #include "core/draw/contrast.h"
 #include "core/draw/frame_overlay.h"
 #include "core/draw/plots.h"
-#include "core/inspect/frame_score.h"
-#include "core/inspect/photograph.h"
-#include "core/what_if/knobs.h"
+#include "core/pipeline/frame_score.h"
+#include "core/pipeline/photograph.h"
+#include "core/pipeline/what_if_knobs.h"
 #include "viz/plot_export.h"
 #include "viz/style.h"
 

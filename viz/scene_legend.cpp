@@ -7,8 +7,8 @@
 
 #include "core/base/number_text.h"
 #include "core/draw/frame_overlay.h"
-#include "core/inspect/frame_score.h"
-#include "core/inspect/summary.h"
+#include "core/pipeline/frame_score.h"
+#include "core/pipeline/summary.h"
 #include "core/scene/scene_files.h"
 #include "viz/style.h"
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "core/draw/selection.h"
-#include "core/inspect/inspection.h"
+#include "core/pipeline/inspection.h"
 #include "viz/hidden_objects.h"
 #include "viz/style.h"
 

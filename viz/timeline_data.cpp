@@ -7,8 +7,8 @@
 #include <set>
 
 #include "core/draw/frame_overlay.h"
-#include "core/inspect/frame_score.h"
-#include "core/inspect/summary.h"
+#include "core/pipeline/frame_score.h"
+#include "core/pipeline/summary.h"
 #include "viz/style.h"
 
 namespace glint::viz {

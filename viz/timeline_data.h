@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/inspect/inspection.h"
+#include "core/pipeline/inspection.h"
 #include "viz/style.h"
 
 namespace glint::viz {

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "core/advise/explain.h"
+#include "core/advise/walk_trace.h"
 #include "core/draw/frame_overlay.h"
-#include "core/explain/explain.h"
-#include "core/explain/walk_trace.h"
 #include "core/geometry/light.h"
 #include "viz/style.h"
 

@@ -10,7 +10,7 @@
 #include "core/draw/frame_details.h"
 #include "core/draw/plots.h"
 #include "core/draw/selection.h"
-#include "core/inspect/summary.h"
+#include "core/pipeline/summary.h"
 #include "core/scene/scene_files.h"
 
 namespace glint::draw {

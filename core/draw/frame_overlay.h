@@ -12,7 +12,7 @@
 #include "core/draw/painter.h"
 #include "core/draw/selection.h"
 #include "core/geometry/camera.h"
-#include "core/inspect/frame_score.h"
+#include "core/pipeline/frame_score.h"
 
 namespace glint::draw {
 

@@ -4,9 +4,9 @@
 #include <optional>
 #include <vector>
 
+#include "core/app/lamp_fit.h"
 #include "core/draw/frame_overlay.h"
 #include "core/draw/plot_data.h"
-#include "core/lamps/lamp_fit.h"
 
 // Drawings of what photographs of mirror balls say about lamps.
 namespace glint::draw {

@@ -10,7 +10,7 @@
 #include "core/geometry/conic.h"
 #include "core/geometry/plane.h"
 #include "core/geometry/polyline.h"
-#include "core/inspect/inspection.h"
+#include "core/pipeline/inspection.h"
 #include "core/surface/surface.h"
 
 // What a 3D picture shows of a photograph: pixels, contours and ellipses carried into the scene. World units throughout; the same

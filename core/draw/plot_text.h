@@ -4,12 +4,12 @@
 #include <string>
 #include <utility>
 
-#include "core/diagnostics/lobe_comparison.h"
+#include "core/advise/lobe_comparison.h"
 #include "core/draw/colours.h"
 #include "core/draw/painter.h"
 #include "core/draw/plot_data.h"
-#include "core/inspect/inspection.h"
-#include "core/inspect/summary.h"
+#include "core/pipeline/inspection.h"
+#include "core/pipeline/summary.h"
 #include "core/scene/frame_name.h"
 
 namespace glint::draw {

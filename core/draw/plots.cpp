@@ -10,8 +10,8 @@
 #include "core/base/numeric.h"
 #include "core/base/words.h"
 #include "core/draw/plot_text.h"
-#include "core/inspect/frame_score.h"
-#include "core/inspect/photograph.h"
+#include "core/pipeline/frame_score.h"
+#include "core/pipeline/photograph.h"
 
 namespace glint::draw {
 namespace {

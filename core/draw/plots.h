@@ -5,13 +5,13 @@
 #include <string>
 #include <vector>
 
-#include "core/diagnostics/conditioning.h"
-#include "core/diagnostics/influence.h"
-#include "core/diagnostics/lobe_comparison.h"
-#include "core/diagnostics/lobe_samples.h"
-#include "core/diagnostics/polar_residual.h"
+#include "core/advise/conditioning.h"
+#include "core/advise/influence.h"
+#include "core/advise/lobe_comparison.h"
+#include "core/advise/lobe_samples.h"
+#include "core/advise/polar_residual.h"
+#include "core/choice/tradeoff.h"
 #include "core/draw/plot_data.h"
-#include "core/tradeoff/tradeoff.h"
 
 namespace glint::draw {
 

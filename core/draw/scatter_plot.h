@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/diagnostics/highlight_rows.h"
+#include "core/advise/highlight_rows.h"
 #include "core/draw/plot_data.h"
 
 namespace glint::draw {

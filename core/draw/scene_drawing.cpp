@@ -10,10 +10,10 @@
 #include "core/base/number_text.h"
 #include "core/base/words.h"
 #include "core/draw/frame_overlay.h"
-#include "core/fit/training.h"
 #include "core/geometry/polyline.h"
-#include "core/inspect/frame_score.h"
-#include "core/inspect/summary.h"
+#include "core/pipeline/frame_score.h"
+#include "core/pipeline/summary.h"
+#include "core/pipeline/training.h"
 
 namespace glint::draw {
 namespace {

@@ -4,7 +4,7 @@
 #include <Eigen/Geometry>
 #include <vector>
 
-#include "core/inspect/inspection.h"
+#include "core/pipeline/inspection.h"
 #include "core/surface/surface.h"
 
 namespace glint::draw {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/inspect/inspection.h"
+#include "core/pipeline/inspection.h"
 
 namespace glint::draw {
 

@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "core/draw/selection.h"
-#include "core/inspect/frame_score.h"
+#include "core/pipeline/frame_score.h"
 
 namespace glint::draw {
 

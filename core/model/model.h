@@ -187,7 +187,7 @@ struct PredictedHighlight {
   std::vector<double> sigmaPx;
 };
 
-/// A highlight that a model predicts and a filter took out (core/inspect/live_prediction.h). It is not compared, and views draw
+/// A highlight that a model predicts and a filter took out (core/pipeline/live_prediction.h). It is not compared, and views draw
 /// it faintly.
 struct FilteredHighlight {
   PredictedHighlight highlight;

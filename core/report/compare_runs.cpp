@@ -8,8 +8,8 @@
 #include <set>
 
 #include "core/base/number_text.h"
-#include "core/inspect/frame_score.h"
-#include "core/inspect/summary.h"
+#include "core/pipeline/frame_score.h"
+#include "core/pipeline/summary.h"
 
 namespace glint {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 
+#include "core/advise/diagnosis.h"
 #include "core/base/json_dom.h"
 #include "core/base/number_text.h"
 #include "core/base/numeric.h"
 #include "core/base/version.h"
 #include "core/base/words.h"
-#include "core/diagnose/diagnosis.h"
 #include "core/report/report.h"
 #include "core/report/texts.h"
 #include "core/scene/frame_name.h"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/report/evaluation.h"
 
-#include "core/inspect/summary.h"
+#include "core/choice/selection.h"
+#include "core/pipeline/summary.h"
 #include "core/scene/frame_name.h"
-#include "core/selection/selection.h"
 
 namespace glint {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/base/progress.h"
-#include "core/inspect/inspection.h"
+#include "core/pipeline/inspection.h"
 #include "core/report/report.h"
 
 namespace glint {

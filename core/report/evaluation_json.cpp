@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cmath>
 
+#include "core/advise/highlight_evidence.h"
 #include "core/base/csv_text.h"
 #include "core/base/json_dom.h"
 #include "core/base/settings_dom.h"
-#include "core/diagnose/highlight_evidence.h"
 #include "core/model/star.h"
+#include "core/pipeline/what_if_dom.h"
 #include "core/report/evaluation_words.h"
 #include "core/report/texts.h"
 #include "core/scene/frame_name.h"
-#include "core/what_if/what_if_dom.h"
 
 namespace glint {
 namespace evaluation {

@@ -7,12 +7,12 @@
 #include <tuple>
 
 #include "core/base/number_text.h"
-#include "core/inspect/frame_score.h"
-#include "core/inspect/summary.h"
+#include "core/pipeline/frame_score.h"
+#include "core/pipeline/metrics.h"
+#include "core/pipeline/summary.h"
 #include "core/report/evaluation.h"
 #include "core/report/texts.h"
 #include "core/scene/frame_name.h"
-#include "core/score/metrics.h"
 
 namespace glint {
 

@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
-#include "core/inspect/inspection.h"
-#include "core/inspect/summary.h"
+#include "core/pipeline/inspection.h"
+#include "core/pipeline/metrics.h"
+#include "core/pipeline/summary.h"
 #include "core/report/report.h"
-#include "core/score/metrics.h"
 
 namespace glint {
 

@@ -10,8 +10,8 @@
 #include "core/draw/plot_painter.h"
 #include "core/draw/plots.h"
 #include "core/draw/svg_painter.h"
-#include "core/inspect/frame_score.h"
-#include "core/inspect/photograph.h"
+#include "core/pipeline/frame_score.h"
+#include "core/pipeline/photograph.h"
 #include "core/report/html_parts.h"
 #include "core/scene/frame_name.h"
 

@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/advise/highlight_evidence.h"
 #include "core/base/html_text.h"
 #include "core/base/words.h"
-#include "core/diagnose/highlight_evidence.h"
 #include "core/model/models.h"
 #include "core/report/html_parts.h"
 #include "core/report/texts.h"

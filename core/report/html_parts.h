@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "core/inspect/inspection.h"
-#include "core/inspect/summary.h"
+#include "core/pipeline/inspection.h"
+#include "core/pipeline/summary.h"
 
 namespace glint::html {
 

@@ -2,11 +2,11 @@
 #include <algorithm>
 
 #include "core/base/html_text.h"
+#include "core/pipeline/what_if_knobs.h"
 #include "core/report/evaluation_words.h"
 #include "core/report/html_parts.h"
 #include "core/report/report.h"
 #include "core/report/texts.h"
-#include "core/what_if/knobs.h"
 
 namespace glint {
 namespace {

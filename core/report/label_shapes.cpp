@@ -8,7 +8,7 @@
 #include <system_error>
 
 #include "core/geometry/polyline.h"
-#include "core/inspect/live_prediction.h"
+#include "core/pipeline/live_prediction.h"
 
 namespace glint {
 namespace {

@@ -12,7 +12,7 @@
 #include "core/base/json_dom.h"
 #include "core/base/number_text.h"
 #include "core/base/safe_text.h"
-#include "core/inspect/summary.h"
+#include "core/pipeline/summary.h"
 #include "core/report/label_shapes.h"
 #include "core/report/texts.h"
 

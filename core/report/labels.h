@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "core/base/outcome.h"
-#include "core/inspect/inspection.h"
-#include "core/inspect/live_prediction.h"
+#include "core/pipeline/inspection.h"
+#include "core/pipeline/live_prediction.h"
 
 namespace glint {
 

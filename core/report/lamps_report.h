@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "core/lamps/lamp_fit.h"
-#include "core/lamps/lamps_on.h"
+#include "core/app/lamp_fit.h"
+#include "core/app/lamps_on.h"
 #include "core/scene/scene.h"
 
 namespace glint {

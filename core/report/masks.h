@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/base/image.h"
-#include "core/inspect/inspection.h"
+#include "core/pipeline/inspection.h"
 
 namespace glint {
 

@@ -6,11 +6,11 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/app/lamp_answer.h"
 #include "core/base/atomic_file.h"
 #include "core/base/image_header.h"
 #include "core/base/number_text.h"
-#include "core/inspect/inspection.h"
-#include "core/lamps/lamp_answer.h"
+#include "core/pipeline/inspection.h"
 #include "core/report/texts.h"
 
 namespace glint {

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "core/app/ball_photographs.h"
 #include "core/base/progress.h"
-#include "core/inspect/inspection.h"
-#include "core/lamps/ball_photographs.h"
+#include "core/pipeline/inspection.h"
 #include "core/report/lamps_report.h"
 #include "core/scene/outputs.h"
 

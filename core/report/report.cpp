@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "core/base/number_text.h"
-#include "core/inspect/summary.h"
 #include "core/model/star.h"
+#include "core/pipeline/summary.h"
 #include "core/report/evaluation_words.h"
 #include "core/report/texts.h"
 

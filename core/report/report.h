@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "core/inspect/inspection.h"
-#include "core/selection/selection.h"
+#include "core/choice/selection.h"
+#include "core/pipeline/inspection.h"
 
 namespace glint {
 

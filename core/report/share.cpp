@@ -8,8 +8,8 @@
 #include "core/base/html_text.h"
 #include "core/base/sha256.h"
 #include "core/draw/colours.h"
-#include "core/inspect/frame_score.h"
 #include "core/model/models.h"
+#include "core/pipeline/frame_score.h"
 #include "core/report/share_parts.h"
 
 namespace glint {

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "core/app/session.h"
 #include "core/base/progress.h"
 #include "core/report/report.h"
-#include "core/session/session.h"
 
 namespace glint {
 

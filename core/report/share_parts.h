@@ -10,7 +10,7 @@
 
 #include "core/base/progress.h"
 #include "core/draw/scene_scale.h"
-#include "core/inspect/inspection.h"
+#include "core/pipeline/inspection.h"
 #include "core/surface/surface.h"
 
 namespace glint::share {

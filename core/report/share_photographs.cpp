@@ -6,7 +6,7 @@
 
 #include "core/base/bytes.h"
 #include "core/codecs/codecs.h"
-#include "core/inspect/photograph.h"
+#include "core/pipeline/photograph.h"
 #include "core/report/share_parts.h"
 
 namespace glint::share {

@@ -9,7 +9,7 @@
 #include "core/base/number_text.h"
 #include "core/base/permitted.h"
 #include "core/base/words.h"
-#include "core/capture/capture.h"
+#include "core/scene/capture.h"
 #include "core/scene/frame_name.h"
 #include "core/scene/scene_files.h"
 

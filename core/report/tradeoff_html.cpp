@@ -5,12 +5,12 @@
 #include <vector>
 
 #include "core/base/html_text.h"
+#include "core/choice/tradeoff.h"
 #include "core/draw/plot_painter.h"
 #include "core/draw/plots.h"
 #include "core/draw/svg_painter.h"
 #include "core/model/models.h"
 #include "core/report/report.h"
-#include "core/tradeoff/tradeoff.h"
 
 namespace glint {
 namespace {

@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
-#include "core/fit/training.h"
 #include "core/geometry/polyline.h"
-#include "core/inspect/inspection.h"
+#include "core/pipeline/inspection.h"
+#include "core/pipeline/training.h"
 #include "core/retexture/fall_profile.h"
 
 namespace glint {

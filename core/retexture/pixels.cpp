@@ -2,8 +2,8 @@
 #include "core/retexture/pixels.h"
 
 #include "core/base/progress.h"
-#include "core/fit/evidence.h"
-#include "core/inspect/photograph.h"
+#include "core/pipeline/evidence.h"
+#include "core/pipeline/photograph.h"
 
 namespace glint {
 

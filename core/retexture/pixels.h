@@ -9,7 +9,7 @@
 
 #include "core/base/progress.h"
 #include "core/geometry/camera.h"
-#include "core/inspect/inspection.h"
+#include "core/pipeline/inspection.h"
 #include "core/surface/surface.h"
 
 namespace glint {

@@ -8,7 +8,7 @@
 
 #include "core/base/atomic_file.h"
 #include "core/base/image_header.h"
-#include "core/inspect/pipeline.h"
+#include "core/pipeline/pipeline.h"
 #include "core/scene/scene.h"
 
 namespace glint {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 
-#include "core/capture/capture.h"
+#include "core/scene/capture.h"
 #include "core/scene/outputs.h"
 
 namespace glint {

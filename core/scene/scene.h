@@ -14,13 +14,13 @@
 #include "core/base/image.h"
 #include "core/base/outcome.h"
 #include "core/base/permitted.h"
-#include "core/capture/video.h"
 #include "core/geometry/camera.h"
 #include "core/highlight/highlight.h"
 #include "core/reflectance/lamp.h"
 #include "core/scene/camera_response.h"
 #include "core/scene/input_choices.h"
 #include "core/scene/surface_source.h"
+#include "core/scene/video.h"
 
 namespace glint {
 
@@ -96,7 +96,7 @@ struct ReadOptions {
 };
 
 /// Reads any input that Glint knows, recognised by content. InputError with file, place and reason; MissingMesh, OutsidePath,
-/// UndecidedInput (core/capture/capture.h).
+/// UndecidedInput (core/scene/capture.h).
 Scene readScene(const std::filesystem::path& input, const ReadOptions& options = {});
 /// The same for the input of a session, which must not be a session again.
 Scene readSceneOfSession(const std::filesystem::path& input, const ReadOptions& options = {});

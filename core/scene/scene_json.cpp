@@ -9,8 +9,8 @@
 
 #include "core/base/bounded_json.h"
 #include "core/base/json_dom.h"
-#include "core/capture/file_names.h"
 #include "core/geometry/camera.h"
+#include "core/scene/capture_file_names.h"
 #include "core/scene/scene_files.h"
 #include "core/scene/scene_reader.h"
 

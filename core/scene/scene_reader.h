@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/base/outcome.h"
-#include "core/capture/capture.h"
+#include "core/scene/capture.h"
 #include "core/scene/scene.h"
 
 namespace glint {

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "core/base/permitted.h"
-#include "core/capture/capture.h"
+#include "core/scene/capture.h"
 #include "core/scene/scene_files.h"
 
 namespace glint {

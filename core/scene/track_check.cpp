@@ -8,7 +8,7 @@
 #include "core/base/number_text.h"
 #include "core/base/numeric.h"
 #include "core/base/progress.h"
-#include "core/capture/capture.h"
+#include "core/scene/capture.h"
 #include "core/scene/scene_reader.h"
 
 namespace glint {

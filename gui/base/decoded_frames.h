@@ -9,7 +9,7 @@
 #include <memory>
 #include <mutex>
 
-#include "core/inspect/photograph.h"
+#include "core/pipeline/photograph.h"
 
 namespace glint::gui {
 

@@ -2,8 +2,8 @@
 #include <QCoreApplication>
 #include <filesystem>
 
-#include "core/diagnostics/camera_check.h"
-#include "core/trials/run.h"
+#include "core/advise/camera_check.h"
+#include "core/app/tradeoff_run.h"
 #include "gui/document/engine.h"
 #include "gui/document/session_file.h"
 

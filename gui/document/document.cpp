@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/advise/explain.h"
 #include "core/draw/frame_overlay.h"
-#include "core/explain/explain.h"
 #include "core/scene/frame_name.h"
 #include "gui/base/text.h"
 #include "gui/document/selection_words.h"

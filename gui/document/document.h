@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "core/diagnostics/highlight_rows.h"
+#include "core/advise/highlight_rows.h"
 #include "gui/document/engine.h"
 #include "gui/document/results.h"
 

@@ -8,13 +8,13 @@
 #include <string>
 #include <vector>
 
-#include "core/diagnostics/influence.h"
-#include "core/inspect/pipeline.h"
+#include "core/advise/influence.h"
+#include "core/choice/selection.h"
+#include "core/choice/tradeoff.h"
+#include "core/pipeline/pipeline.h"
 #include "core/report/measured_lamps.h"
 #include "core/scene/convention_report.h"
 #include "core/scene/relinked.h"
-#include "core/selection/selection.h"
-#include "core/tradeoff/tradeoff.h"
 #include "viz/scene_view.h"
 
 namespace glint {

@@ -4,7 +4,7 @@
 #include <functional>
 #include <memory>
 
-#include "core/inspect/pipeline.h"
+#include "core/pipeline/pipeline.h"
 
 namespace glint::gui {
 

@@ -5,8 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/app/session.h"
 #include "core/scene/scene_reader.h"
-#include "core/session/session.h"
 #include "gui/base/text.h"
 #include "gui/document/allowed_folders.h"
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/base/stage_times.h"
-#include "core/capture/capture.h"
+#include "core/scene/capture.h"
 #include "gui/base/job_queue.h"
 #include "gui/document/engine.h"
 

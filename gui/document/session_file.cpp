@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
+#include "core/app/session.h"
 #include "core/base/atomic_file.h"
 #include "core/base/temporary_path.h"
-#include "core/session/session.h"
 #include "gui/base/text.h"
 #include "gui/document/figure.h"
 #include "gui/document/own_files.h"

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "core/session/session.h"
+#include "core/app/session.h"
 #include "gui/document/engine.h"
 
 namespace glint::gui {

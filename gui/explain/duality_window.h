@@ -4,7 +4,7 @@
 #include <QDialog>
 #include <optional>
 
-#include "core/explain/duality.h"
+#include "core/advise/duality.h"
 #include "gui/document/document.h"
 #include "viz/duality_picture.h"
 #include "viz/scene_view.h"

@@ -5,7 +5,7 @@
 #include <QSet>
 #include <QString>
 
-#include "core/explain/explain.h"
+#include "core/advise/explain.h"
 #include "gui/document/document.h"
 #include "gui/explain/lessons.h"
 

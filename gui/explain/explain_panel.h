@@ -10,7 +10,7 @@
 #include <memory>
 #include <optional>
 
-#include "core/explain/explain.h"
+#include "core/advise/explain.h"
 #include "gui/base/actions.h"
 #include "gui/base/latest_job.h"
 #include "gui/document/document.h"

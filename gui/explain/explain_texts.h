@@ -6,7 +6,7 @@
 #include <QString>
 #include <QStringList>
 
-#include "core/explain/explain.h"
+#include "core/advise/explain.h"
 
 namespace glint::gui {
 

@@ -13,7 +13,7 @@
 
 #include "core/base/atomic_file.h"
 #include "core/highlight/report.h"
-#include "core/inspect/photograph.h"
+#include "core/pipeline/photograph.h"
 #include "core/report/labels.h"
 #include "core/report/masks.h"
 #include "core/report/report.h"

@@ -4,7 +4,7 @@
 #include <QFileInfo>
 #include <utility>
 
-#include "core/inspect/photograph.h"
+#include "core/pipeline/photograph.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
 #include "gui/export/figure_actions.h"

@@ -4,7 +4,7 @@
 #include <QDialog>
 #include <QObject>
 
-#include "core/session/minimal_repro.h"
+#include "core/app/minimal_repro.h"
 #include "gui/base/actions.h"
 #include "gui/document/document.h"
 

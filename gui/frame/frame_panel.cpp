@@ -15,7 +15,7 @@
 
 #include "core/draw/selection.h"
 #include "core/geometry/polyline.h"
-#include "core/what_if/knobs.h"
+#include "core/pipeline/what_if_knobs.h"
 #include "gui/base/flow_layout.h"
 #include "gui/base/panel_scroll.h"
 #include "gui/base/stale_badge.h"

@@ -4,7 +4,7 @@
 #include <QObject>
 #include <optional>
 
-#include "core/what_if/what_if.h"
+#include "core/pipeline/what_if.h"
 #include "gui/document/document.h"
 #include "gui/frame/frame_canvas.h"
 

@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/inspect/hand_edits.h"
+#include "core/pipeline/hand_edits.h"
 #include "gui/base/actions.h"
 #include "gui/base/job_queue.h"
 #include "gui/document/document.h"
@@ -21,7 +21,7 @@ namespace glint::gui {
 class FrameCanvas;
 
 /// Ignores, merges, splits and grows observed highlights of the selected frame, at the place where the mouse is or was last in
-/// the photograph. One edit is one step of undo; they are part of the what-if (core/inspect/hand_edits.h).
+/// the photograph. One edit is one step of undo; they are part of the what-if (core/pipeline/hand_edits.h).
 class HighlightEdits : public QObject {
   Q_OBJECT
  public:

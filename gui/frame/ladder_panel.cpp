@@ -8,7 +8,7 @@
 #include <algorithm>
 
 #include "core/draw/frame_overlay.h"
-#include "core/inspect/frame_score.h"
+#include "core/pipeline/frame_score.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
 #include "gui/frame/frame_canvas.h"

@@ -5,7 +5,7 @@
 #include <QString>
 #include <memory>
 
-#include "core/inspect/probe.h"
+#include "core/pipeline/probe.h"
 #include "gui/base/latest_job.h"
 
 namespace glint::gui {

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/app/ball_outline.h"
 #include "core/base/number_text.h"
-#include "core/lamps/ball_outline.h"
 #include "gui/base/text.h"
 
 namespace glint::gui {

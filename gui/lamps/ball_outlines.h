@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/lamps/ball_photographs.h"
+#include "core/app/ball_photographs.h"
 #include "gui/frame/frame_canvas.h"
 
 namespace glint::gui {

@@ -13,9 +13,9 @@
 #include <algorithm>
 #include <set>
 
-#include "core/diagnose/highlight_evidence.h"
-#include "core/inspect/summary.h"
-#include "core/selection/selection.h"
+#include "core/advise/highlight_evidence.h"
+#include "core/choice/selection.h"
+#include "core/pipeline/summary.h"
 #include "gui/base/eliding_delegate.h"
 #include "gui/base/text.h"
 #include "viz/solver_runs.h"

@@ -6,7 +6,7 @@
 #include <memory>
 #include <optional>
 
-#include "core/diagnose/diagnosis.h"
+#include "core/advise/diagnosis.h"
 #include "gui/base/actions.h"
 #include "gui/base/job_queue.h"
 #include "gui/document/document.h"

@@ -8,9 +8,9 @@
 #include <limits>
 #include <utility>
 
-#include "core/diagnostics/row_changes.h"
+#include "core/advise/row_changes.h"
 #include "core/draw/frame_overlay.h"
-#include "core/inspect/summary.h"
+#include "core/pipeline/summary.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"
 #include "gui/base/tips.h"

@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include "core/diagnostics/highlight_rows.h"
+#include "core/advise/highlight_rows.h"
 #include "gui/document/document.h"
 
 namespace glint::gui {

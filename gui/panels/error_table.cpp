@@ -23,7 +23,7 @@
 
 #include "core/base/csv_text.h"
 #include "core/draw/frame_overlay.h"
-#include "core/inspect/summary.h"
+#include "core/pipeline/summary.h"
 #include "core/report/texts.h"
 #include "gui/base/flow_layout.h"
 #include "gui/base/stale_badge.h"

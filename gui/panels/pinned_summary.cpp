@@ -4,7 +4,7 @@
 #include <QVBoxLayout>
 #include <QVariant>
 
-#include "core/diagnostics/row_changes.h"
+#include "core/advise/row_changes.h"
 #include "core/report/compare_runs.h"
 #include "gui/base/elided_label.h"
 #include "gui/base/text.h"

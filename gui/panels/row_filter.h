@@ -6,7 +6,7 @@
 #include <optional>
 #include <set>
 
-#include "core/diagnostics/highlight_rows.h"
+#include "core/advise/highlight_rows.h"
 
 namespace glint::gui {
 

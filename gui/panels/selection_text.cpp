@@ -8,9 +8,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/diagnose/highlight_evidence.h"
-#include "core/diagnostics/conditioning.h"
-#include "core/diagnostics/polar_residual.h"
+#include "core/advise/conditioning.h"
+#include "core/advise/highlight_evidence.h"
+#include "core/advise/polar_residual.h"
 #include "core/draw/selection.h"
 #include "core/scene/scene_files.h"
 #include "gui/base/text.h"

@@ -4,7 +4,7 @@
 #include <QString>
 #include <vector>
 
-#include "core/inspect/inspection.h"
+#include "core/pipeline/inspection.h"
 #include "viz/scene_view.h"
 
 namespace glint::gui {
@@ -15,7 +15,7 @@ struct NumberGroup {
 };
 
 /// What is selected, and numbers of the selected frame and highlight: the observation, its brightest point and tangent plane, the
-/// light, and the model's fit and prediction. Numbers of the inspection and of core/diagnostics; none is computed here.
+/// light, and the model's fit and prediction. Numbers of the inspection and of core/advise; none is computed here.
 std::vector<NumberGroup> describeSelection(const Inspection& inspection, const draw::Selection& selection,
                                            const std::string& model);
 

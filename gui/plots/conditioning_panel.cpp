@@ -11,7 +11,7 @@
 #include <algorithm>
 
 #include "core/base/words.h"
-#include "core/inspect/summary.h"
+#include "core/pipeline/summary.h"
 #include "core/report/texts.h"
 #include "gui/base/elided_label.h"
 #include "gui/base/stale_badge.h"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/diagnostics/conditioning.h"
+#include "core/advise/conditioning.h"
 #include "gui/document/document.h"
 
 class QGridLayout;

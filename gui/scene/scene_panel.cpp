@@ -15,7 +15,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/what_if/what_if.h"
+#include "core/pipeline/what_if.h"
 #include "gui/base/stale_badge.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"

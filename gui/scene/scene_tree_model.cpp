@@ -8,8 +8,8 @@
 #include <cmath>
 #include <utility>
 
-#include "core/diagnose/highlight_evidence.h"
-#include "core/diagnostics/influence.h"
+#include "core/advise/highlight_evidence.h"
+#include "core/advise/influence.h"
 #include "core/geometry/ellipsoid.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"

@@ -16,7 +16,7 @@
 #include <numbers>
 #include <utility>
 
-#include "core/inspect/frame_score.h"
+#include "core/pipeline/frame_score.h"
 #include "gui/base/draw_turns.h"
 #include "gui/base/picture_access.h"
 #include "gui/base/stale_badge.h"

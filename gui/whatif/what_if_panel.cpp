@@ -14,7 +14,7 @@
 #include <memory>
 #include <utility>
 
-#include "core/inspect/hand_edits.h"
+#include "core/pipeline/hand_edits.h"
 #include "core/reflectance/added_lobe.h"
 #include "core/reflectance/lobe.h"
 #include "gui/base/draw_turns.h"

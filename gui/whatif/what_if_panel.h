@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "core/inspect/fits.h"
-#include "core/what_if/knobs.h"
+#include "core/pipeline/fits.h"
+#include "core/pipeline/what_if_knobs.h"
 #include "gui/document/document.h"
 
 class QCheckBox;

@@ -9,8 +9,8 @@
 #include <QPushButton>
 #include <QVBoxLayout>
 
+#include "core/app/load_plugins.h"
 #include "core/base/version.h"
-#include "core/plugin/load.h"
 
 namespace glint::gui {
 

@@ -8,8 +8,8 @@
 #include <exception>
 #include <utility>
 
+#include "core/app/session.h"
 #include "core/base/temporary_path.h"
-#include "core/session/session.h"
 #include "gui/base/text.h"
 
 namespace glint::gui {

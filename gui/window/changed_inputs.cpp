@@ -5,8 +5,8 @@
 #include <set>
 #include <string>
 
+#include "core/app/session.h"
 #include "core/scene/scene_files.h"
-#include "core/session/session.h"
 #include "gui/base/text.h"
 #include "gui/window/message_bar.h"
 

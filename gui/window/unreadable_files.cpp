@@ -12,7 +12,7 @@
 #include <QVBoxLayout>
 #include <optional>
 
-#include "core/session/session.h"
+#include "core/app/session.h"
 #include "gui/base/text.h"
 #include "gui/base/tips.h"
 #include "gui/window/file_actions.h"

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/capture/capture.h"
+#include "core/scene/capture.h"
 
 namespace glint::example {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A plugin that adds one of everything: glint --plugin example.so --version lists it.
-#include "core/plugin/plugin.h"
+#include "core/app/plugin.h"
 #include "plugins/example/camera_table.h"
 #include "plugins/example/flat_mirror.h"
 #include "plugins/example/student_lobe.h"

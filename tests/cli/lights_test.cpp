@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "tests/cli/small_scene.h"
-#include "tests/core/lamps/ball_scene.h"
+#include "tests/core/app/ball_scene.h"
 
 namespace glint::lights_tests {
 using namespace testing_support;

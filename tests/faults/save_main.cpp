@@ -6,7 +6,7 @@
 #include <string>
 
 #include "core/base/safe_text.h"
-#include "core/inspect/inspection.h"
+#include "core/pipeline/inspection.h"
 #include "gui/document/session_file.h"
 
 int main(int argc, char** argv) {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/base/json_text.h"
-#include "core/capture/capture.h"
+#include "core/scene/capture.h"
 #include "core/scene/scene.h"
 #include "tests/fuzz/readers.h"
 #include "tests/fuzz/scratch_file.h"

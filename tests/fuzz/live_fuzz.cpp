@@ -3,8 +3,8 @@
 #include <cmath>
 #include <sstream>
 
-#include "core/capture/pose_lines.h"
-#include "core/fit/given_labels.h"
+#include "core/pipeline/given_labels.h"
+#include "core/scene/pose_lines.h"
 #include "core/scene/scene_json.h"
 #include "tests/fuzz/readers.h"
 #include "tests/fuzz/scratch_file.h"

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <sstream>
 
+#include "core/app/trial_work_file.h"
 #include "core/base/outcome.h"
 #include "core/base/settings.h"
-#include "core/inspect/inspection.h"
-#include "core/trials/work_file.h"
+#include "core/pipeline/inspection.h"
 #include "tests/fuzz/readers.h"
 #include "tests/fuzz/scratch_file.h"
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The readers of JSON documents: scene, session, specification of synth, contours of --truth. What was read can be written, and
 // what was written is read again.
+#include "core/app/session.h"
 #include "core/base/outcome.h"
-#include "core/fit/evidence.h"
-#include "core/inspect/inspection.h"
+#include "core/pipeline/evidence.h"
+#include "core/pipeline/inspection.h"
 #include "core/scene/scene_json.h"
-#include "core/session/session.h"
 #include "core/synth/synth.h"
 #include "tests/fuzz/readers.h"
 #include "tests/fuzz/scratch_file.h"

@@ -10,7 +10,7 @@
 #include <QPushButton>
 #include <QTimer>
 
-#include "core/session/session.h"
+#include "core/app/session.h"
 #include "gui/base/text.h"
 #include "gui/document/session_file.h"
 #include "gui/window/command_line.h"

@@ -10,7 +10,7 @@
 #include <QTabWidget>
 #include <QTableView>
 
-#include "core/session/session.h"
+#include "core/app/session.h"
 #include "gui/base/rows_model.h"
 #include "gui/document/session_file.h"
 #include "gui/export/export_actions.h"

@@ -9,7 +9,7 @@
 #include <QTreeWidget>
 
 #include "gui/panels/diagnosis_panel.h"
-#include "tests/core/inspect/exact_scene.h"
+#include "tests/core/pipeline/exact_scene.h"
 #include "tests/gui/fixture.h"
 
 namespace glint::gui {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The guided mode on a session of the repository, with the real engine.
-#include "core/explain/explain.h"
+#include "core/advise/explain.h"
 
 #include <QAction>
 #include <QComboBox>

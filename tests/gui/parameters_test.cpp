@@ -10,8 +10,8 @@
 #include <QToolButton>
 #include <map>
 
-#include "core/inspect/summary.h"
-#include "core/session/session.h"
+#include "core/app/session.h"
+#include "core/pipeline/summary.h"
 #include "core/synth/synth.h"
 #include "gui/base/number_box.h"
 #include "gui/base/text.h"

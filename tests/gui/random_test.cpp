@@ -15,8 +15,8 @@
 #include <map>
 #include <random>
 
+#include "core/app/session.h"
 #include "core/draw/frame_overlay.h"
-#include "core/session/session.h"
 #include "gui/base/text.h"
 #include "gui/panels/parameter_panel.h"
 #include "gui/timeline/timeline.h"

@@ -20,7 +20,7 @@
 #include <QPushButton>
 #include <QTimer>
 
-#include "core/session/session.h"
+#include "core/app/session.h"
 #include "gui/base/text.h"
 #include "gui/document/own_files.h"
 #include "gui/document/session_file.h"

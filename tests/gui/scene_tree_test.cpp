@@ -10,7 +10,7 @@
 #include <QTreeView>
 #include <set>
 
-#include "core/diagnostics/influence.h"
+#include "core/advise/influence.h"
 #include "gui/base/text.h"
 #include "gui/base/vtk_canvas.h"
 #include "gui/scene/hidden_objects_option.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Shipped sessions and rendered sequences in the real window with the real pipeline.
-#include "core/session/session.h"
+#include "core/app/session.h"
 
 #include <QAction>
 #include <QElapsedTimer>

@@ -4,7 +4,7 @@
 #include <QPushButton>
 #include <QSignalSpy>
 
-#include "core/session/session.h"
+#include "core/app/session.h"
 #include "gui/document/session_file.h"
 #include "gui/panels/setup_panel.h"
 #include "gui/panels/tradeoff_panel.h"

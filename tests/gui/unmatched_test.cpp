@@ -22,7 +22,7 @@
 #include "gui/panels/selection_text.h"
 #include "gui/scene/scene_tree.h"
 #include "gui/whatif/what_if_panel.h"
-#include "tests/core/inspect/exact_scene.h"
+#include "tests/core/pipeline/exact_scene.h"
 #include "tests/gui/fixture.h"
 
 namespace glint::gui {

@@ -11,7 +11,7 @@
 #include <QToolTip>
 #include <QTreeWidget>
 
-#include "core/session/session.h"
+#include "core/app/session.h"
 #include "gui/base/theme.h"
 #include "gui/timeline/timeline.h"
 #include "gui/window/changed_inputs.h"

@@ -14,7 +14,7 @@ import tempfile
 SKIPPED = 77
 HOLDS = {  # package -> patterns of files that it must contain
     "libglint0": [rf"lib/.*/libglint-{library}\.so\.0\.\d" for library in ("codecs", "core", "io")],
-    "libglint-dev": [r"include/glint-[\d.]+/core/inspect/inspection\.h", r"cmake/Glint/GlintConfig\.cmake", r"libglint-core\.so$", r"libglint-viz\.a$",
+    "libglint-dev": [r"include/glint-[\d.]+/core/pipeline/inspection\.h", r"cmake/Glint/GlintConfig\.cmake", r"libglint-core\.so$", r"libglint-viz\.a$",
                      r"share/glint/examples/cpp/session_errors\.cpp", r"share/glint/examples/plugins/example/example\.cpp"],
     "glint": [r"bin/glint$", r"man1/glint\.1\.gz", r"man1/glint-evaluate\.1\.gz", r"bash-completion/completions/glint$", r"zsh/vendor-completions/_glint$",
               r"fish/vendor_completions\.d/glint\.fish$", r"share/glint/sessions/vase/vase\.glint"],

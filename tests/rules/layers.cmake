@@ -27,9 +27,9 @@ function(forbid what pattern)
 endfunction()
 
 # Headers of core: an allow list, because it is the contract of all other layers. Those that end in _dom.h are internal: only
-# sources of core include them (below), so that the JSON library reaches no other layer. The two of core/capture are internal to it and use io.
+# sources of core include them (below), so that the JSON library reaches no other layer. The two of core/scene are internal to it and use io.
 file(GLOB_RECURSE files "${SRC}/core/*.h")
-list(FILTER files EXCLUDE REGEX "/core/([a-z_]+/[a-z_]+_dom|capture/colmap_parts|capture/text_rows)[.]h$")
+list(FILTER files EXCLUDE REGEX "/core/([a-z_]+/[a-z_]+_dom|scene/colmap_parts|scene/text_rows)[.]h$")
 foreach(f IN LISTS files)
   file(STRINGS "${f}" lines REGEX "^[ \t]*#[ \t]*include")
   foreach(line IN LISTS lines)
@@ -140,10 +140,10 @@ foreach(folder IN LISTS folders)
   endif()
 endforeach()
 
-only_in("of core, only core/scene and core/capture read files through io" "\"io/" "/core/(scene|capture)/" core/*.cpp)
+only_in("of core, only core/scene reads files through io" "\"io/" "/core/scene/" core/*.cpp)
 forbid("fifty digits are for tests/stability" "boost/multiprecision" io/*.cpp core/*.h core/*.cpp viz/*.cpp gui/*.cpp cli/*.cpp bench/*.cpp)
 
-only_in("internal to core/capture" "\"core/capture/(colmap_parts|text_rows|parts|image_sizes)[.]h" "/core/capture/" core/*.cpp core/*.h viz/*.cpp gui/*.cpp cli/*.cpp)
+only_in("internal to core/scene" "\"core/scene/(colmap_parts|text_rows|capture_parts|capture_image_sizes)[.]h" "/core/scene/" core/*.cpp core/*.h viz/*.cpp gui/*.cpp cli/*.cpp)
 
 forbid("meshes are read by io" "<vtk[A-Za-z]*(PLY|OBJ|STL|Poly)[A-Za-z]*Reader[.]h>" viz/*.cpp gui/*.cpp cli/*.cpp)
 forbid("core does not know Qt" "${qt}" core/*.cpp)

@@ -58,8 +58,8 @@ endforeach()
 
 # A model is one file: what others must know of it is a virtual or the traits of HighlightModel (core/model/model.h). Exempt are the stability
 # cases, which are of one model each, and files where the word means something else: "path: reason".
-set(modelWords "core/inspect/stage_run.cpp: a stage's name" "core/fit/fit_engine.cpp: a stage's name" "core/synth/spec.cpp: values of the file format"
-               "core/synth/synth.h: values of the file format" "core/diagnostics/conditioning.cpp: a kind of contour"
+set(modelWords "core/pipeline/stage_run.cpp: a stage's name" "core/pipeline/fit_engine.cpp: a stage's name" "core/synth/spec.cpp: values of the file format"
+               "core/synth/synth.h: values of the file format" "core/advise/conditioning.cpp: a kind of contour"
                "core/draw/plots.cpp: a plot's name" "gui/plots/plots_panel.cpp: a plot's name" "gui/frame/pair_bar.cpp: a kind of ellipse"
                "viz/camera_colours.h: a word of the legend")
 file(GLOB_RECURSE modelSources "${SRC}/io/*.h" "${SRC}/io/*.cpp" "${SRC}/core/*.h" "${SRC}/core/*.cpp" "${SRC}/viz/*.h" "${SRC}/viz/*.cpp"

@@ -88,7 +88,7 @@ class Shipped(InFolder):
         self.check([p for p in (root / "tests/fuzz/corpus/scene").glob("*.json") if p.name != "very_deep.json"], 11)
 
     def test_sessions_that_tests_read(self):
-        self.check((root / "tests/core/session/fixtures").glob("*.glint"), 4)
+        self.check((root / "tests/core/app/fixtures").glob("*.glint"), 4)
         self.check([p for p in (root / "tests/fuzz/corpus/session").glob("*.json") if "-damaged" not in p.name], 8)
 
     def test_damaged_sessions_of_the_corpus_are_refused(self):

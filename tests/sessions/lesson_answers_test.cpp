@@ -6,7 +6,7 @@
 
 #include "core/geometry/ellipsoid.h"
 #include "core/geometry/epipolar.h"
-#include "core/inspect/summary.h"
+#include "core/pipeline/summary.h"
 #include "tests/sessions/taught.h"
 
 namespace glint::lesson_answers {

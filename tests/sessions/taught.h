@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "core/explain/explain.h"
-#include "core/session/session.h"
+#include "core/advise/explain.h"
+#include "core/app/session.h"
 
 namespace glint::taught {
 

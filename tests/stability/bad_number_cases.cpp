@@ -6,7 +6,7 @@
 #include "core/highlight/highlight.h"
 #include "core/light/estimate.h"
 #include "core/model/reconstruct.h"
-#include "core/score/metrics.h"
+#include "core/pipeline/metrics.h"
 #include "core/surface/depth_map.h"
 #include "core/surface/mesh.h"
 #include "tests/stability/cases.h"

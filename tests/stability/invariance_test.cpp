@@ -9,11 +9,11 @@
 #include <random>
 
 #include "core/geometry/plane.h"
-#include "core/inspect/inspection.h"
 #include "core/light/estimate.h"
 #include "core/model/reconstruct.h"
 #include "core/model/walk.h"
-#include "tests/core/inspect/exact_scene.h"
+#include "core/pipeline/inspection.h"
+#include "tests/core/pipeline/exact_scene.h"
 #include "tests/stability/scene.h"
 
 namespace glint {

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/lamps/lamp_answer.h"
+#include "core/app/lamp_answer.h"
 #include "tests/viz/small_inspection.h"
 #include "viz/layers.h"
 

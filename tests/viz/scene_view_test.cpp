@@ -16,8 +16,8 @@
 #include <numbers>
 #include <set>
 
+#include "core/app/lamp_answer.h"
 #include "core/draw/contrast.h"
-#include "core/lamps/lamp_answer.h"
 #include "tests/tolerances.h"
 #include "tests/viz/image_checks.h"
 #include "tests/viz/small_inspection.h"

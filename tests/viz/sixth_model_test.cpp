@@ -7,14 +7,14 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "core/diagnostics/conditioning.h"
+#include "core/advise/conditioning.h"
+#include "core/advise/explain.h"
+#include "core/choice/tradeoff.h"
 #include "core/draw/frame_overlay.h"
-#include "core/explain/explain.h"
 #include "core/model/models.h"
 #include "core/report/report.h"
-#include "core/tradeoff/tradeoff.h"
 #include "plugins/example/flat_mirror.h"
-#include "tests/core/inspect/exact_scene.h"
+#include "tests/core/pipeline/exact_scene.h"
 #include "viz/pictures.h"
 #include "viz/style.h"
 

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "core/inspect/inspection.h"
+#include "core/pipeline/inspection.h"
 #include "viz/layers.h"
 #include "viz/walk_story.h"
 

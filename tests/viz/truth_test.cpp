@@ -11,7 +11,7 @@
 #include <cmath>
 
 #include "core/draw/plots.h"
-#include "core/inspect/frame_score.h"
+#include "core/pipeline/frame_score.h"
 #include "tests/viz/image_checks.h"
 #include "tests/viz/small_inspection.h"
 #include "viz/camera_colours.h"

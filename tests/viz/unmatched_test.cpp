@@ -7,7 +7,7 @@
 #include "core/draw/frame_overlay.h"
 #include "core/draw/plots.h"
 #include "core/draw/selection.h"
-#include "core/score/comparison.h"
+#include "core/pipeline/comparison.h"
 #include "tests/viz/small_inspection.h"
 #include "viz/frame_pick.h"
 #include "viz/timeline_data.h"

@@ -13,9 +13,9 @@
 #include <numbers>
 #include <optional>
 
+#include "core/advise/explain.h"
 #include "core/base/number_text.h"
-#include "core/explain/explain.h"
-#include "tests/core/inspect/exact_scene.h"
+#include "tests/core/pipeline/exact_scene.h"
 #include "viz/layers.h"
 #include "viz/walk_picture.h"
 #include "viz/walk_story.h"

@@ -10,10 +10,10 @@
 #include <optional>
 #include <string>
 
+#include "core/advise/explain.h"
 #include "core/base/number_text.h"
-#include "core/explain/explain.h"
 #include "core/geometry/polyline.h"
-#include "tests/core/inspect/exact_scene.h"
+#include "tests/core/pipeline/exact_scene.h"
 #include "viz/walk_picture.h"
 
 namespace glint::viz {

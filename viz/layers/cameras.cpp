@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "core/draw/frame_overlay.h"
-#include "core/inspect/frame_score.h"
+#include "core/pipeline/frame_score.h"
 #include "viz/camera_colours.h"
 #include "viz/glyphs.h"
 #include "viz/layers.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/inspect/summary.h"
+#include "core/pipeline/summary.h"
 #include "viz/glyphs.h"
 #include "viz/layers.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 
-#include "core/diagnostics/conditioning.h"
+#include "core/advise/conditioning.h"
 #include "core/draw/frame_overlay.h"
 #include "viz/annotations.h"
 #include "viz/glyphs.h"

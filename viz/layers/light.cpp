@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <numbers>
 
+#include "core/advise/conditioning.h"
 #include "core/base/number_text.h"
 #include "core/base/words.h"
-#include "core/diagnostics/conditioning.h"
 #include "viz/glyphs.h"
 #include "viz/layers.h"
 

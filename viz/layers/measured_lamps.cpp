@@ -3,9 +3,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/app/lamp_answer.h"
 #include "core/base/number_text.h"
 #include "core/base/numeric.h"
-#include "core/lamps/lamp_answer.h"
 #include "viz/glyphs.h"
 #include "viz/layers.h"
 

@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-#include "core/inspect/photograph.h"
+#include "core/pipeline/photograph.h"
 #include "viz/layers.h"
 #include "viz/scene_questions.h"
 

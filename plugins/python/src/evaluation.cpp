@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/fit/level_choice.h"
+#include "core/pipeline/level_choice.h"
 #include "core/report/evaluation.h"
 #include "core/scene/frame_name.h"
 #include "plugins/python/src/failures.h"

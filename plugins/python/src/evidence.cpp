@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/fit/evidence.h"
+#include "core/pipeline/evidence.h"
 
 #include <pybind11/stl.h>
 
 #include <cmath>
 
 #include "core/base/number_text.h"
-#include "core/fit/training.h"
 #include "core/geometry/camera.h"
+#include "core/pipeline/training.h"
 #include "plugins/python/src/arrays.h"
 #include "plugins/python/src/failures.h"
 #include "plugins/python/src/options.h"

@@ -3,7 +3,7 @@
 
 #include "core/base/number_text.h"
 #include "core/model/model.h"
-#include "core/score/comparison.h"
+#include "core/pipeline/comparison.h"
 #include "plugins/python/src/arrays.h"
 #include "plugins/python/src/failures.h"
 #include "plugins/python/src/types.h"

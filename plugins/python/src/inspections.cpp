@@ -4,15 +4,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/fit/level_choice.h"
-#include "core/inspect/live_prediction.h"
-#include "core/inspect/summary.h"
+#include "core/app/session.h"
+#include "core/pipeline/level_choice.h"
+#include "core/pipeline/live_prediction.h"
+#include "core/pipeline/summary.h"
 #include "core/report/masks.h"
 #include "core/report/report.h"
 #include "core/report/texts.h"
 #include "core/scene/frame_name.h"
 #include "core/scene/outputs.h"
-#include "core/session/session.h"
 #include "plugins/python/src/arrays.h"
 #include "plugins/python/src/evaluation.h"
 #include "plugins/python/src/failures.h"

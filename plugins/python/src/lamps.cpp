@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "core/lamps/ball_photographs.h"
+#include "core/app/ball_photographs.h"
 #include "core/report/measured_lamps.h"
 #include "core/scene/frame_name.h"
 #include "plugins/python/src/arrays.h"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/score/metrics.h"
+#include "core/pipeline/metrics.h"
 
 #include <pybind11/stl.h>
 
-#include "core/score/comparison.h"
+#include "core/pipeline/comparison.h"
 #include "plugins/python/src/arrays.h"
 #include "plugins/python/src/failures.h"
 #include "plugins/python/src/types.h"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pybind11/stl.h>
 
-#include "core/fit/fit_engine.h"
-#include "core/fit/training.h"
 #include "core/model/model.h"
+#include "core/pipeline/fit_engine.h"
+#include "core/pipeline/training.h"
 #include "plugins/python/src/arrays.h"
 #include "plugins/python/src/failures.h"
 #include "plugins/python/src/options.h"

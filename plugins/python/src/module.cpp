@@ -2,9 +2,9 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include "core/app/load_plugins.h"
 #include "core/base/limits.h"
 #include "core/base/version.h"
-#include "core/plugin/load.h"
 #include "plugins/python/src/failures.h"
 #include "plugins/python/src/options.h"
 #include "plugins/python/src/types.h"

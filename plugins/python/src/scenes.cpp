@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <set>
 
-#include "core/diagnostics/camera_check.h"
-#include "core/fit/evidence.h"
+#include "core/advise/camera_check.h"
+#include "core/app/scene_places.h"
+#include "core/pipeline/evidence.h"
 #include "core/scene/outputs.h"
 #include "core/scene/scene.h"
-#include "core/session/scene_places.h"
 #include "core/surface/mesh_policy.h"
 #include "plugins/python/src/arrays.h"
 #include "plugins/python/src/failures.h"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pybind11/stl.h>
 
-#include "core/inspect/live_prediction.h"
-#include "core/session/scene_places.h"
-#include "core/session/session.h"
+#include "core/app/scene_places.h"
+#include "core/app/session.h"
+#include "core/pipeline/live_prediction.h"
 #include "plugins/python/src/arrays.h"
 #include "plugins/python/src/failures.h"
 #include "plugins/python/src/progress.h"

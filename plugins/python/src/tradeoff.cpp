@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/tradeoff/tradeoff.h"
+#include "core/choice/tradeoff.h"
 
 #include <pybind11/stl.h>
 
+#include "core/app/tradeoff_run.h"
 #include "core/base/version.h"
 #include "core/report/evaluation.h"
 #include "core/report/report.h"
-#include "core/trials/run.h"
 #include "plugins/python/src/arrays.h"
 #include "plugins/python/src/evaluation.h"
 #include "plugins/python/src/failures.h"

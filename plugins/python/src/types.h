@@ -8,7 +8,7 @@
 #include <string>
 
 #include "core/geometry/conic.h"
-#include "core/inspect/inspection.h"
+#include "core/pipeline/inspection.h"
 #include "core/reflectance/lamp.h"
 #include "core/report/report.h"
 #include "core/scene/scene.h"

@@ -3,9 +3,9 @@
 #include <cstdio>
 #include <exception>
 
-#include "core/inspect/inspection.h"
-#include "core/inspect/photograph.h"
-#include "core/session/session.h"
+#include "core/app/session.h"
+#include "core/pipeline/inspection.h"
+#include "core/pipeline/photograph.h"
 #include "viz/pictures.h"
 
 int main(int count, char** arguments) try {

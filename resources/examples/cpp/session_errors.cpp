@@ -3,8 +3,8 @@
 #include <cstdio>
 #include <exception>
 
-#include "core/inspect/inspection.h"
-#include "core/session/session.h"
+#include "core/app/session.h"
+#include "core/pipeline/inspection.h"
 
 int main(int count, char** arguments) try {
   if (count != 2) return std::fprintf(stderr, "usage: session_errors FILE.glint\n"), 2;

@@ -9,9 +9,9 @@
 #include <QtGui>
 #include <QtWidgets>
 
+#include "core/app/session.h"
 #include "core/draw/frame_overlay.h"
 #include "core/report/measured_lamps.h"
-#include "core/session/session.h"
 #include "gui/base/actions.h"
 #include "gui/base/text.h"
 #include "gui/base/theme.h"

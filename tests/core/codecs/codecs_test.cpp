@@ -13,7 +13,7 @@
 namespace glint::codecs_tests {
 namespace {
 
-constexpr double kGreyOff = 6;  // grey values that the lossy codec of the video is off by, as in the tests of core/capture
+constexpr double kGreyOff = 6;  // grey values that the lossy codec of the video is off by, as in the tests of core/scene
 
 cv::Mat ramp(int type) {
   cv::Mat pixels(40, 56, type);

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "core/fit/evidence.h"
 #include "core/model/models.h"
+#include "core/pipeline/evidence.h"
 #include "tests/core/model/exact_views.h"
 
 /// Noisy trials with the right model: how often does the truth lie inside the predicted band? Shared by the test and by

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "core/fit/evidence.h"
-#include "core/fit/training.h"
 #include "core/model/model.h"
+#include "core/pipeline/evidence.h"
+#include "core/pipeline/training.h"
 #include "core/surface/analytic.h"
 #include "core/synth/exact_highlight.h"
 #include "tests/core/surface/surfaces.h"

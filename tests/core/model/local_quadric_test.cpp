@@ -9,7 +9,7 @@
 
 #include "core/model/models.h"
 #include "core/model/star.h"
-#include "core/score/metrics.h"
+#include "core/pipeline/metrics.h"
 #include "core/surface/mesh.h"
 #include "tests/core/model/exact_views.h"
 #include "tests/tolerances.h"

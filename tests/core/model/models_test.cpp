@@ -10,8 +10,8 @@
 #include <limits>
 #include <set>
 
-#include "core/inspect/inspection.h"
-#include "core/score/metrics.h"
+#include "core/pipeline/inspection.h"
+#include "core/pipeline/metrics.h"
 #include "tests/core/model/exact_views.h"
 #include "tests/tolerances.h"
 

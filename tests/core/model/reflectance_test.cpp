@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "core/model/models.h"
-#include "core/score/metrics.h"
+#include "core/pipeline/metrics.h"
 #include "tests/core/reflectance/radiance_views.h"
 
 namespace glint {

@@ -8,8 +8,8 @@
 #include <cmath>
 
 #include "core/model/models.h"
+#include "core/pipeline/metrics.h"
 #include "core/reflectance/lobe_terms.h"
-#include "core/score/metrics.h"
 #include "core/surface/mesh.h"
 #include "tests/core/model/exact_views.h"
 

@@ -7,7 +7,7 @@
 #include "core/light/directed_limit.h"
 #include "core/light/estimate.h"
 #include "core/model/models.h"
-#include "core/score/metrics.h"
+#include "core/pipeline/metrics.h"
 #include "tests/core/model/exact_views.h"
 
 namespace glint {

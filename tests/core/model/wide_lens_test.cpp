@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "core/geometry/camera.h"
-#include "core/inspect/inspection.h"
+#include "core/pipeline/inspection.h"
 #include "core/surface/analytic.h"
 #include "core/surface/brightest_point.h"
 #include "core/synth/exact_highlight.h"

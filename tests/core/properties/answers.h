@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/inspect/inspection.h"
+#include "core/pipeline/inspection.h"
 #include "tests/core/properties/random_scene.h"
 
 namespace glint::testing_support {

@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/number_text.h"
-#include "tests/core/inspect/exact_scene.h"
+#include "tests/core/pipeline/exact_scene.h"
 
 namespace glint {
 namespace {

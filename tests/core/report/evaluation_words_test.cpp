@@ -5,9 +5,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/diagnose/diagnosis.h"
+#include "core/advise/diagnosis.h"
 #include "core/report/report.h"
-#include "tests/core/inspect/exact_scene.h"
+#include "tests/core/pipeline/exact_scene.h"
 
 namespace glint::evaluation_words_tests {
 

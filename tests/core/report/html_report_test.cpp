@@ -8,7 +8,7 @@
 
 #include "core/base/html_text.h"
 #include "core/report/report.h"
-#include "tests/core/inspect/exact_scene.h"
+#include "tests/core/pipeline/exact_scene.h"
 
 namespace glint {
 namespace {

@@ -11,11 +11,11 @@
 #include <random>
 #include <sstream>
 
-#include "core/fit/given_labels.h"
+#include "core/pipeline/given_labels.h"
 #include "core/report/label_shapes.h"
 #include "core/report/masks.h"
 #include "core/surface/analytic.h"
-#include "tests/core/inspect/exact_scene.h"
+#include "tests/core/pipeline/exact_scene.h"
 #include "tests/core/scene/scene_fixture.h"
 #include "tests/tolerances.h"
 

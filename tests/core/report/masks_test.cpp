@@ -12,7 +12,7 @@
 #include <set>
 
 #include "core/report/labels.h"
-#include "tests/core/inspect/exact_scene.h"
+#include "tests/core/pipeline/exact_scene.h"
 
 namespace glint {
 namespace {

@@ -10,7 +10,7 @@
 #include "core/report/report.h"
 #include "core/report/share.h"
 #include "core/report/texts.h"
-#include "tests/core/inspect/exact_scene.h"
+#include "tests/core/pipeline/exact_scene.h"
 
 namespace glint::poor_fits_tests {
 

@@ -3,10 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "core/app/session.h"
 #include "core/scene/relinked.h"
 #include "core/scene/scene_files.h"
 #include "core/scene/scene_reader.h"
-#include "core/session/session.h"
 #include "tests/core/scene/scene_fixture.h"
 
 namespace glint {

@@ -5,12 +5,12 @@
 #include <cmath>
 #include <sstream>
 
-#include "core/capture/capture.h"
+#include "core/app/session.h"
+#include "core/scene/capture.h"
 #include "core/scene/convention_report.h"
-#include "core/session/session.h"
-#include "tests/core/capture/png_fixture.h"
-#include "tests/core/capture/video_fixture.h"
+#include "tests/core/scene/png_fixture.h"
 #include "tests/core/scene/scene_fixture.h"
+#include "tests/core/scene/video_fixture.h"
 
 namespace glint::posed_scene_tests {
 namespace {

@@ -7,9 +7,9 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
+#include "core/app/session.h"
 #include "core/base/permitted.h"
 #include "core/scene/scene.h"
-#include "core/session/session.h"
 #include "tests/core/scene/scene_fixture.h"
 
 namespace glint {

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/progress.h"
+#include "core/model/band.h"
+#include "core/pipeline/surface_correction.h"
+
+namespace glint {
+
+/// The light of some training views, with what their contours correct of the surface that they lie on.
+struct LightFit {
+  Outcome<LightEstimate> light;
+  std::vector<TrainingView> views;  ///< in the order given, on the corrected surface where there is a correction
+  SurfaceCorrection correction;
+};
+
+/// The one way from views to a light: estimateLight(), then what light.refine_depth and light.refine_normals ask for. A
+/// correction is kept where the views on the corrected surface keep what it promised.
+/// @param views  of one light, and of one surface where models are per surface; on the surfaces as they are given.
+LightFit fitLight(std::vector<TrainingView> views, const Scene& scene, const SurfaceCache& surfaces, const Settings& settings);
+
+/// What a model is fitted to: the views, with canonical contours under the light where the model needs them and a view has none.
+/// @param light     for models that need one; empty if none was asked for.
+/// @param pixelFit  of the pixels of exactly these views, where it is known already.
+FitInput fitInput(const HighlightModel& model, std::vector<TrainingView> views,
+                  const std::optional<Outcome<LightEstimate>>& light, const Settings& settings,
+                  std::shared_ptr<const PixelFit> pixelFit = nullptr, const ProgressFn& progress = {});
+
+/// Fits a model to that input. Fails as the model does.
+Outcome<ModelFit> fitModel(const HighlightModel& model, std::vector<TrainingView> views,
+                           const std::optional<Outcome<LightEstimate>>& light, const Settings& settings,
+                           std::shared_ptr<const PixelFit> pixelFit = nullptr, const ProgressFn& progress = {});
+
+/// A fit's band (predict.band), and remarks about it, in words.
+struct FittedBand {
+  std::shared_ptr<const Band> band;  ///< null without one
+  std::vector<std::string> remarks;
+};
+
+/// The band of a fit with its alternatives: the other lobes of a reflectance fit, reflectance beside the limit angle, each by the
+/// share of evidence that its residuals leave it; and the fit repeated with the cameras that a scale or focal length off by its
+/// stated tolerance (input.scale_tolerance, input.focal_tolerance) amounts to. A few fits; nothing is cached.
+/// @param surfaceRefined  the views' surfaces are corrected depth maps or meshes
+FittedBand bandOf(const HighlightModel& model, const ModelFit& fit, const FitInput& input, const Settings& settings,
+                  bool surfaceRefined);
+
+}  // namespace glint

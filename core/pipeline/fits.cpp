@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/pipeline/fits.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "core/base/number_text.h"
+#include "core/base/numeric.h"
+#include "core/base/words.h"
+#include "core/model/pixel_evidence.h"
+#include "core/pipeline/fit_engine.h"
+#include "core/pipeline/lobe_stage.h"
+
+namespace glint {
+
+FitInput fitInputOf(const Inspection& in, const HighlightModel& model, const FitKey& key) {
+  std::vector<TrainingView> views;
+  for (const TrainingView& v : in.views)
+    if (!v.highlight.light.empty() && in.keyFor(v.frame, v.highlight.light) == key) views.push_back(v);
+  // The stage's fit is of all views of the group: it serves where none of them lost its pixels since.
+  // Corrected normals are not those that the stage saw.
+  const bool known = havePixels(views) && !in.corrections.count(key);
+  const auto light = in.lights.find(key);
+  FitInput input = fitInput(model, std::move(views), light == in.lights.end() ? std::nullopt : std::optional(light->second),
+                            in.request.settings, known ? pixelFitFor(in, key) : nullptr);
+  if (const auto failed = in.unexplained.find(key); known && failed != in.unexplained.end()) input.unexplained = failed->second;
+  return input;
+}
+
+FittedBand bandOf(const Inspection& in, const HighlightModel& model, const ModelResult::Fit& fit) {
+  if (!fit.fit) return {};
+  return bandOf(model, *fit.fit, fitInputOf(in, model, fit.key()), in.request.settings,
+                model.needsLight() && in.corrections.count(fit.key()) > 0);
+}
+
+bool isSeen(const Inspection& r, const std::string& light) {
+  return std::any_of(r.evidence.begin(), r.evidence.end(), [&](const FrameEvidence& e) {
+    return std::any_of(e.highlights.begin(), e.highlights.end(), [&](const Highlight& h) { return h.light == light; });
+  });
+}
+
+std::string mergedRemark(const Inspection& r, const ModelFit& fit) {
+  std::map<std::string, int> on;
+  for (const int frame : fit.frames)
+    for (const std::string& light : r.scene->frames[std::size_t(frame)].lightsOn)
+      if (light != fit.light && isOn(*r.scene, r.request.whatIf, frame, light)) ++on[light];
+  std::string names;
+  int most = 0;
+  for (const auto& [light, frames] : on) {
+    if (2 * frames < static_cast<int>(fit.frames.size()) || isSeen(r, light)) continue;
+    names += (names.empty() ? "" : ", ") + light;
+    most = std::max(most, frames);
+  }
+  if (names.empty()) return "";
+  return "also on in " + std::to_string(most) + " of " + std::to_string(fit.frames.size()) +
+         " training frames, without a separate highlight: " + names +
+         "; where highlights of several lights merge, the estimated light lies between these lights";
+}
+
+std::string repeatedRemark(const Inspection& r, const ModelFit& fit) {
+  std::string names;
+  int count = 0;
+  for (const int frame : r.train.frames) {
+    const std::vector<int>& excluded = r.request.excluded;
+    if (std::find(excluded.begin(), excluded.end(), frame) != excluded.end()) continue;
+    if (r.keyFor(frame, fit.light).surface != fit.surface) continue;
+    const std::vector<Highlight>& highlights = r.evidence[std::size_t(frame)].highlights;
+    if (std::none_of(highlights.begin(), highlights.end(), [&](const Highlight& h) { return h.light == fit.light; })) continue;
+    if (std::any_of(r.views.begin(), r.views.end(), [&](const TrainingView& v) { return v.frame == frame; })) continue;
+    names += (count++ == 0 ? "" : ", ") + r.scene->frames[std::size_t(frame)].id;
+  }
+  if (count == 0) return "";
+  return std::to_string(count) + (count == 1 ? " training frame repeats" : " training frames repeat") +
+         " another one exactly and count once: " + names;
+}
+
+std::string byHandRemark(const Inspection& r, const ModelFit& fit) {
+  std::string names;
+  for (const TrainingView& v : r.views) {
+    if (v.highlight.byHand.empty() || !v.seen || v.highlight.light != fit.light) continue;
+    if (std::find(fit.frames.begin(), fit.frames.end(), v.frame) == fit.frames.end()) continue;
+    names += (names.empty() ? "" : "; ") + ("frame " + r.scene->frames[std::size_t(v.frame)].id + ": " + v.highlight.byHand);
+  }
+  return names;
+}
+
+namespace {
+/// The fit of reflectance that tells the frame's lobe best; null = no fit of any light.
+const ModelResult::Fit* reflectanceFit(const Inspection& in, int frame) {
+  const auto result = in.models.find(radianceModel().id());
+  if (result == in.models.end()) return nullptr;
+  const std::string surface = in.surfaces ? in.surfaces->keyOf(frame) : "";
+  const std::vector<Highlight>& shown = in.evidence[std::size_t(frame)].highlights;
+  const auto score = [&](const ModelResult::Fit& f) {
+    const bool usable = f.fit && f.fit->as<ReflectanceFit>();
+    const bool ofFrame = (!f.surface || *f.surface == surface) &&
+                         std::any_of(shown.begin(), shown.end(), [&](const Highlight& h) { return h.light == f.light; });
+    return 2 * int(usable) + int(ofFrame);
+  };
+  const std::vector<ModelResult::Fit>& fits = result->second.fits;
+  const auto best = std::max_element(fits.begin(), fits.end(),
+                                     [&](const ModelResult::Fit& a, const ModelResult::Fit& b) { return score(a) < score(b); });
+  return best == fits.end() ? nullptr : &*best;
+}
+
+/// A lobe from the limit angle of the frame's light, else of any.
+std::optional<FittedLobe> lobeOfLimitAngle(const Inspection& in, int frame) {
+  std::optional<FittedLobe> found;
+  for (const TrainingView& v : in.views) {
+    if (found && v.frame != frame) continue;
+    const double q = v.highlight.level;
+    const LightEstimate* const light = in.lightFor(v.frame, v.highlight.light);
+    if (!v.seen || !(q > 0 && q < 1) || !light) continue;
+    const double alpha = light->limitAngle;
+    if (!(alpha > 0)) continue;
+    const std::string origin = formatted("limit angle %.3g\u00b0 at level %.3g, light ", degrees(alpha), q);
+    found = FittedLobe{Lobe::TorranceSparrow, std::tan(alpha) / std::sqrt(-std::log(q)), origin + v.highlight.light};
+  }
+  return found;
+}
+}  // namespace
+
+Outcome<FittedLobe> fittedLobe(const Inspection& in, int frame) {
+  require(in.scene && frame >= 0 && frame < int(in.scene->frames.size()), "fittedLobe: no such frame");
+  if (in.request.whatIf.synthesise)
+    return Failure{Reason::NotSupported, "the contours are synthesised, so no fit describes the captured scene"};
+  const ModelResult::Fit* reflectance = reflectanceFit(in, frame);
+  if (reflectance && reflectance->fit)
+    if (const ReflectanceFit* const fit = reflectance->fit->as<ReflectanceFit>())
+      return FittedLobe{fit->lobe, fit->roughness.mean, "reflectance, " + lightName(reflectance->light)};
+  if (const std::optional<FittedLobe> lobe = lobeOfLimitAngle(in, frame)) return *lobe;
+  if (reflectance && reflectance->failure()) return *reflectance->failure();
+  return Failure{Reason::NotSupported, "no computed model gives the lobe (reflectance does, or a model that needs the light)"};
+}
+
+}  // namespace glint

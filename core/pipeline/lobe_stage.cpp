@@ -1,0 +1,315 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/pipeline/lobe_stage.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <map>
+#include <set>
+
+#include "core/base/number_text.h"
+#include "core/base/progress.h"
+#include "core/model/model.h"
+#include "core/model/pixel_evidence.h"
+#include "core/model/reflectance_settings.h"
+#include "core/pipeline/depth_motion.h"
+#include "core/pipeline/evidence.h"
+#include "core/pipeline/hand_edits.h"
+#include "core/pipeline/highlight_motion.h"
+#include "core/pipeline/stage_inputs.h"
+#include "core/pipeline/training.h"
+#include "core/reflectance/pixel_fit.h"
+
+namespace glint {
+
+namespace {
+
+bool trains(const Inspection& r, int frame) {
+  return std::binary_search(r.train.frames.begin(), r.train.frames.end(), frame) &&
+         std::find(r.request.excluded.begin(), r.request.excluded.end(), frame) == r.request.excluded.end();
+}
+
+/// What else is bright in the frame.
+std::vector<Highlight> ofOthers(const FrameEvidence& e, const std::string& light) {
+  std::vector<Highlight> others;
+  for (const Highlight& h : e.highlights)
+    if (h.light != light) others.push_back(h);
+  for (const WithheldTexture& t : e.textures) others.push_back(t.highlight);
+  return others;
+}
+
+bool wasDetected(const FrameEvidence& e) {
+  return e.frame >= 0 && !e.highlights.empty() &&
+         std::none_of(e.highlights.begin(), e.highlights.end(), [](const Highlight& h) { return h.fromScene; });
+}
+
+/// The lobe of the detection is the one that the pixels show, whatever the model is told to take: contours do not depend on it.
+constexpr std::array<const char*, 2> kOfTheModel{"fit.lobe", "fit.light_size"};
+Settings anyLobe(Settings settings) {
+  for (const char* key : kOfTheModel) settings.reset(key);
+  return settings;
+}
+bool takesAnyLobe(const Settings& settings) {
+  const Settings any = anyLobe(settings);
+  return std::all_of(kOfTheModel.begin(), kOfTheModel.end(),
+                     [&](const char* key) { return settings.text(key) == any.text(key); });
+}
+
+/// One light's. What fails is kept with its question.
+void fitLobe(Inspection& r, const FitKey& key, const std::vector<TrainingView>& views, const ProgressFn& goesOn) {
+  // The start is the same whatever the settings of the light are: they do not matter to where the fit ends.
+  const Outcome<LightEstimate> estimate = estimateLight(views, Settings{});
+  const std::optional<LightEstimate> light = estimate ? std::optional(*estimate) : std::nullopt;
+  const Settings settings = anyLobe(r.request.settings);
+  Outcome<PixelFit> fit = fitViewsPixels(views, light, settings, goesOn);
+  ++r.work.pixelFits;
+  if (fit) {
+    r.pixelFits.insert_or_assign(key, std::make_shared<const PixelFit>(*std::move(fit)));
+    return;
+  }
+  r.pixelFits.insert_or_assign(key, fit.failure());
+  r.unexplained.insert_or_assign(
+      key, std::make_shared<const UnexplainedPixels>(UnexplainedPixels{views, light, settings, fit.failure()}));
+}
+
+}  // namespace
+
+bool looksAtPixels(const InspectionRequest& request) {
+  const std::string& evidence = request.settings.text("fit.evidence");
+  return request.settings.text("detect.background") == "lobe" || evidence == "auto" || evidence == "pixels";
+}
+
+bool worthALook(const Scene& scene, const InspectionRequest& request, const std::vector<const Inspection*>& known) {
+  const auto takesPixels = [](const std::string& m) { return modelByName(m).takesPixels(); };
+  if (!looksAtPixels(request) || std::all_of(request.models.begin(), request.models.end(), takesPixels)) return false;
+  const auto withPixels = [](const Inspection* k) { return !k->pixelsLeft; };
+  const auto newest =
+      std::find_if(known.begin(), known.end(), [&](const Inspection* k) { return withPixels(k) && !k->models.empty(); });
+  if (newest == known.end()) return true;
+  // Contours that are found again would move twice at every step of a drag: their first ones serve where there are no others yet.
+  if (DetectSettings(request.settings).background == BackgroundUse::Lobe) return false;
+  StageInputs asked;
+  asked.lobes = lobeInputs(request, parseTrainSpec(request.train, scene), lightsAreOpenIn(scene, request));
+  const auto hasLobes = [&](const Inspection* k) { return withPixels(k) && asked.same(Stage::Lobes, k->inputs); };
+  const auto isShown = [&](const std::string& m) { return takesPixels(m) && (*newest)->models.count(m); };
+  return std::none_of(known.begin(), known.end(), hasLobes) &&
+         std::none_of(request.models.begin(), request.models.end(), isShown);
+}
+
+void fitLobes(Inspection& r, const SurfaceOfFrame& surfaceOf, bool together, const ProgressFn& progress) {
+  if (!looksAtPixels(r.request)) return;
+  std::vector<int> frames;
+  for (const int f : r.train.frames)
+    if (trains(r, f) && wasDetected(r.evidence[static_cast<std::size_t>(f)])) frames.push_back(f);
+  struct Seen {
+    std::vector<TrainingView> views;
+    std::vector<std::pair<int, int>> ids;
+  };
+  std::vector<Seen> seen(frames.size());
+  const EvidenceInputs& asked = r.inputs.lobes->evidence;
+  const bool sameLevel = together || r.inputs.evidence->detect.level == asked.detect.level;
+  parallelFor(
+      static_cast<int>(frames.size()),
+      [&](int n) {
+        const int f = frames[static_cast<std::size_t>(n)];
+        const Frame& frame = r.scene->frames[static_cast<std::size_t>(f)];
+        FrameEvidence evidence = sameLevel ? r.evidence[static_cast<std::size_t>(f)] : evidenceFor(*r.scene, f, asked);
+        if (!sameLevel) dropTextures(evidence, r.evidence[static_cast<std::size_t>(f)].textures);
+        const std::shared_ptr<const Surface> surface = surfaceOf(f);
+        const Outcome<LinearPixels> pixels = pixelsOf(frame, asked.source, asked.detect, evidence.separated);
+        if (!surface || !pixels) return;
+        for (int h = 0; h < static_cast<int>(evidence.highlights.size()); ++h) {
+          const Highlight& highlight = evidence.highlights[static_cast<std::size_t>(h)];
+          if (highlight.light.empty() || isSwitchedOff(r.request.whatIf, f, highlight.light) ||
+              isIgnored(r.request.whatIf, f, highlight))
+            continue;
+          TrainingView view = trainingView(evidence, h, frame.camera, surface);
+          if (!view.seen) continue;
+          Outcome<PixelPatch> patch =
+              pixelPatch(*pixels, frame.camera, *surface, f, highlight, ofOthers(evidence, highlight.light));
+          if (!patch) continue;
+          view.pixels = std::make_shared<PixelPatch>(*std::move(patch));
+          seen[static_cast<std::size_t>(n)].views.push_back(std::move(view));
+          seen[static_cast<std::size_t>(n)].ids.emplace_back(f, h);
+        }
+      },
+      progress, "pixels");
+  std::map<FitKey, std::vector<TrainingView>> groups;
+  for (const Seen& s : seen)
+    for (std::size_t i = 0; i < s.views.size(); ++i) {
+      r.patches[s.ids[i]] = s.views[i].pixels;
+      groups[r.keyFor(s.views[i].frame, s.views[i].highlight.light)].push_back(s.views[i]);
+    }
+  int done = 0;
+  const auto goesOn = [&](const StageEvent&) { return report(progress, {"lobe", done, static_cast<int>(groups.size())}); };
+  for (const auto& [key, views] : groups) {
+    if (!goesOn({})) throw Stopped{};
+    fitLobe(r, key, views, goesOn);
+    ++done;
+  }
+}
+
+std::shared_ptr<const PixelFit> pixelFitFor(const Inspection& r, const FitKey& key) {
+  const auto fit = r.pixelFits.find(key);
+  return fit != r.pixelFits.end() && fit->second && takesAnyLobe(r.request.settings) ? *fit->second : nullptr;
+}
+
+std::optional<FrameEvidence> contouredAgain(const Inspection& lobes, const Scene& scene, const EvidenceInputs& in, int f,
+                                            const FrameEvidence& detected, const std::shared_ptr<const Surface>& surface) {
+  if (!wasDetected(detected) || !surface) return std::nullopt;
+  const Frame& frame = scene.frames[static_cast<std::size_t>(f)];
+  const Outcome<LinearPixels> pixels = pixelsOf(frame, in.source, in.detect);
+  if (!pixels) return std::nullopt;
+  std::map<std::string, std::vector<std::size_t>> byLight;
+  for (std::size_t h = 0; h < detected.highlights.size(); ++h) byLight[detected.highlights[h].light].push_back(h);
+  std::optional<FrameEvidence> again;
+  for (const auto& [light, indices] : byLight) {
+    const auto fit = lobes.pixelFits.find(lobes.keyFor(f, light));
+    if (light.empty() || fit == lobes.pixelFits.end() || !fit->second) continue;
+    const PixelFit& lobe = **fit->second;
+    std::vector<Highlight> found;
+    for (const std::size_t h : indices) found.push_back(detected.highlights[h]);
+    Outcome<std::vector<Highlight>> traced =
+        contourWithLobe(*pixels, frame.camera, *surface, f, found, ofOthers(detected, light), lobe.model, lobe.background,
+                        detectOptionsFor(frame, in.source, in.detect));
+    if (!traced) continue;
+    if (!again) again = detected;
+    for (std::size_t k = 0; k < indices.size(); ++k) again->highlights[indices[k]] = std::move((*traced)[k]);
+  }
+  return again;
+}
+
+void contourAgain(Inspection& r, const SurfaceOfFrame& surfaceOf, const ProgressFn& progress) {
+  if (r.inputs.evidence->detect.background != BackgroundUse::Lobe || r.pixelFits.empty()) return;
+  r.detected.resize(r.evidence.size());
+  std::vector<int> frames;
+  for (int f = 0; f < static_cast<int>(r.evidence.size()); ++f)
+    if (wasDetected(r.evidence[static_cast<std::size_t>(f)]) && r.detected[static_cast<std::size_t>(f)].frame < 0)
+      frames.push_back(f);
+  std::atomic<int> changed{0};
+  parallelFor(
+      static_cast<int>(frames.size()),
+      [&](int n) {
+        const int f = frames[static_cast<std::size_t>(n)];
+        FrameEvidence& evidence = r.evidence[static_cast<std::size_t>(f)];
+        r.detected[static_cast<std::size_t>(f)] = evidence;
+        if (std::optional<FrameEvidence> again = contouredAgain(r, *r.scene, *r.inputs.evidence, f, evidence, surfaceOf(f))) {
+          evidence = *std::move(again);
+          ++changed;
+        }
+      },
+      progress, "contour again");
+  r.work.framesContouredAgain += changed;
+}
+
+void addDetectedLevels(const Inspection& r, const SurfaceOfFrame& surfaceOf, FrameEvidence& evidence) {
+  constexpr double kSameLevel = 1e-6;  // levels are typed with a few digits
+  if (r.request.settings.text("fit.evidence") != "levels" || !wasDetected(evidence)) return;
+  const std::size_t f = static_cast<std::size_t>(evidence.frame);
+  const bool withLobe = f < r.detected.size() && r.detected[f].frame >= 0;
+  for (const double level : listedLevels(r.request.settings)) {
+    if (!(level > 0 && level < 1) || std::abs(level - r.inputs.evidence->detect.level) < kSameLevel) continue;
+    EvidenceInputs at = *r.inputs.evidence;
+    at.detect = at.detect.at(level);
+    std::optional<FrameEvidence> found;
+    if (withLobe) found = contouredAgain(r, *r.scene, at, evidence.frame, r.detected[f], surfaceOf(evidence.frame));
+    if (!found) found = evidenceFor(*r.scene, evidence.frame, at);
+    std::erase_if(found->highlights, [&](const Highlight& h) { return std::abs(h.level - level) > kSameLevel; });
+    addOtherLevels(found->highlights, evidence.highlights);
+  }
+  for (std::size_t h = 0; h < evidence.highlights.size(); ++h)
+    if (r.request.whatIf.highlights.count({evidence.frame, evidence.asFound(static_cast<int>(h))}))
+      evidence.highlights[h].otherLevels.clear();
+  for (Highlight& h : evidence.highlights)
+    if (!h.byHand.empty()) h.otherLevels.clear();
+}
+
+void attachPixels(Inspection& r) {
+  if (r.request.noisePx > 0) return;
+  std::map<int, int> next;  // views come in the order of their frame's highlights
+  for (TrainingView& v : r.views) {
+    const FrameEvidence& evidence = r.evidence[static_cast<std::size_t>(v.frame)];
+    const int index = evidence.asFound(next[v.frame]++);
+    if (r.request.whatIf.highlights.count({v.frame, index}) || !v.highlight.byHand.empty()) continue;
+    for (auto p = r.patches.lower_bound({v.frame, 0}); p != r.patches.end() && p->first.first == v.frame && !v.pixels; ++p)
+      if (p->second->light == v.highlight.light && contains(v.highlight.contour, p->second->peak)) v.pixels = p->second;
+  }
+}
+
+namespace {
+
+using Verdicts = std::map<int, std::vector<MotionVerdict>>;
+
+bool waits(const std::vector<MotionVerdict>& verdicts) {
+  return std::any_of(verdicts.begin(), verdicts.end(),
+                     [](const MotionVerdict& v) { return v.kind == MotionVerdict::Kind::Waiting; });
+}
+
+/// Null if it cannot be read: its user reports that.
+std::shared_ptr<const Surface> surfaceIfAny(const SurfaceOfFrame& surfaceOf, int frame) {
+  try {
+    return surfaceOf(frame);
+  } catch (const InputError&) {
+    return nullptr;
+  }
+}
+
+}  // namespace
+
+void rejectTextures(Inspection& r, std::vector<int> frames, const SurfaceOfFrame& surfaceOf,
+                    const std::function<void(const std::vector<int>&)>& gather, const ProgressFn& progress) {
+  if (motionUse(r.request.settings) != MotionUse::Reject || r.request.whatIf.synthesise) return;
+  const std::vector<std::vector<int>> panels = motionPanels(*r.scene, *r.surfaces);
+  std::erase_if(frames, [&](int f) { return panels[static_cast<std::size_t>(f)].empty(); });
+  const PanelDepths depths(*r.scene, r.request.settings);
+  Verdicts verdicts;
+  while (!frames.empty()) {
+    std::vector<std::vector<MotionVerdict>> judged(frames.size());
+    parallelFor(
+        static_cast<int>(frames.size()),
+        [&](int n) {
+          const int f = frames[static_cast<std::size_t>(n)];
+          judged[static_cast<std::size_t>(n)] = judgedByMotion(
+              *r.scene, f, panels[static_cast<std::size_t>(f)], r.evidence, [&] { return surfaceIfAny(surfaceOf, f); }, depths,
+              r.request.settings);
+        },
+        progress, "motion");
+    std::set<int> missing, again;
+    for (std::size_t n = 0; n < frames.size(); ++n) {
+      const int f = frames[n];
+      if (waits(judged[n])) {
+        again.insert(f);
+        for (const int other : panels[static_cast<std::size_t>(f)])
+          if (r.evidence[static_cast<std::size_t>(other)].frame < 0) missing.insert(other);
+      }
+      verdicts[f] = std::move(judged[n]);
+    }
+    if (!missing.empty()) gather({missing.begin(), missing.end()});
+    again.insert(missing.begin(), missing.end());
+    frames.assign(again.begin(), again.end());
+  }
+  // Textures go only now, because every frame was judged by the full evidence of the others.
+  for (const auto& [f, said] : verdicts)
+    if (!said.empty())
+      withholdTextures(r.evidence[static_cast<std::size_t>(f)], said, r.scene->frames[static_cast<std::size_t>(f)].camera);
+}
+
+std::string textureRemark(const Inspection& r) {
+  std::string names;
+  std::size_t frames = 0, spots = 0;
+  for (const int f : r.train.frames) {
+    const std::size_t here = r.evidence[static_cast<std::size_t>(f)].textures.size();
+    if (here == 0 || !r.isTraining(f)) continue;
+    names += (frames++ == 0 ? "" : ", ") + r.scene->frames[static_cast<std::size_t>(f)].id;
+    spots += here;
+  }
+  if (frames == 0) return "";
+  return formatted(
+             "%zu bright spot%s of %zu training frame%s %s on the surface while highlights move, and %s no evidence "
+             "(texture, detect.motion): ",
+             spots, spots == 1 ? "" : "s", frames, frames == 1 ? "" : "s", spots == 1 ? "stays" : "stay",
+             spots == 1 ? "is" : "are") +
+         names;
+}
+
+}  // namespace glint
