@@ -26,16 +26,16 @@ namespace glint {
 namespace {
 
 /// Counts what is alive, and the most there ever were.
-class Held {
+class HeldFrame {
  public:
-  Held(std::atomic<int>& now, std::atomic<int>& most) : now_(now) {
+  HeldFrame(std::atomic<int>& now, std::atomic<int>& most) : now_(now) {
     const int count = ++now_;
     for (int seen = most; seen < count && !most.compare_exchange_weak(seen, count);) {
     }
   }
-  ~Held() { --now_; }
-  Held(const Held&) = delete;
-  Held& operator=(const Held&) = delete;
+  ~HeldFrame() { --now_; }
+  HeldFrame(const HeldFrame&) = delete;
+  HeldFrame& operator=(const HeldFrame&) = delete;
 
  private:
   std::atomic<int>& now_;
@@ -151,7 +151,7 @@ void StageRun::gather(const std::vector<int>& frames) {
       static_cast<int>(frames.size()),
       [&](int n) {
         const int i = frames[n];
-        const Held inMemory(held, most);
+        const HeldFrame inMemory(held, most);
         r_.evidence[i] = evidenceFor(*r_.scene, i, *r_.inputs.evidence);
       },
       progress_, "detect");
