@@ -174,3 +174,15 @@ def test_live_poses():
     (model, light, prediction), = predictor.predict("live", pose)
     assert (model, light) == ("canonical", "lamp")
     assert glint.compare_contours(contour, prediction[0].contour).contour_error_px < 0.35
+
+
+def test_the_lamp_of_a_lobe_says_its_shape_and_place():
+    plane, views = glint.Surface.analytic("plane"), scenes.plane_views(6)
+    fit = glint.fit("reflectance", training(views, plane))
+    lamp = fit.lamp
+    assert lamp["radius"] == fit.light_radius and fit.roughness_ratio is None
+    points = lamp["position"] if lamp["shape"] != "segment" else lamp["segment"].mean(axis=0)
+    assert np.allclose(points, fit.light_estimate.position, atol=1e-12)
+    assert len(lamp["outline"]) == {"point": 0, "sphere": 3, "segment": 1}[lamp["shape"]]
+    assert all(chain.ndim == 2 and chain.shape[1] == 3 for chain in lamp["outline"])
+    assert glint.fit("limit-angle", training(views, plane)).lamp is None

@@ -103,7 +103,12 @@ TEST(Pipeline, AStopLeavesTheEvidence) {
   Pipeline p(exactScene(sheet(0.3), kFrames));
   EXPECT_THROW((void)p.everything(pipelineRequest(), [](const StageEvent& e) { return e.stage != "light"; }), Stopped);
   EXPECT_FALSE(p.known(pipelineRequest()));
-  const Pipeline::Answer all = p.everything(pipelineRequest());
+  std::atomic<bool> detects{false};
+  const Pipeline::Answer all = p.everything(pipelineRequest(), [&](const StageEvent& e) {
+    detects = detects || e.stage == "detect";
+    return true;
+  });
+  EXPECT_FALSE(detects);
   EXPECT_EQ(counts(p), (std::vector<int>{kFrames, 1, 2, 2 * kFrames}));
   EXPECT_EQ(digestOf(*all), digestOf(inspect(p.scene(), pipelineRequest())));
 }
