@@ -20,13 +20,13 @@ namespace {
 
 using namespace testing_support;
 
-constexpr int kFrames = 12;
+constexpr int kPhotographs = 12;
 
 /// Exact contours of a ball, with a mesh of it that has bumps of 10 mrad, half as wide as the ball.
 class RefinedNormalsTest : public testing::Test {
  protected:
   std::shared_ptr<Scene> bumpy(double slope = 0.01) {
-    auto scene = exactScene(sphere(0.5), kFrames);
+    auto scene = exactScene(sphere(0.5), kPhotographs);
     const std::filesystem::path file = folder_.path() / ("ball" + std::to_string(slope) + ".ply");
     test::writePly(test::bumpyMesh(sphere(0.5), slope, 0.12, 7, 200), file);
     scene->surfaces["body"] = MeshFile{{file}};
@@ -74,7 +74,7 @@ TEST_F(RefinedNormalsTest, HeldOutFramesGainForEveryModel) {
   EXPECT_EQ(r.surface, "body");
   EXPECT_LT(r.refinedPx, 0.2 * r.plainPx);
   for (const TrainingView& v : refined.views) EXPECT_EQ(v.surface, r.mesh);
-  for (int frame = 0; frame < kFrames; ++frame) EXPECT_EQ(*surfaceFor(refined, frame, "lamp"), r.mesh);
+  for (int frame = 0; frame < kPhotographs; ++frame) EXPECT_EQ(*surfaceFor(refined, frame, "lamp"), r.mesh);
 }
 
 TEST_F(RefinedNormalsTest, IncrementalEqualsFresh) {
@@ -98,7 +98,7 @@ TEST_F(RefinedNormalsTest, IncrementalEqualsFresh) {
 
 // Nothing is corrected that is not a mesh with normals of its own, seen by all views.
 TEST_F(RefinedNormalsTest, WhatHasNoNormalsToTurnStays) {
-  EXPECT_TRUE(inspect(exactScene(sphere(0.5), kFrames), request(true)).corrections.empty()) << "an exact shape";
+  EXPECT_TRUE(inspect(exactScene(sphere(0.5), kPhotographs), request(true)).corrections.empty()) << "an exact shape";
   EXPECT_TRUE(inspect(bumpy(0), request(true)).corrections.empty()) << "a mesh without bumps";
   const auto scene = bumpy();
   InspectionRequest facets = request(true), triangulated = request(true);
