@@ -28,6 +28,12 @@ const std::set<std::string> kNoKnobs{"fit.most_residual", "predict.band", "input
 /// What only this model looks at.
 const std::set<std::string> kOfReflectance{"fit.evidence", "fit.levels", "fit.lobe", "fit.light_size"};
 
+/// The value of any setting, also of one that the program does not have.
+SettingValue valueIn(const Settings& settings, const ParamSpec& spec) {
+  const auto set = settings.values().find(spec.key);
+  return set == settings.values().end() ? spec.defaultValue : set->second;
+}
+
 }  // namespace
 
 std::string textOf(const SettingValue& value) {
@@ -51,7 +57,7 @@ std::vector<Knob> knobsOf(const Settings& base, const std::vector<ParamSpec>& pa
     if (!stages.count(spec.stage) || kNoKnobs.count(spec.key)) continue;
     Knob knob{spec.key, {}};
     if (kOfReflectance.count(spec.key)) knob.onlyModel = radianceModel().id();
-    const SettingValue now = base.value(spec.key);
+    const SettingValue now = valueIn(base, spec);
     if (std::holds_alternative<bool>(spec.defaultValue)) {
       knob.values = {false, true};
     } else if (std::holds_alternative<std::string>(spec.defaultValue)) {

@@ -123,9 +123,11 @@ Outcome<ContourEvidence> gatherEvidence(const std::vector<RadianceView>& views, 
   origin /= double(all.points.size());
   scale /= double(all.points.size());
   if (!(scale > 0) || !std::isfinite(scale)) return Failure{Reason::NotFinite, "camera distance"};
-  for (Evidence& e : all.points)
+  for (Evidence& e : all.points) {
     for (Seen* s : {&e.measured.at, &e.measured.left, &e.measured.right, &e.measured.up, &e.measured.down})
       s->position = (s->position - origin) / scale;
+    e.foot = e.measured;
+  }
   return all;
 }
 

@@ -26,7 +26,7 @@ struct Evidence {
   int view = 0, frame = 0;  ///< frame: index into ContourEvidence::frames
   double level = 0;         ///< sqrt(-log q)
   Pixel observed{0, 0};
-  Stencil measured, foot;
+  Stencil measured, foot;    ///< the foot begins at the measured pixel
   double offsetPx = 0;       ///< from foot to measured, positive away from the peak
   double pixelsPerUnit = 1;  ///< 1 / |d g / d pixel| at the foot
   double curvature = 0;      ///< of the contour there, 1/px

@@ -31,7 +31,7 @@ endforeach()
 
 # A small number in core is a threshold, and a threshold has its reason beside it: a comment on its line or on the one above. Exempt are units (`Us * 1e-3`), ranges of inputs, and tables of settings.
 file(GLOB_RECURSE coreSources "${SRC}/io/*.h" "${SRC}/io/*.cpp" "${SRC}/core/*.h" "${SRC}/core/*.cpp")
-list(FILTER coreSources EXCLUDE REGEX "core/(base/settings[.]cpp|tradeoff/knobs[.]cpp)")
+list(FILTER coreSources EXCLUDE REGEX "core/(base/settings[.]cpp|choice/tradeoff_knobs[.]cpp)")
 foreach(f IN LISTS coreSources)
   file(READ "${f}" text)
   string(REGEX REPLACE "[][;]" " " text "${text}")  # CMake's list syntax

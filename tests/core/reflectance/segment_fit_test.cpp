@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "core/reflectance/contour_evidence.h"
 #include "core/reflectance/extended_fit.h"
 #include "core/reflectance/fit.h"
 #include "tests/core/reflectance/radiance_views.h"
@@ -44,6 +45,18 @@ Light guess(double scale = 1) { return Light::at(scale * (1.1 * kMiddle + Eigen:
 Outcome<RadianceFit> search(const std::vector<RadianceView>& views, const Light& light) {
   return searchRadiance(kMicrofacets, views, light, widthOf(Lobe::TorranceSparrow, 1.5 * kSegmentRoughness, 0.5),
                         lampChoices("auto"));
+}
+
+// Before the first round moves them, they choose how finely a lamp is sampled.
+TEST(ContourEvidence, FeetBeginAtTheMeasuredPixels) {
+  const auto evidence = lobe::gatherEvidence(radianceViews(longLamp(ellipsoidScene(6))), 16);
+  ASSERT_TRUE(evidence) << evidence.failure().message();
+  ASSERT_EQ(evidence->points.size(), 6u * 16);
+  for (const lobe::Evidence& e : evidence->points) {
+    EXPECT_EQ(e.foot.at.position, e.measured.at.position);
+    EXPECT_EQ(e.foot.at.toCamera, e.measured.at.toCamera);
+    EXPECT_EQ(e.foot.at.axes.normal, e.measured.at.axes.normal);
+  }
 }
 
 TEST(FitSegment, NominalLampOfSixtyCentimetres) {

@@ -64,7 +64,7 @@ TEST(PoorFits, PagesSayItAndGiveTheNumbers) {
   // Dashed and pale over the photograph and on the surface; frame 0 trains, where an ok fit is solid.
   const std::string full = data["models"][1]["colour"];
   ASSERT_EQ(data["models"][1]["id"], "dual");
-  int lines = 0;
+  int lines = 0, contours = 0;
   for (const json& frame : data["frames"]) {
     for (const json& line : frame["lines"]) {
       if (line["model"] == "primal") EXPECT_EQ(line["dash"], frame["role"] == "training" ? 0 : 1);
@@ -73,13 +73,16 @@ TEST(PoorFits, PagesSayItAndGiveTheNumbers) {
       EXPECT_EQ(line["dash"], 1);
       EXPECT_NE(line["colour"], full);
     }
-    for (const json& contour : frame["on_surface"]) {
-      EXPECT_EQ(contour["dashed"], contour["model"] == "dual");
-      if (contour["model"] == "dual") EXPECT_NE(contour["colour"], full);
-      if (contour["model"] == "primal") EXPECT_EQ(contour["colour"], data["models"][0]["colour"]);
+    for (const json& thing : frame["things"]) {
+      if (thing["role"] != "predicted-contour") continue;
+      ++contours;
+      EXPECT_EQ(thing.value("poor", false), thing["model"] == "dual");
+      if (thing["model"] == "dual") EXPECT_NE(thing["colour"], full);
+      if (thing["model"] == "primal") EXPECT_EQ(thing["colour"], data["models"][0]["colour"]);
     }
   }
   EXPECT_EQ(lines, 6);
+  EXPECT_EQ(contours, 12);
 }
 
 TEST(PoorFits, PredictionsAndLabelsSayIt) {
