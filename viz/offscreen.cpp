@@ -130,10 +130,4 @@ Image Offscreen::render(const SceneView& view, bool transparent) {
   return image;
 }
 
-Outcome<Image> renderOffscreen(const SceneView& view, int width, int height) {
-  Outcome<std::unique_ptr<Offscreen>> target = Offscreen::create(width, height);
-  if (!target) return target.failure();
-  return (*target)->render(view);
-}
-
 }  // namespace glint::viz

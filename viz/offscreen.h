@@ -50,7 +50,4 @@ class Offscreen {
   std::unique_ptr<Impl> impl_;
 };
 
-/// One picture of a view.
-Outcome<Image> renderOffscreen(const SceneView& view, int width, int height);
-
 }  // namespace glint::viz

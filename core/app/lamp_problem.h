@@ -33,7 +33,6 @@ class LampProblem {
 
   const BallProjection& view() const { return view_; }
   double scale() const { return scale_; }
-  std::size_t ballCount() const { return balls_.size(); }
   /// Outlines: value + root(covariance) z.
   const Eigen::VectorXd& outlines() const { return z_; }
   void setOutlines(const Eigen::VectorXd& z) { z_ = z; }

@@ -17,7 +17,6 @@ constexpr double kBesidePx = 0.75;  // px from the contour: beyond its own error
 constexpr double kJumpPx =
     5;  // footprints of a pixel: a surface seen at 80 degrees rises by less over the 1.5 px between both sides
 constexpr double kLeastEdgeShare = 0.02;  // of the contour: less is a single sample at the crease of a mesh
-constexpr const char* kCategoryStart = "highlight ";
 
 /// The two points are neighbours on the surface: the tangent plane of the one leads to the other.
 bool continues(const SurfacePoint& from, const SurfacePoint& to, const Ray& rayTo, const Camera& camera) {
@@ -83,13 +82,7 @@ double edgeShareOf(const Polyline& contour, const Camera& camera, const Surface&
   return whole > 0 ? along / whole : 0;
 }
 
-std::string categoryOf(const std::string& light) { return kCategoryStart + light; }
-
-std::string lightOfCategory(const std::string& category) {
-  const std::string start = kCategoryStart;
-  return category.size() > start.size() && category.compare(0, start.size(), start) == 0 ? category.substr(start.size())
-                                                                                         : category;
-}
+std::string categoryOf(const std::string& light) { return "highlight " + light; }
 
 std::string shownIn(const Inspection& inspection, const Frame& frame) {
   const std::filesystem::path file = frame.image.empty() ? frame.radiance : frame.image;

@@ -35,8 +35,6 @@ LabelSet labelsOf(const Inspection& inspection, const std::string& model, const 
 
 /// "highlight lamp": what a light's labels are called.
 std::string categoryOf(const std::string& light);
-/// The light of such a name; any other name as it is.
-std::string lightOfCategory(const std::string& category);
 
 /// The file that shows a frame's highlights, relative to the scene; "" without one: the scene names no picture, the file is
 /// not there, or the highlights are synthesised and the photograph shows others.
