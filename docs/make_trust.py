@@ -88,7 +88,8 @@ def cell(code):
 
 
 def readers():
-    """Those that tests/run_fuzz feeds: one that came after the last run is missing on the page until it has run."""
+    """Those that tests/run_fuzz feeds: one that came after the last run is missing on the page until it has run, one that is gone is not
+    on it."""
     script = root / "tests/run_fuzz"
     named = re.search(r"^all=\(([^)]*)\)$", script.read_text(encoding="utf-8"), re.MULTILINE) if script.exists() else None
     return named[1].split() if named else []
@@ -116,17 +117,18 @@ def render():
         if piece is None:
             head.append(f"| {title} | not readable | | | `{command}` |")
             continue
-        count, findings = (sum(row[key] for row in piece["rows"]) for key in ("count", "findings"))
+        rows, needs = piece["rows"], piece.get("needs", [])
+        if name == "fuzz" and readers():  # not those of the last run: some are new, some are gone
+            needs = readers()
+            rows = [row for row in rows if row["name"] in needs]
+        count, findings = (sum(row[key] for row in rows) for key in ("count", "findings"))
         ran = piece["command"].replace("`", "'")
-        needs = piece.get("needs", [])
-        if name == "fuzz":
-            needs = needs + [reader for reader in readers() if reader not in needs]
-        absent = [needed for needed in needs if needed not in {row["name"] for row in piece["rows"]}]
+        absent = [needed for needed in needs if needed not in {row["name"] for row in rows}]
         open_ = f" ({len(absent)} rows are missing)" if absent else ""
         head.append(f"| [{shown(piece['what'])}](#{name.replace('_', '-')}){open_} | {count:,} | {findings:,} | {piece['date']} | `{cell(ran)}` |")
         details += ["", f"### {name.replace('_', ' ')}", f"{shown(piece['what'])}. {piece['date']}, `{ran}`.", "",
                     "| name | count | findings | note |", "|---|---:|---:|---|"]
-        details += [f"| {shown(r['name'])} | {r['count']:,} | {r['findings']:,} | {shown(r['note'])} |" for r in piece["rows"]]
+        details += [f"| {shown(r['name'])} | {r['count']:,} | {r['findings']:,} | {shown(r['note'])} |" for r in rows]
         details += [f"| {shown(row)} | missing | | |" for row in absent]
     return "\n".join(head + duration() + details) + "\n", problems
 

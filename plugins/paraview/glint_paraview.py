@@ -348,15 +348,7 @@ class _Algorithm(VTKPythonAlgorithmBase):
 
     def scale(self, given, surface):
         """(middle of the object, distance of a camera to it, depth of frustums), world units."""
-        centres = np.array([f.camera.centre for f in given.scene.frames])
-        middle = None
-        if surface is not None and np.isfinite(surface.bounds).all():
-            middle = surface.bounds.mean(axis=0)
-        if middle is None:  # where the first camera looks, as far as the cameras are apart
-            c = given.scene.frames[0].camera
-            middle = c.centre + c.camera_from_world[2, :3] * max(np.linalg.norm(centres - centres.mean(axis=0), axis=1).max(),
-                                                                 1e-3)
-        distance = float(np.median(np.linalg.norm(centres - middle, axis=1)))
+        middle, distance = blocks.middle_of(given.scene, surface)
         return middle, distance, self.length("CameraDepth") or max(distance / 7, 1e-9)
 
 
@@ -482,10 +474,8 @@ class GlintReader(_Algorithm):
     def surface_block(self, given, view, lost, middle, distance):
         if view.surface is None:
             return blocks.empty(lost)
-        bounds, box = view.surface.bounds, {}
-        if not np.isfinite(bounds).all():  # a plane has no end: as much of it as the cameras are away
-            box = {"lower": np.where(np.isfinite(bounds[0]), bounds[0], middle - distance / 2),
-                   "upper": np.where(np.isfinite(bounds[1]), bounds[1], middle + distance / 2)}
+        box = blocks.part_of(view.surface, middle, distance)
+        if box:
             self.warn("the surface has no end; a part of it is drawn")
         cells = self.given["SurfaceCells"]
         key = (view.scene.frames[view.frame].surface or f"frame {view.frame}", cells)

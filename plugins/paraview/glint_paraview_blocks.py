@@ -274,6 +274,26 @@ class View:
         return 2 * float(spread) if spread > 0 else self.depth / 4
 
 
+def middle_of(scene, surface):
+    """(middle of the object, median distance of a camera to it), world units."""
+    centres = np.array([f.camera.centre for f in scene.frames])
+    if surface is not None and np.isfinite(surface.bounds).all():
+        middle = surface.bounds.mean(axis=0)
+    else:  # where the first camera looks, as far as the cameras are apart
+        c = scene.frames[0].camera
+        middle = c.centre + c.camera_from_world[2, :3] * max(np.linalg.norm(centres - centres.mean(axis=0), axis=1).max(), 1e-3)
+    return middle, float(np.median(np.linalg.norm(centres - middle, axis=1)))
+
+
+def part_of(surface, middle, distance):
+    """Bounds of what is drawn of a surface without an end, such as a plane: as much of it as the cameras are away. Else empty."""
+    lower, upper = surface.bounds
+    if np.isfinite(surface.bounds).all():
+        return {}
+    return {"lower": np.where(np.isfinite(lower), lower, middle - distance / 2),
+            "upper": np.where(np.isfinite(upper), upper, middle + distance / 2)}
+
+
 def _draw_mirror(view, planes, cameras, camera, plane, point, contour, **of_cells):
     planes.add(_square(plane, point.position, view.size_of(contour), camera.camera_from_world[0, :3]),
                normal=plane.normal, offset=plane.offset, **of_cells)

@@ -144,6 +144,7 @@ Stage::Stage(const Workload& workload) : workload_(workload), in_(base_ / "in"),
     EXPECT_EQ(run.code, 0) << workload_.name << ": " << run.err;
     calls_ = run.calls;
     milliseconds_ = run.milliseconds;
+    said_ = run.err;
     return filesIn(run_);
   };
   if (!workload_.before.empty()) old_ = filesOf(workload_.before);

@@ -52,6 +52,7 @@ class Stage {
   bool inputsUnchanged() const { return filesIn(in_) == inputs_; }
   const std::vector<int>& calls() const { return calls_; }  ///< of a run where nothing fails
   double milliseconds() const { return milliseconds_; }
+  const std::string& said() const { return said_; }  ///< on standard error, by a run where nothing fails
   const fs::path& folder() const { return run_; }
 
   static Files filesIn(const fs::path& folder);
@@ -66,6 +67,7 @@ class Stage {
   Files inputs_, good_, old_;
   std::vector<int> calls_;
   double milliseconds_ = 0;
+  std::string said_;
 };
 
 /// What a whole loop found, for the piece of docs/trust.md.

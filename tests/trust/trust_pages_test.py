@@ -145,14 +145,16 @@ class MakeTrust(unittest.TestCase):
         self.assertRegex(page, r"Minutes of `tests/run_nightly` on \d+ cores: fuzz 10 \([-0-9]+\), suite 50 \([-0-9]+\); together 1.0 hours.")
         self.assertEqual(self.run_("--check").returncode, 0)
 
-    # A reader that is newer than the last run must not look as if it had been fed.
-    def testReadersThatWereNeverFedAreMissing(self):
+    # A reader that is newer than the last run must not look as if it had been fed, and one that is gone must not count.
+    def testReadersThatWereNeverFedAreMissingAndThoseThatAreGoneDoNotCount(self):
         (self.folder / "tests").mkdir()
         (self.folder / "tests/run_fuzz").write_text("#!/bin/sh\nall=(ply nvm)\n", encoding="utf-8")
-        self.run_("row", self.pieces / "fuzz.json", "--what", "Readers", "--command", "tests/run_fuzz", "--row", "ply", "10", "0", "", "--needs=ply")
+        self.run_("row", self.pieces / "fuzz.json", "--what", "Readers", "--command", "tests/run_fuzz", "--row", "ply", "10", "0", "", "--needs=ply",
+                  "--row", "gone", "5", "1", "", "--needs=gone")
         _, page = self.page()
         self.assertIn("[Readers](#fuzz) (1 rows are missing) | 10 | 0 |", page)
         self.assertIn("| nvm | missing | | |", page)
+        self.assertNotIn("gone", page)
 
     def testTheShippedPageIsWhatItsPiecesGive(self):
         done = subprocess.run([sys.executable, root / "docs/make_trust.py", "--check"], text=True, capture_output=True)
