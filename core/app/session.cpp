@@ -47,6 +47,7 @@ void migrateFromBeforePixels(const JsonNode& request, Settings& settings) {
   if (!stored->find("detect.background")) settings.set("detect.background", std::string("smooth"));
   if (!stored->find("fit.evidence")) settings.set("fit.evidence", std::string("contours"));
   if (!stored->find("detect.motion")) settings.set("detect.motion", std::string("off"));
+  if (!stored->find("detect.texture")) settings.set("detect.texture", std::string("off"));
   if (!stored->find("fit.most_residual")) settings.set("fit.most_residual", 10.0);  // no fit was refused for what it left
 }
 

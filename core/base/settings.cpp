@@ -94,6 +94,15 @@ std::vector<ParamSpec>& params() {
            "doubted. "
            "Texture: ΔP = 0 on the surface.",
        .stage = "detect"},
+      {.key = "detect.texture",
+       .title = "Texture underneath",
+       .symbol = "D",
+       .defaultValue = std::string("auto"),
+       .choices = {"auto", "off"},
+       .help = "Auto: where the surface shows print or grain, the diffuse light under a highlight is taken from the other views, "
+               "which see the same points without it, and contours and pixels are those of what remains. Off: every background "
+               "is smooth. S = I - D.",
+       .stage = "detect"},
       {.key = "surface.normals",
        .title = "Mesh normals",
        .symbol = "N",

@@ -9,6 +9,7 @@
 #include "core/base/numeric.h"
 #include "core/highlight/background.h"
 #include "core/highlight/clipped_flank.h"
+#include "core/highlight/diffuse.h"
 #include "core/highlight/frame_blur.h"
 #include "core/highlight/highlight.h"
 #include "core/highlight/iso_contour.h"
@@ -81,6 +82,22 @@ Prepared prepare(const Image& linear, const Image* mask, double clipValue) {
     if (!mask || near.data[pixel]) p.value.data[i] = static_cast<float>(sum / channels);
   }
   return p;
+}
+
+/// Takes the diffuse light off; what it is not known for is no longer used, and no fault of the image.
+void takeOff(const DiffuseLight& under, Prepared& p) {
+  for (int y = 0; y < p.value.height; ++y)
+    for (int x = 0; x < p.value.width; ++x) {
+      const std::size_t i = static_cast<std::size_t>(y) * p.value.width + x;
+      const float diffuse = under.at(x, y);
+      if (std::isfinite(diffuse)) {
+        if (!p.bad[i]) p.value.data[i] -= diffuse;
+        continue;
+      }
+      p.value.data[i] = 0;
+      p.usableCount -= p.usable[i] != 0;
+      p.usable[i] = 0;
+    }
 }
 
 /// Median and 1.4826 MAD of the usable pixels (every k-th of a big image).
@@ -582,7 +599,8 @@ Outcome<std::vector<Highlight>> detectHighlights(const Image& linear, const Imag
           "detectHighlights: 1 or 3 channels, not empty");
   require(!mask || (mask->width == linear.width && mask->height == linear.height), "detectHighlights: mask of another size");
   require(options.level > 0 && options.level < 1, "detectHighlights: level between 0 and 1");
-  const Prepared prepared = prepare(linear, mask, options.clipValue);
+  Prepared prepared = prepare(linear, mask, options.clipValue);
+  if (options.under) takeOff(*options.under, prepared);
   if (prepared.usableCount == 0) {
     if (prepared.badCount > 0)
       return Failure{Reason::NotFinite, std::to_string(prepared.badCount) + " pixels are negative or not finite"};

@@ -14,6 +14,7 @@
 namespace glint {
 
 struct ClippedFlank;
+struct DiffuseLight;
 
 /// A contour of a highlight at one more level.
 struct LevelContour {
@@ -67,7 +68,8 @@ struct DetectOptions {
   /// reference that names it (the strongest peak of its light, once known). Peaks inside a stronger one's contour do not count.
   bool separatePeaks = false;
   std::vector<PeakReference> references;
-  std::optional<double> reference;  ///< contours lie at `level` of this value, wherever the strongest peak is
+  const DiffuseLight* under = nullptr;  ///< taken off before anything is looked for; pixels where it is unknown are not used
+  std::optional<double> reference;      ///< contours lie at `level` of this value, wherever the strongest peak is
 };
 
 /// Highlights of a linear image (method.md section 1): level relative to the strongest fitted peak, sub-pixel contours by

@@ -13,6 +13,7 @@ DetectSettings::DetectSettings(const Settings& settings)
       clipValue(settings.number("detect.clip")),
       motion(motionUse(settings)) {
   const std::string& under = settings.text("detect.background");
+  texture = settings.text("detect.texture") == "auto" && under != "colours";  // colours find the specular part in their own way
   background = under == "lobe" ? BackgroundUse::Lobe : under == "colours" ? BackgroundUse::Colours : BackgroundUse::Smooth;
 }
 

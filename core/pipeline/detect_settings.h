@@ -19,6 +19,7 @@ struct DetectSettings {
   double clipValue = 0;        ///< of linear values; 0 = what the file says
   BackgroundUse background = BackgroundUse::Lobe;
   MotionUse motion = MotionUse::Reject;
+  bool texture = false;  ///< taken off where other views show it, see detect.texture
 
   DetectSettings() : DetectSettings(Settings{}) {}
   /// Not explicit: whoever has settings asks with them.

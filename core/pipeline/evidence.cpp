@@ -107,16 +107,17 @@ DetectOptions detectOptionsFor(const Frame& frame, FrameSource source, const Det
 }
 
 Outcome<LinearPixels> pixelsOf(const Frame& frame, FrameSource source, const DetectSettings& settings,
-                               const std::vector<SeparatedRegion>& separated) {
+                               const std::vector<SeparatedRegion>& separated, const DiffuseLight* under) {
   const Outcome<MaskedImage> image = readMasked(frame, source);
   if (!image) return image.failure();
-  LinearPixels pixels = linearPixels(image->linear, image->maskIfAny(), detectOptionsFor(frame, source, settings).clipValue);
+  const double clipValue = detectOptionsFor(frame, source, settings).clipValue;
+  LinearPixels pixels = linearPixels(image->linear, image->maskIfAny(), clipValue, under);
   if (!separated.empty()) takeSpecularPart(image->linear, separated, pixels);
   return pixels;
 }
 
 FrameEvidence gatherEvidence(const Scene& scene, int index, FrameSource source, const DetectSettings& settings,
-                             const SeparateLights& lights) {
+                             const SeparateLights& lights, std::shared_ptr<const DiffuseLight> diffuse) {
   const Frame& frame = scene.frames[index];
   FrameEvidence evidence;
   evidence.frame = index;
@@ -142,6 +143,12 @@ FrameEvidence gatherEvidence(const Scene& scene, int index, FrameSource source, 
     DetectOptions options = detectOptionsFor(frame, source, settings);
     options.separatePeaks = lights.separate || frame.lightsOn.size() > 1;
     options.references = lights.references;
+    options.under = diffuse.get();
+    evidence.diffuse = std::move(diffuse);
+    if (settings.texture) {
+      const LinearPixels pixels = linearPixels(image->linear, image->maskIfAny(), options.clipValue);
+      evidence.structure = fineStructure(pixels.value, pixels.usable);
+    }
     for (PeakReference& r : options.references) r.peak = frame.camera.distorted(r.peak);
     Outcome<std::vector<Highlight>> found = detectHighlights(image->linear, image->maskIfAny(), options, &evidence.rejected);
     if (!found) {

@@ -29,18 +29,19 @@ struct SeparateLights {
 DetectOptions detectOptionsFor(const Frame& frame, FrameSource source, const DetectSettings& settings);
 
 /// The image that detection sees, as evidence. FrameUnreadable.
+/// @param under      FrameEvidence::diffuse, taken off; null = nothing
 /// @param separated  FrameEvidence::separated: each pixel then holds the specular part by
 ///                the nearest one's combination, in footprints; below 0 where noise says so. Empty: the mean of the channels
 Outcome<LinearPixels> pixelsOf(const Frame& frame, FrameSource source, const DetectSettings& settings,
-                               const std::vector<SeparatedRegion>& separated = {});
+                               const std::vector<SeparatedRegion>& separated = {}, const DiffuseLight* under = nullptr);
 
 /// Contours at other levels, to the highlight of the same light whose peak they enclose. One around several peaks counts once.
 void addOtherLevels(const std::vector<Highlight>& given, std::vector<Highlight>& highlights);
 
 /// Highlights of one frame in ideal pixels: those that the scene gives, else detected ones (each at the level of its own peak if
-/// the frame states several lights). Sets the light if the frame says which one is on (one light: its id; none stated: "light").
+/// the frame states several lights), over the diffuse light if that is known. Sets the light if the frame says which one is on (one light: its id; none stated: "light").
 FrameEvidence gatherEvidence(const Scene& scene, int frame, FrameSource source, const DetectSettings& settings,
-                             const SeparateLights& lights = {});
+                             const SeparateLights& lights = {}, std::shared_ptr<const DiffuseLight> diffuse = {});
 
 /// Traces the detected highlights of a frame again on their specular part alone, where its colours allow it
 /// (`separateHighlights`). Highlights that the scene gives stay as they are.

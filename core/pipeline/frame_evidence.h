@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "core/base/outcome.h"
+#include "core/highlight/diffuse.h"
 #include "core/highlight/highlight.h"
 #include "core/highlight/specular_separation.h"
 
@@ -29,7 +31,11 @@ struct FrameEvidence {
   /// detect.background = colours: why the colours do not tell what is specular; "" if they do, or were not asked.
   std::string notSeparated;
   std::vector<SeparatedRegion> separated;  ///< where they do: how, around each highlight that was detected; measured pixels
-  bool againstTruth = false;               ///< --truth is given: `truth` is scored, whatever was detected
+  FineStructure structure;                 ///< of the photograph, where detect.texture asks for it
+  /// What lies under the highlights, where other views show it and it was taken off (core/pipeline/diffuse_texture.h).
+  std::shared_ptr<const DiffuseLight> diffuse;
+  std::shared_ptr<const FrameEvidence> asSeen;  ///< where `diffuse` is set: what was found before, by which motion judges
+  bool againstTruth = false;                    ///< --truth is given: `truth` is scored, whatever was detected
   /// Where a what-if took some out or changed which there are: which of the highlights as found each one is; else empty.
   std::vector<int> found;
   std::vector<Highlight> ignored;  ///< by hand: neither evidence nor scored, and a prediction there is not spurious

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <memory>
 #include <string>
 
 #include "core/base/outcome.h"
@@ -35,8 +36,10 @@ Outcome<HighlightEdit> seedEdit(const Scene& scene, const InspectionRequest& req
                                 const std::string& light);
 
 /// Evidence of one frame, with truth where its inputs name a folder, but without the user's changes to single highlights.
-/// @param scene  with the what-if
-FrameEvidence evidenceFor(const Scene& scene, int frame, const EvidenceInputs& in);
+/// @param scene    with the what-if
+/// @param diffuse  what lies under the highlights, if that is known
+FrameEvidence evidenceFor(const Scene& scene, int frame, const EvidenceInputs& in,
+                          std::shared_ptr<const DiffuseLight> diffuse = {});
 
 /// Whether a what-if moves highlights of a frame or changes which there are.
 bool changesHighlights(const WhatIf& whatIf, int frame);

@@ -143,6 +143,7 @@ Path pathIn(const Camera& camera, const Surface& surface, const Spot& spot, cons
 
 /// As detected: with what was withheld.
 std::vector<Highlight> candidatesOf(const FrameEvidence& e) {
+  if (e.asSeen) return candidatesOf(*e.asSeen);
   std::vector<Highlight> all = e.highlights;
   for (const WithheldTexture& t : e.textures) all.push_back(t.highlight);
   return all;

@@ -113,10 +113,12 @@ void fitLobes(Inspection& r, const SurfaceOfFrame& surfaceOf, bool together, con
       [&](int n) {
         const int f = frames[static_cast<std::size_t>(n)];
         const Frame& frame = r.scene->frames[static_cast<std::size_t>(f)];
-        FrameEvidence evidence = sameLevel ? r.evidence[static_cast<std::size_t>(f)] : evidenceFor(*r.scene, f, asked);
-        if (!sameLevel) dropTextures(evidence, r.evidence[static_cast<std::size_t>(f)].textures);
+        const FrameEvidence& own = r.evidence[static_cast<std::size_t>(f)];
+        FrameEvidence evidence = sameLevel ? own : evidenceFor(*r.scene, f, asked, own.diffuse);
+        if (!sameLevel) dropTextures(evidence, own.textures);
         const std::shared_ptr<const Surface> surface = surfaceOf(f);
-        const Outcome<LinearPixels> pixels = pixelsOf(frame, asked.source, asked.detect, evidence.separated);
+        const Outcome<LinearPixels> pixels =
+            pixelsOf(frame, asked.source, asked.detect, evidence.separated, evidence.diffuse.get());
         if (!surface || !pixels) return;
         for (int h = 0; h < static_cast<int>(evidence.highlights.size()); ++h) {
           const Highlight& highlight = evidence.highlights[static_cast<std::size_t>(h)];
@@ -158,7 +160,7 @@ std::optional<FrameEvidence> contouredAgain(const Inspection& lobes, const Scene
                                             const FrameEvidence& detected, const std::shared_ptr<const Surface>& surface) {
   if (!wasDetected(detected) || !surface) return std::nullopt;
   const Frame& frame = scene.frames[static_cast<std::size_t>(f)];
-  const Outcome<LinearPixels> pixels = pixelsOf(frame, in.source, in.detect);
+  const Outcome<LinearPixels> pixels = pixelsOf(frame, in.source, in.detect, {}, detected.diffuse.get());
   if (!pixels) return std::nullopt;
   std::map<std::string, std::vector<std::size_t>> byLight;
   for (std::size_t h = 0; h < detected.highlights.size(); ++h) byLight[detected.highlights[h].light].push_back(h);
@@ -213,7 +215,7 @@ void addDetectedLevels(const Inspection& r, const SurfaceOfFrame& surfaceOf, Fra
     at.detect = at.detect.at(level);
     std::optional<FrameEvidence> found;
     if (withLobe) found = contouredAgain(r, *r.scene, at, evidence.frame, r.detected[f], surfaceOf(evidence.frame));
-    if (!found) found = evidenceFor(*r.scene, evidence.frame, at);
+    if (!found) found = evidenceFor(*r.scene, evidence.frame, at, evidence.diffuse);
     std::erase_if(found->highlights, [&](const Highlight& h) { return std::abs(h.level - level) > kSameLevel; });
     addOtherLevels(found->highlights, evidence.highlights);
   }

@@ -30,10 +30,11 @@ std::optional<Observation> observeFrame(std::shared_ptr<const Scene> scene, cons
   seen.request = request;
   seen.frame = frame;
   if (!report(progress, {"detect", 0, 1})) throw Stopped{};
-  seen.evidence = evidenceFor(*seen.scene, frame, *seen.inputs.evidence);
-  // Only all frames tell texture; what was texture before most likely still is.
-  if (known && known->given == scene && seen.inputs.evidence->detect.motion == MotionUse::Reject)
-    dropTextures(seen.evidence, known->evidence[std::size_t(frame)].textures);
+  // Only all frames tell texture, and what lies under highlights; what that was before most likely still is.
+  const FrameEvidence* const before = known && known->given == scene ? &known->evidence[std::size_t(frame)] : nullptr;
+  seen.evidence = evidenceFor(*seen.scene, frame, *seen.inputs.evidence,
+                              before && seen.inputs.evidence->detect.texture ? before->diffuse : nullptr);
+  if (before && seen.inputs.evidence->detect.motion == MotionUse::Reject) dropTextures(seen.evidence, before->textures);
   if (known && known->given == scene && known->surfaces && seen.inputs.evidence->detect.background == BackgroundUse::Lobe) {
     // The lobes of the earlier results, where the request would find the same ones.
     const auto surface = known->surfaces->surfaceOf(frame, meshPolicy(request.settings));

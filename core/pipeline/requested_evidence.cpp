@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <set>
+#include <utility>
 
 #include "core/pipeline/evidence.h"
 #include "core/pipeline/hand_edits.h"
 
 namespace glint {
 
-FrameEvidence evidenceFor(const Scene& scene, int frame, const EvidenceInputs& in) {
+FrameEvidence evidenceFor(const Scene& scene, int frame, const EvidenceInputs& in, std::shared_ptr<const DiffuseLight> diffuse) {
   const Frame& f = scene.frames[static_cast<std::size_t>(frame)];
   FrameEvidence evidence;
   if (in.whatIf.synthesise && f.highlights.empty()) {
@@ -17,7 +18,7 @@ FrameEvidence evidenceFor(const Scene& scene, int frame, const EvidenceInputs& i
     return evidence;
   }
   const PhotographsHeld held(scene, {frame});  // some read it twice
-  evidence = gatherEvidence(scene, frame, in.source, in.detect);
+  evidence = gatherEvidence(scene, frame, in.source, in.detect, {}, std::move(diffuse));
   const bool detected = !evidence.highlights.empty() && !evidence.highlights.front().fromScene;
   if (detected && in.detect.background == BackgroundUse::Colours) {
     SpecularSeparation separation = separateEvidence(scene, frame, in.source, in.detect, evidence);

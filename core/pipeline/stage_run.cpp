@@ -12,6 +12,7 @@
 #include "core/model/pixel_evidence.h"
 #include "core/pipeline/comparison.h"
 #include "core/pipeline/corrected_depth.h"
+#include "core/pipeline/diffuse_texture.h"
 #include "core/pipeline/evidence.h"
 #include "core/pipeline/fit_engine.h"
 #include "core/pipeline/fits.h"
@@ -115,7 +116,9 @@ void StageRun::highlights() {
       if (!together_)
         for (FrameEvidence& e : r_.evidence) {
           if (e.frame < 0) continue;
-          returnTextures(e);  // surfaces and poses may be others now
+          // Surfaces and poses may be others now.
+          if (e.asSeen) e = FrameEvidence(*e.asSeen);
+          returnTextures(e);
           judged.push_back(e.frame);
         }
     }
@@ -129,6 +132,8 @@ void StageRun::highlights() {
   rejectTextures(
       r_, judged, [this](int frame) { return surfaceOf(frame); }, [this](const std::vector<int>& more) { gather(more); },
       progress_);
+  takeTextureOff(
+      r_, judged, [this](int frame) { return surfaceOf(frame); }, progress_);
   if (together_ && !missing.empty()) assignSeveralLights();
 }
 
@@ -176,7 +181,8 @@ void StageRun::assignSeveralLights() {
   glint::assignSeveralLights(
       *r_.scene, r_.evidence, [&](int frame) { return surfaceOf(frame); },
       [&](int frame, const SeparateLights& lights) {
-        FrameEvidence again = gatherEvidence(*r_.scene, frame, r_.request.source, r_.inputs.evidence->detect, lights);
+        FrameEvidence again = gatherEvidence(*r_.scene, frame, r_.request.source, r_.inputs.evidence->detect, lights,
+                                             r_.evidence[static_cast<std::size_t>(frame)].diffuse);
         dropTextures(again, r_.evidence[static_cast<std::size_t>(frame)].textures);
         return again;
       },
@@ -368,6 +374,7 @@ ModelResult::Fit StageRun::fitOf(const HighlightModel& model, const FitKey& key,
   add(repeatedRemark(r_, fit));
   add(byHandRemark(r_, fit));
   add(textureRemark(r_));
+  add(takenOffRemark(r_));
   if (r_.surfaces) add(r_.surfaces->fusionRemark(fit.frames));
   if (const auto found = r_.corrections.find(key); found != r_.corrections.end() && found->second.normals && model.needsLight())
     fit.remarks.push_back(found->second.normals->remark());

@@ -6,6 +6,8 @@
 #include <limits>
 #include <optional>
 
+#include "core/highlight/diffuse.h"
+
 namespace glint {
 namespace {
 
@@ -96,7 +98,7 @@ void dropEdges(PixelPatch& patch) {
 
 }  // namespace
 
-LinearPixels linearPixels(const Image& linear, const Image* mask, double clipValue) {
+LinearPixels linearPixels(const Image& linear, const Image* mask, double clipValue, const DiffuseLight* under) {
   require(linear.channels == 1 || linear.channels == 3, "linearPixels: 1 or 3 channels");
   require(!mask || (mask->width == linear.width && mask->height == linear.height && mask->channels == 1),
           "linearPixels: a mask of that size with one channel");
@@ -120,6 +122,15 @@ LinearPixels linearPixels(const Image& linear, const Image* mask, double clipVal
     p.usable[i] = good & !full;
     p.value.data[i] = std::isfinite(sum) ? static_cast<float>(sum / linear.channels) : 0.f;
   }
+  for (int y = 0; under && y < linear.height; ++y)
+    for (int x = 0; x < linear.width; ++x) {
+      const float diffuse = under->at(x, y);
+      const std::size_t i = static_cast<std::size_t>(y) * linear.width + x;
+      if (std::isfinite(diffuse))
+        p.value.data[i] -= diffuse;
+      else
+        p.usable[i] = 0;
+    }
   return p;
 }
 

@@ -22,7 +22,8 @@ struct LinearPixels {
 };
 /// @param linear     1 or 3 channels. @param mask  optional, non-zero on the glossy object; same size.
 /// @param clipValue  values at or above it are clipped; 0 = none.
-LinearPixels linearPixels(const Image& linear, const Image* mask, double clipValue);
+/// @param under      diffuse light that is taken off; pixels where it is unknown are not usable
+LinearPixels linearPixels(const Image& linear, const Image* mask, double clipValue, const DiffuseLight* under = nullptr);
 
 /// The pixels around one highlight as evidence of the radiance, averaged over square cells and joined with the surface that they
 /// show (method.md section 15, "Pixels").

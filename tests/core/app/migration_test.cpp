@@ -44,6 +44,7 @@ void expectPlane(const Session& s) {
   // Its program had one background and one kind of evidence; today's defaults look at pixels.
   EXPECT_EQ(s.request.settings.text("detect.background"), "smooth");
   EXPECT_EQ(s.request.settings.text("detect.motion"), "off");
+  EXPECT_EQ(s.request.settings.text("detect.texture"), "off");
   EXPECT_EQ(s.request.settings.text("fit.evidence"), "contours");
   EXPECT_EQ(s.request.settings.number("fit.most_residual"), 10);  // no fit was refused
   EXPECT_THAT(s.training, ElementsAre("0000", "0001", "0002", "0003"));
