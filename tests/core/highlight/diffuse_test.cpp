@@ -78,7 +78,10 @@ TEST(DiffuseLight, WhereItIsUnknownNothingIsUsed) {
   for (int y = 0; y < kSide; ++y)
     for (int x = 0; x < kSide; ++x)
       both.at(x, y) += static_cast<float>(std::exp(-((x - 83) * (x - 83) + (y - 74) * (y - 74)) / 288.0));
-  const DiffuseLight elsewhere{0, 0, Image(20, 20, 1, 0.f)};
+  Image corner(20, 20, 1);
+  for (int y = 0; y < 20; ++y)
+    for (int x = 0; x < 20; ++x) corner.at(x, y) = both.at(x, y);
+  const DiffuseLight elsewhere{0, 0, corner};
   DetectOptions options;
   options.under = &elsewhere;
   EXPECT_FALSE(detectHighlights(both, nullptr, options));
