@@ -16,6 +16,7 @@
 #include "core/pipeline/evidence.h"
 #include "core/pipeline/hand_edits.h"
 #include "core/pipeline/highlight_motion.h"
+#include "core/pipeline/response_check.h"
 #include "core/pipeline/stage_inputs.h"
 #include "core/pipeline/training.h"
 #include "core/reflectance/pixel_fit.h"
@@ -64,6 +65,8 @@ void fitLobe(Inspection& r, const FitKey& key, const std::vector<TrainingView>& 
   Outcome<PixelFit> fit = fitViewsPixels(views, light, settings, goesOn);
   ++r.work.pixelFits;
   if (fit) {
+    if (std::string doubt = responseDoubt(*r.scene, r.inputs.lobes->evidence.source, views, *fit, goesOn); !doubt.empty())
+      r.responseDoubts.insert_or_assign(key, std::move(doubt));
     r.pixelFits.insert_or_assign(key, std::make_shared<const PixelFit>(*std::move(fit)));
     return;
   }

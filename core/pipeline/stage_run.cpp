@@ -171,6 +171,7 @@ void StageRun::lobes() {
     r_.patches = known->patches;
     r_.pixelFits = known->pixelFits;
     r_.unexplained = known->unexplained;
+    r_.responseDoubts = known->responseDoubts;
   } else {
     fitLobes(r_, surface, together_, progress_);
   }
@@ -375,6 +376,7 @@ ModelResult::Fit StageRun::fitOf(const HighlightModel& model, const FitKey& key,
   add(byHandRemark(r_, fit));
   add(textureRemark(r_));
   add(takenOffRemark(r_));
+  if (const auto doubt = r_.responseDoubts.find(key); doubt != r_.responseDoubts.end()) add(doubt->second);
   if (r_.surfaces) add(r_.surfaces->fusionRemark(fit.frames));
   if (const auto found = r_.corrections.find(key); found != r_.corrections.end() && found->second.normals && model.needsLight())
     fit.remarks.push_back(found->second.normals->remark());
