@@ -153,7 +153,10 @@ SmoothMesh MeshSmoother::at(double radius) const {
   TriangleMesh& out = smooth.mesh;
   const int n = static_cast<int>(out.vertices.size());
   const bool given = out.normals.size() == out.vertices.size();
-  if (!given) out.normals.assign(out.vertices.size(), Vector3d::Zero());
+  if (!given) {
+    out.normals.clear();
+    for (const Vector3d& area : areas_) out.normals.push_back(area.normalized());
+  }
   const Cells cells(mesh_, areas_, corner_, radius);
   std::vector<Moved> all(out.vertices.size());
   parallelFor((n + kVertexChunk - 1) / kVertexChunk,

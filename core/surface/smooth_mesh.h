@@ -10,7 +10,7 @@ namespace glint {
 
 /// A mesh whose vertices lie on quadrics that are fitted to the vertices around them.
 struct SmoothMesh {
-  TriangleMesh mesh;       ///< the same triangles; normals are those of the quadrics
+  TriangleMesh mesh;       ///< the same triangles; normals of the quadrics, else as given, else of the triangles around
   double noise = 0;        ///< of the given vertices across their quadrics, standard deviation, world units
   double normalNoise = 0;  ///< what is left of it in the normals, rad: median standard deviation of both angles together
 };

@@ -37,7 +37,7 @@ Off offFrom(const TriangleMesh& mesh, double scale = 1) {
   double count = 0;
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
     const Vector3d p = mesh.vertices[i] / scale, gradient = p.cwiseQuotient(kAxes.cwiseAbs2());
-    if (std::abs(p.z()) < 0.5 * kAxes.z()) continue;
+    if (std::abs(p.z()) < 0.5 * kAxes.z() || mesh.normals[i].isZero()) continue;  // repeats of a pole are in no triangle
     const double height = (p.dot(gradient) - 1) / (2 * gradient.norm());
     off.normal += 1 - std::pow(mesh.normals[i].dot(gradient.normalized()), 2);
     off.place += height * height;
