@@ -69,7 +69,7 @@ std::optional<SmoothedMesh> smoothedMesh(const std::vector<TrainingView>& views,
       least = tried.smoothPx;
       best = std::move(tried);
       worse = 0;
-    } else if (best) {
+    } else if (std::isfinite(tried.smoothPx)) {
       ++worse;
     }
   }
