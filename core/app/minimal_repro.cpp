@@ -54,7 +54,9 @@ Fault answer(const Inspection& inspection, const Fault& fault, const std::vector
   std::copy_if(all.begin(), all.end(), std::back_inserter(views),
                [&](const TrainingView& v) { return std::find(frames.begin(), frames.end(), v.frame) != frames.end(); });
   std::optional<LightFit> light;
-  if (model.needsLight()) light = fitLight(views, *inspection.scene, *inspection.surfaces, settings);
+  if (model.needsLight())
+    light = fitLight(views, *inspection.scene, *inspection.surfaces, settings,
+                     inspection.chosenFor(inspection.keyFor(fault.frame, fault.light)));
   const Camera& camera = inspection.scene->frames[static_cast<std::size_t>(fault.frame)].camera;
   Prediction prediction;
   const Outcome<ModelFit> fit = light ? fitModel(model, light->views, light->light, settings, nullptr, progress)

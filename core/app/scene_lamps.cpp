@@ -218,7 +218,7 @@ class SceneLamp {
 
   bool fromModel() {
     const Settings& settings = r_.request.settings;
-    LightFit lit = fitLight(views_, *r_.scene, *r_.surfaces, settings);
+    LightFit lit = fitLight(views_, *r_.scene, *r_.surfaces, settings, r_.chosenFor(r_.keyFor(views_.front().frame, light_.id)));
     views_ = std::move(lit.views);
     estimate_ = std::move(lit.light);
     const auto known = r_.pixelFits.find(r_.keyFor(views_.front().frame, light_.id));

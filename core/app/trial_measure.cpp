@@ -209,7 +209,9 @@ double TradeoffBench::fitUs(const Inspection& inspection, const Trial& trial) co
       check();
       const auto start = std::chrono::steady_clock::now();
       std::optional<LightFit> light;
-      if (model.needsLight()) light = fitLight(std::move(views), *inspection.scene, *inspection.surfaces, trial.settings);
+      if (model.needsLight())
+        light =
+            fitLight(std::move(views), *inspection.scene, *inspection.surfaces, trial.settings, inspection.chosenFor(f.key()));
       check();
       const Outcome<ModelFit> fit = light ? fitModel(model, std::move(light->views), light->light, trial.settings)
                                           : fitModel(model, std::move(views), std::nullopt, trial.settings);

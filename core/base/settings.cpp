@@ -220,6 +220,16 @@ std::vector<ParamSpec>& params() {
                "sd(∂h) = "
                "σ_N; left-out views choose its length and whether a quarter of this value is enough.",
        .stage = "light"},
+      {.key = "light.smooth_mesh",
+       .title = "Smooth meshes",
+       .symbol = "R",
+       .defaultValue = std::string("auto"),
+       .choices = {"auto", "off"},
+       .help =
+           "Auto: where highlights contradict a mesh, vertices and normals come from quadrics that are fitted to the vertices "
+           "within R; the highlights choose R. They must fit clearly better than on the mesh as given. Off: meshes are used as "
+           "given. z = a + b x + c y + d x² + e xy + f y², N ~ (-b, -c, 1).",
+       .stage = "light"},
       {.key = "fit.solver",
        .title = "Ellipsoid solver",
        .symbol = "Q*",

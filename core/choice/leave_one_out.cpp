@@ -92,7 +92,8 @@ Outcome<ModelFit> fitFold(Fold& fold, const HighlightModel& model, const Setting
                           const ProgressFn& progress) {
   if (!model.needsLight()) return accepted(fitModel(model, fold.others, std::nullopt, settings, fold.pixelFit, progress), poor);
   if (!fold.light) {
-    fold.light = fitLight(fold.others, *fold.inspection->scene, *fold.inspection->surfaces, settings);
+    fold.light = fitLight(fold.others, *fold.inspection->scene, *fold.inspection->surfaces, settings,
+                          fold.inspection->chosenFor(fold.inspection->keyFor(fold.left.frame, fold.left.highlight.light)));
     if (fold.light->correction) {
       const Outcome<std::shared_ptr<const Surface>> surface = fold.surfaceOf(fold.left.frame, model);
       fold.leftSurface = surface ? *surface : nullptr;

@@ -15,8 +15,9 @@ class LightFitter {
   LightFitter(const Scene& scene, const SurfaceCache& surfaces, const Settings& settings)
       : scene_(scene), surfaces_(surfaces), settings_(settings), policy_(meshPolicy(settings)) {}
 
-  LightFit run(std::vector<TrainingView> views) const {
+  LightFit run(std::vector<TrainingView> views, const SurfaceCorrection* chosen) const {
     LightFit fit{estimateLight(views, settings_), std::move(views), {}};
+    smoothMesh(fit, chosen);
     if (fit.light && settings_.flag("light.refine_depth")) refineDepth(fit);
     if (fit.light && settings_.flag("light.refine_normals")) refineNormals(fit);
     return fit;
@@ -43,15 +44,29 @@ class LightFitter {
     if (!fit.light->extent && refined->uncertainty) fit.light->uncertainty = refined->uncertainty;
   }
 
+  /// The mesh that all views see: one correction describes the errors of one mesh only.
+  std::optional<std::string> oneMesh(const std::vector<TrainingView>& views) const {
+    if (views.empty()) return std::nullopt;
+    const std::string surface = surfaces_.keyOf(views.front().frame);
+    if (!scene_.hasTriangles(surface)) return std::nullopt;  // a shape is exact, a depth map has a depth that could be off
+    if (std::any_of(views.begin(), views.end(), [&](const TrainingView& v) { return surfaces_.keyOf(v.frame) != surface; }))
+      return std::nullopt;
+    return surface;
+  }
+
+  void smoothMesh(LightFit& fit, const SurfaceCorrection* chosen) const {
+    const std::optional<std::string> surface = oneMesh(fit.views);
+    if (!surface || settings_.text("light.smooth_mesh") == "off") return;
+    fit.correction.smoothed = chosen ? chosen->smoothed : smoothedMesh(fit.views, fit.light, *surface, settings_);
+    if (!fit.correction.smoothed) return;
+    fit.views = corrected(std::move(fit.views), fit.correction);
+    fit.light = estimateLight(fit.views, settings_);
+  }
+
   void refineNormals(LightFit& fit) const {
-    if (fit.views.empty()) return;
-    const std::string surface = surfaces_.keyOf(fit.views.front().frame);
-    if (!scene_.hasTriangles(surface)) return;  // a shape is exact, a depth map has a depth that could be off
-    // One correction describes the errors of one mesh only.
-    if (std::any_of(fit.views.begin(), fit.views.end(),
-                    [&](const TrainingView& v) { return surfaces_.keyOf(v.frame) != surface; }))
-      return;
-    Outcome<std::optional<RefinedNormals>> refined = glint::refineNormals(fit.views, *fit.light, surface, settings_);
+    const std::optional<std::string> surface = oneMesh(fit.views);
+    if (!surface) return;
+    Outcome<std::optional<RefinedNormals>> refined = glint::refineNormals(fit.views, *fit.light, *surface, settings_);
     if (!refined || !*refined) return;
     const std::optional<ParameterUncertainty> uncertainty = (*refined)->uncertainty;
     fit.correction.normals = **std::move(refined);
@@ -68,8 +83,9 @@ class LightFitter {
 
 }  // namespace
 
-LightFit fitLight(std::vector<TrainingView> views, const Scene& scene, const SurfaceCache& surfaces, const Settings& settings) {
-  return LightFitter(scene, surfaces, settings).run(std::move(views));
+LightFit fitLight(std::vector<TrainingView> views, const Scene& scene, const SurfaceCache& surfaces, const Settings& settings,
+                  const SurfaceCorrection* chosen) {
+  return LightFitter(scene, surfaces, settings).run(std::move(views), chosen);
 }
 
 FitInput fitInput(const HighlightModel& model, std::vector<TrainingView> views,

@@ -19,10 +19,13 @@ struct LightFit {
   SurfaceCorrection correction;
 };
 
-/// The one way from views to a light: estimateLight(), then what light.refine_depth and light.refine_normals ask for. A
-/// correction is kept where the views on the corrected surface keep what it promised.
-/// @param views  of one light, and of one surface where models are per surface; on the surfaces as they are given.
-LightFit fitLight(std::vector<TrainingView> views, const Scene& scene, const SurfaceCache& surfaces, const Settings& settings);
+/// The one way from views to a light: estimateLight(), then what light.smooth_mesh, light.refine_depth and light.refine_normals ask
+/// for. A correction is kept where the views on the corrected surface keep what it promised.
+/// @param views   of one light, and of one surface where models are per surface; on the surfaces as they are given.
+/// @param chosen  that of more views of this light, see chosenFor(): its smoothed mesh serves, and no other is looked for; may be
+///                null.
+LightFit fitLight(std::vector<TrainingView> views, const Scene& scene, const SurfaceCache& surfaces, const Settings& settings,
+                  const SurfaceCorrection* chosen = nullptr);
 
 /// What a model is fitted to: the views, with canonical contours under the light where the model needs them and a view has none.
 /// @param light     for models that need one; empty if none was asked for.

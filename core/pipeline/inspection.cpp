@@ -62,6 +62,13 @@ const LightEstimate* Inspection::lightOf(const FitKey& key) const {
   return found != lights.end() && found->second ? &*found->second : nullptr;
 }
 
+const SurfaceCorrection* Inspection::chosenFor(const FitKey& key) const {
+  static const SurfaceCorrection none;
+  if (!lights.count(key)) return nullptr;
+  const auto found = corrections.find(key);
+  return found != corrections.end() ? &found->second : &none;
+}
+
 const Failure* Inspection::lightFailureFor(int frame, const std::string& light) const {
   const auto found = lights.find(keyFor(frame, light));
   return found != lights.end() && !found->second ? &found->second.failure() : nullptr;

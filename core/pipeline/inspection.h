@@ -116,6 +116,8 @@ struct Inspection {
   /// The estimate of a light, null if it failed or no model needs it.
   const LightEstimate* lightOf(const FitKey& key) const;
   const LightEstimate* lightFor(int frame, const std::string& light) const { return lightOf(keyFor(frame, light)); }
+  /// What the surface of a light was corrected by, as other fits of some of its views take it; null if it was not estimated.
+  const SurfaceCorrection* chosenFor(const FitKey& key) const;
   /// Why a light was not estimated; null if it was, or if no model needs it.
   const Failure* lightFailureFor(int frame, const std::string& light) const;
   /// Every estimate or failure that serves a frame, by light id.
@@ -123,7 +125,7 @@ struct Inspection {
 };
 
 /// The surface that predictions of a light in a frame use: the frame's own, corrected where the light's contours correct it
-/// (light.refine_depth, light.refine_normals). Thread-safe. The failures of correctedSurface(); NoSurface without a cache.
+/// (light.smooth_mesh, light.refine_depth, light.refine_normals). Thread-safe. The failures of correctedSurface(); NoSurface without a cache.
 /// @param light  id.
 Outcome<std::shared_ptr<const Surface>> surfaceFor(const Inspection& inspection, int frame, const std::string& light);
 

@@ -378,8 +378,10 @@ ModelResult::Fit StageRun::fitOf(const HighlightModel& model, const FitKey& key,
   add(takenOffRemark(r_));
   if (const auto doubt = r_.responseDoubts.find(key); doubt != r_.responseDoubts.end()) add(doubt->second);
   if (r_.surfaces) add(r_.surfaces->fusionRemark(fit.frames));
-  if (const auto found = r_.corrections.find(key); found != r_.corrections.end() && found->second.normals && model.needsLight())
-    fit.remarks.push_back(found->second.normals->remark());
+  if (const auto found = r_.corrections.find(key); found != r_.corrections.end() && model.needsLight()) {
+    if (found->second.smoothed) fit.remarks.push_back(found->second.smoothed->remark());
+    if (found->second.normals) fit.remarks.push_back(found->second.normals->remark());
+  }
   fit.timeUs = microsecondsSince(start);
   return entry;
 }

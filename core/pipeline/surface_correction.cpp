@@ -8,6 +8,7 @@ namespace glint {
 Outcome<std::shared_ptr<const Surface>> correctedSurface(const Scene& scene, const SurfaceCache& surfaces, int frame,
                                                          const SurfaceCorrection& correction, MeshPolicy policy) {
   if (correction.normals && correction.normals->surface == surfaces.keyOf(frame)) return correction.normals->mesh;
+  if (correction.smoothed && correction.smoothed->surface == surfaces.keyOf(frame)) return correction.smoothed->mesh;
   const Frame& f = scene.frames[static_cast<std::size_t>(frame)];
   if (correction.depth && f.surface.empty()) return correctedDepthMap(f, policy, *correction.depth);
   return surfaces.surfaceOf(frame, policy);

@@ -6,15 +6,17 @@
 
 #include "core/light/refine_depth.h"
 #include "core/pipeline/refined_normals.h"
+#include "core/pipeline/smoothed_mesh.h"
 #include "core/scene/scene.h"
 
 namespace glint {
 
-/// What a light's contours say of their surface. At most one of the two: a frame sees its own depth map or a mesh.
+/// What a light's contours say of their surface: of depth maps or of a mesh, since a frame sees one of the two.
 struct SurfaceCorrection {
   std::optional<DepthCorrection> depth;   ///< light.refine_depth: of every frame's own depth map
-  std::optional<RefinedNormals> normals;  ///< light.refine_normals: of one mesh
-  explicit operator bool() const { return depth || normals; }
+  std::optional<RefinedNormals> normals;  ///< light.refine_normals: of one mesh, smoothed before where `smoothed` says so
+  std::optional<SmoothedMesh> smoothed;   ///< light.smooth_mesh: of one mesh
+  explicit operator bool() const { return depth || normals || smoothed; }
 };
 
 /// The surface that a frame shows, corrected where the correction concerns it, else as given. A corrected depth map is read and

@@ -4,7 +4,6 @@
 #include <pcl/kdtree/kdtree_flann.h>
 #include <pcl/point_types.h>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -17,13 +16,12 @@
 #include "core/base/number_text.h"
 #include "core/base/numeric.h"
 #include "core/base/progress.h"
+#include "core/surface/height_quadric.h"
 #include "core/surface/mesh_topology.h"
 
 namespace glint {
 namespace {
 using Eigen::Vector3d;
-using Vector6 = Eigen::Matrix<double, 6, 1>;
-using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
 // The smallest determines 6 unknowns twice; each is 1.5 times the one before.
 constexpr std::array<int, 6> kFitSizes{12, 18, 27, 40, 60, 90};
@@ -114,28 +112,15 @@ Fit fitAt(const PointCloud& cloud, int index, const std::vector<Neighbours::Near
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(spread);
   const Eigen::Matrix3d frame = axes.eigenvectors();  // columns: normal, then the plane
-  // In units of the reach: the equations then have the same condition at every scale.
-  Matrix6 a = Matrix6::Zero(), aw = Matrix6::Zero();
-  Vector6 b = Vector6::Zero();
-  const auto add = [&](const Vector3d& d, double w) {
-    const Vector3d q = frame.transpose() * d / reach;
-    const Vector6 row = (Vector6() << 1, q.y(), q.z(), q.y() * q.y(), q.y() * q.z(), q.z() * q.z()).finished();
-    a += w * row * row.transpose();
-    aw += w * w * row * row.transpose();
-    b += w * row * q.x();
-  };
-  for (const auto& n : near) add(cloud.points[static_cast<std::size_t>(n.index)] - centre, weightOf(n.distance));
-  if (withItself) add(Vector3d::Zero(), 1);
-  const Eigen::LDLT<Matrix6> solver(a);
-  constexpr double kRegular = 1e-8;  // neighbours on a conic, a line for one, determine no quadric
-  if (solver.info() != Eigen::Success || !(solver.rcond() > kRegular)) return fit;
-  const Vector6 c = solver.solve(b);
-  const Matrix6 inverse = solver.solve(Matrix6::Identity());
-  const Matrix6 covariance = inverse * aw * inverse;
-  fit.height = c[0] * reach;
+  HeightQuadric quadric(frame, reach);
+  for (const auto& n : near) quadric.add(cloud.points[static_cast<std::size_t>(n.index)] - centre, weightOf(n.distance));
+  if (withItself) quadric.add(Vector3d::Zero(), 1);
+  const std::optional<HeightQuadric::Fitted> fitted = quadric.solve();
+  if (!fitted) return fit;
+  fit.height = fitted->height;
   fit.place = centre + fit.height * frame.col(0);
-  fit.normal = (frame.col(0) - c[1] * frame.col(1) - c[2] * frame.col(2)).normalized();
-  fit.leverage = covariance(1, 1) + covariance(2, 2);
+  fit.normal = fitted->normal;
+  fit.leverage = fitted->leverage;
   fit.slopeVariance = fit.leverage / (reach * reach);
   fit.fitted = fit.place.allFinite() && fit.normal.allFinite() && std::isfinite(fit.slopeVariance);
   return fit;
