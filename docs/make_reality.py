@@ -1,16 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Writes docs/reality.md: one rung for each effect of real photographs, what each model makes of it, and whether it says so when it is wrong.
+"""Writes docs/reality.md: one rung for each effect of real photographs, each model's error, and whether it says so when wrong.
 
   docs/make_reality.py                       runs what the cache lacks and writes the page
-  docs/make_reality.py --only exact wood     runs the rungs whose names contain one of the words; the others keep their last results
+  docs/make_reality.py --only exact wood     runs rungs whose names contain one of the words; the others keep their results
   docs/make_reality.py --page                runs nothing and writes the page from the cache
   docs/make_reality.py --render              renders first what the cache lacks (needs Blender)
 
-Scenes and results are kept in the cache, so that a run that was stopped goes on. A result that is older than the program is made again.
+Scenes and results are kept in the cache, so that a run that was stopped goes on. A result older than the program is made again.
 """
 import argparse
-import dataclasses
 import json
 import math
 import os
@@ -25,7 +24,7 @@ import time
 DOCS = pathlib.Path(__file__).resolve().parent
 ROOT = DOCS.parent
 sys.path.insert(0, str(DOCS))
-from reality import rungs, scenes, variants, verdict  # noqa: E402
+from reality import rungs, scenes, verdict  # noqa: E402
 
 PAGE = DOCS / "reality.md"
 MODELS = ("limit-angle", "reflectance", "auto")
@@ -52,7 +51,8 @@ def limited(seconds):
 def command_of(glint, scene, truth, model):
     """The band takes several fits: the one of auto is that of the model which it chose, and is taken from that model's row."""
     band = [] if model == "auto" else ["--set", "predict.band=true"]
-    return [str(glint), "evaluate", str(scene), "--source", "image", "--models", model, "--train", TRAIN, "--truth", str(truth), *band, "--json", "-"]
+    return [str(glint), "evaluate", str(scene), "--source", "image", "--models", model, "--train", TRAIN, "--truth", str(truth),
+            *band, "--json", "-"]
 
 
 def run(command, limit):
@@ -117,10 +117,12 @@ def figure(value, unit=""):
 
 def cells(model, found, seconds):
     name = f"{model}: {found.model}" if found.model else model
-    counts = f"{found.matched}/{found.missed}/{found.spurious}" if found.matched + found.missed + found.spurious else ""
+    all_ = (found.matched, found.missed, found.spurious)
+    counts = "/".join(map(str, all_)) if any(all_) else ""
     coverage = "" if math.isnan(found.coverage) else f"{100 * found.coverage:.0f} %"
     mark = f"**{found.verdict}**" if found.verdict == verdict.CONFIDENT else found.verdict
-    return [name, figure(found.error_pct, " %"), figure(found.error_px), counts, coverage, mark, shown(found.said), figure(seconds)]
+    error = [figure(found.error_pct, " %"), figure(found.error_px)]
+    return [name, *error, counts, coverage, mark, shown(found.said), figure(seconds)]
 
 
 def table(ladder, records):
@@ -128,6 +130,9 @@ def table(ladder, records):
              "|---|---|---|---|---:|---:|---|---:|---|---|---:|"]
     for rung in ladder:
         part = f"open: {rung.later}" if rung.later else "**this issue**"
+        if not any((rung.name, model) in records for model in MODELS):
+            lines.append(f"| {rung.name} | {rung.effect} | {part} | | | | | | {verdict.MISSING} | | |")
+            continue
         for k, model in enumerate(MODELS):
             record = records.get((rung.name, model))
             head = [rung.name, rung.effect, part] if k == 0 else ["", "", ""]
@@ -136,8 +141,14 @@ def table(ladder, records):
     return "\n".join(lines) + "\n"
 
 
+def confession(model, found):
+    chosen = f" ({found.model})" if found.model else ""
+    counts = f", {found.missed} missed, {found.spurious} invented" if found.missed + found.spurious else ""
+    return f"{model}{chosen}: {figure(found.error_pct, ' %') or 'no highlight matched'}{counts}"
+
+
 def summary(ladder, records):
-    """How often each verdict was given, for each model, in rows of this issue and in others; then the confident errors by name."""
+    """How often each verdict was given, for each model, in rows of this issue and in others; then confident errors by name."""
     lines = ["| rows | model | " + " | ".join(verdict.VERDICTS) + " |", "|---|---|" + "---:|" * len(verdict.VERDICTS)]
     confident = []
     for own, name in ((True, "this issue"), (False, "open")):
@@ -145,15 +156,15 @@ def summary(ladder, records):
             found = [(r, row_of(r, model, records)) for r in ladder if own == (not r.later)]
             counts = [sum(j.verdict == v for _, j in found) for v in verdict.VERDICTS]
             lines.append(f"| {name} | {model} | " + " | ".join(str(c) if c else "" for c in counts) + " |")
-            confident += [f"- {name}: {r.name}, {model}{' (' + j.model + ')' if j.model else ''}: {figure(j.error_pct, ' %') or 'no highlight matched'}"
-                          f"{f', {j.missed} missed, {j.spurious} invented' if j.missed + j.spurious else ''}"
-                          for r, j in found if j.verdict == verdict.CONFIDENT]
-    return "\n".join(lines) + "\n\n" + ("Confident errors:\n\n" + "\n".join(confident) if confident else "There is no confident error.") + "\n"
+            confident += [f"- {name}: {r.name}, {confession(model, j)}" for r, j in found if j.verdict == verdict.CONFIDENT]
+    errors = "Confident errors:\n\n" + "\n".join(confident) if confident else "There is no confident error."
+    return "\n".join(lines) + "\n\n" + errors + "\n"
 
 
 def write_page(ladders, records):
     text = PAGE.read_text()
-    blocks = {"summary": summary([r for group in GROUPS for r in ladders[group]], records), **{g: table(ladders[g], records) for g in GROUPS}}
+    blocks = {"summary": summary([r for group in GROUPS for r in ladders[group]], records)}
+    blocks.update({group: table(ladders[group], records) for group in GROUPS})
     for name, block in blocks.items():
         begin, end = f"<!-- {name} -->\n", f"<!-- end of {name} -->\n"
         head, rest = text.split(begin)
@@ -174,29 +185,32 @@ def read_records(cache, ladders):
 
 def evaluate(arguments, rung, newest):
     """Runs the commands of one rung whose results are missing or older than the program."""
-    due = [m for m in arguments.models if arguments.fresh or not (f := result_file(arguments.cache, rung, m)).exists() or f.stat().st_mtime < newest]
+    files = {model: result_file(arguments.cache, rung, model) for model in arguments.models}
+    due = [m for m, f in files.items() if arguments.fresh or not f.exists() or f.stat().st_mtime < newest]
     place = scenes.place(rung, arguments.data, arguments.cache) if due else None
     if due and place is None:
         print(f"{rung.name}: not rendered", flush=True)
         return
     for model in due:
         record = run(command_of(arguments.glint, *place, model), arguments.limit)
-        write(result_file(arguments.cache, rung, model), json.dumps(record))
+        write(files[model], json.dumps(record))
         found = alone(rung, model, record)
-        print(f"{rung.name}, {model}: {figure(found.error_pct, ' %')} {found.verdict}, {record['seconds']} s: {found.said[:150]}", flush=True)
+        error = figure(found.error_pct, " %")
+        print(f"{rung.name}, {model}: {error} {found.verdict}, {record['seconds']} s: {found.said[:150]}", flush=True)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--glint", default=ROOT / "build/release/bin/glint", type=pathlib.Path)
-    parser.add_argument("--data", default=ROOT.parent / "shared/data", type=pathlib.Path, help="folder with exact, ladder and cycles")
-    parser.add_argument("--cache", default=ROOT / "build/reality", type=pathlib.Path, help="scenes and results are kept here")
-    parser.add_argument("--only", nargs="+", default=[""], metavar="RUNG", help="only rungs whose names contain one of these")
-    parser.add_argument("--models", nargs="+", default=list(MODELS), choices=MODELS)
-    parser.add_argument("--limit", default=LIMIT_S, type=int, metavar="S", help="seconds of the processor for one command")
-    parser.add_argument("--fresh", action="store_true", help="run again what the cache has")
-    parser.add_argument("--page", action="store_true", help="run nothing")
-    parser.add_argument("--render", nargs="?", const="blender", metavar="BLENDER", help="render what the cache lacks, with this program")
+    add = parser.add_argument
+    add("--data", default=ROOT.parent / "shared/data", type=pathlib.Path, help="folder with exact, ladder and cycles")
+    add("--cache", default=ROOT / "build/reality", type=pathlib.Path, help="scenes and results are kept here")
+    add("--only", nargs="+", default=[""], metavar="RUNG", help="only rungs whose names contain one of these")
+    add("--models", nargs="+", default=list(MODELS), choices=MODELS)
+    add("--limit", default=LIMIT_S, type=int, metavar="S", help="seconds of the processor for one command")
+    add("--fresh", action="store_true", help="run again what the cache has")
+    add("--page", action="store_true", help="run nothing")
+    add("--render", nargs="?", const="blender", metavar="BLENDER", help="render what the cache lacks, with this program")
     arguments = parser.parse_args()
     ladders = {"shared": rungs.shared(arguments.data), "computed": rungs.computed(), "rendered": rungs.rendered()}
     chosen = [r for g in GROUPS for r in ladders[g] if any(word in r.name for word in arguments.only)]

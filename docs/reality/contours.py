@@ -7,11 +7,12 @@ import json
 
 import numpy as np
 
-# Edges of a cell with corners 0 (y, x), 1 (y, x+1), 2 (y+1, x+1), 3 (y+1, x), by number: top, right, bottom, left. For each pattern
-# of corners above the level, the pairs of edges that a line joins. Patterns 5 and 10 are saddles: the cell's mean tells which.
+# Edges of a cell with corners 0 (y, x), 1 (y, x+1), 2 (y+1, x+1), 3 (y+1, x), by number: top, right, bottom, left. For each
+# pattern of corners above the level, the pairs of edges that a line joins. Patterns 5 and 10 are saddles: the cell's mean tells.
 PAIRS = {1: [(3, 0)], 2: [(0, 1)], 3: [(3, 1)], 4: [(1, 2)], 6: [(0, 2)], 7: [(3, 2)], 8: [(2, 3)], 9: [(2, 0)], 11: [(2, 1)],
          12: [(1, 3)], 13: [(1, 0)], 14: [(0, 3)]}
-SADDLES = {(5, True): [(3, 2), (1, 0)], (5, False): [(3, 0), (1, 2)], (10, True): [(0, 3), (2, 1)], (10, False): [(0, 1), (2, 3)]}
+SADDLES = {(5, True): [(3, 2), (1, 0)], (5, False): [(3, 0), (1, 2)],
+           (10, True): [(0, 3), (2, 1)], (10, False): [(0, 1), (2, 3)]}
 
 
 def edge_of(y, x, number):
@@ -79,7 +80,7 @@ def smoothed(values, radius=2):
 
 
 def peak(values):
-    """Place and height of the maximum: a paraboloid through the logarithms of what lies above nine tenths of the brightest pixel."""
+    """Place and height of the maximum: a paraboloid through the logarithms above nine tenths of the brightest pixel."""
     values = np.asarray(values, float)
     y0, x0 = np.unravel_index(np.argmax(values), values.shape)
     top = values[y0, x0]
@@ -92,7 +93,8 @@ def peak(values):
     u, v = xs[near] - float(x0), ys[near] - float(y0)
     if near.sum() < 6:
         return [float(x0), float(y0)], float(top)
-    c = np.linalg.lstsq(np.stack([np.ones_like(u), u, v, u * u, u * v, v * v], 1), np.log(values[ys[near], xs[near]]), rcond=None)[0]
+    quadratic = np.stack([np.ones_like(u), u, v, u * u, u * v, v * v], 1)
+    c = np.linalg.lstsq(quadratic, np.log(values[ys[near], xs[near]]), rcond=None)[0]
     bend = np.array([[2 * c[3], c[4]], [c[4], 2 * c[5]]])
     if np.linalg.eigvalsh(bend)[1] >= 0:  # no maximum
         return [float(x0), float(y0)], float(top)
@@ -103,7 +105,7 @@ def peak(values):
 
 
 def truth_of(lamps, level=0.5, least=6.0):
-    """The truth file of one frame: the contours of each lamp's picture at a fraction of its own peak; `least` px2 is the smallest."""
+    """The truth file of one frame: contours of each lamp's picture at a fraction of its own peak, of `least` px2 or more."""
     found, best = [], ([0.0, 0.0], 0.0)
     for picture in lamps:
         place, height = peak(picture)

@@ -3,8 +3,8 @@
 
   blender -b --factory-startup -P docs/reality/render.py -- SPEC.json FOLDER
 
-FOLDER/light/ID.npy: light of the photograph, RGB. FOLDER/light/ID-K.npy: specular light of lamp K alone, on the body, grey, from which the
-true contours are traced. FOLDER/made.json: camera, poses, semi-axes. A frame whose arrays are there is not rendered again.
+FOLDER/light/ID.npy: light of the photograph, RGB. FOLDER/light/ID-K.npy: specular light of lamp K alone, on the body, grey, from
+which the true contours are traced. FOLDER/made.json: camera, poses, semi-axes. A frame whose arrays are there stays.
 """
 import json
 import math
@@ -15,8 +15,9 @@ import sys
 import bpy
 import numpy as np
 
-DEFAULT = {"semi_axes": [0.15, 0.11, 0.09], "roughness": [0.3, 0.3], "size": [360, 270], "focal": 620, "views": 12, "eye": 0.75,
-           "lamps": [{"kind": "sphere", "position": [0.75, -0.55, 1.3], "radius": 0.01, "power": 30.0}], "samples": 64, "shape_samples": 400}
+LAMP = {"kind": "sphere", "position": [0.75, -0.55, 1.3], "radius": 0.01, "power": 30.0}
+DEFAULT = {"semi_axes": [0.15, 0.11, 0.09], "roughness": [0.42, 0.42], "size": [360, 270], "focal": 720, "views": 12,
+           "eye": 0.75, "lamps": [LAMP], "samples": 128, "shape_samples": 400}
 
 
 # Cameras.
@@ -102,7 +103,8 @@ def paint(tree, kind, diffuse):
 
 def lobe(tree, spec, roughness, strength):
     if "anisotropy" in spec:
-        glossy = node(tree, "ShaderNodeBsdfAnisotropic", distribution="GGX", Roughness=roughness, Anisotropy=spec["anisotropy"])
+        glossy = node(tree, "ShaderNodeBsdfAnisotropic", distribution="GGX", Roughness=roughness,
+                      Anisotropy=spec["anisotropy"])
         tangent = node(tree, "ShaderNodeTangent", direction_type="RADIAL", axis="Z")
         tree.links.new(tangent.outputs[0], glossy.inputs["Tangent"])
     else:
@@ -118,7 +120,7 @@ def material(spec):
     tree.nodes.clear()
     out = node(tree, "ShaderNodeOutputMaterial")
     if "fresnel" in spec:
-        shader = node(tree, "ShaderNodeBsdfPrincipled", Roughness=spec["roughness"][0], IOR=spec["fresnel"], Specular=0.5)
+        shader = node(tree, "ShaderNodeBsdfPrincipled", Roughness=spec["roughness"][0], Specular=spec["fresnel"])
         shader.inputs["Base Color"].default_value = (0.2, 0.2, 0.2, 1)
     else:
         diffuse = node(tree, "ShaderNodeBsdfDiffuse", Color=(0.2, 0.26, 0.4, 1))
@@ -138,12 +140,14 @@ def material(spec):
 
 def emitter(lamp):
     """A ring: a thin torus that shines."""
-    bpy.ops.mesh.primitive_torus_add(major_radius=lamp["radius"], minor_radius=0.02 * lamp["radius"], major_segments=48, minor_segments=6)
+    tube = 0.02 * lamp["radius"]
+    bpy.ops.mesh.primitive_torus_add(major_radius=lamp["radius"], minor_radius=tube, major_segments=48, minor_segments=6)
     made = bpy.context.object
     shine = bpy.data.materials.new("ring")
     shine.use_nodes = True
     shine.node_tree.nodes.clear()
-    light = node(shine.node_tree, "ShaderNodeEmission", Strength=lamp["power"] / (0.02 * (2 * math.pi * lamp["radius"]) ** 2 * math.pi))
+    area = 4 * math.pi ** 2 * lamp["radius"] * tube
+    light = node(shine.node_tree, "ShaderNodeEmission", Strength=lamp["power"] / (math.pi * area))
     end = node(shine.node_tree, "ShaderNodeOutputMaterial")
     shine.node_tree.links.new(light.outputs[0], end.inputs["Surface"])
     made.data.materials.append(shine)
@@ -264,7 +268,8 @@ def main():
             photo = photo + image
         np.save(out / f"{name}.npy", photo)  # last: it says that the frame is complete
     width, height = spec["size"]
-    camera = {"width": width, "height": height, "fx": spec["focal"], "fy": spec["focal"], "cx": (width - 1) / 2, "cy": (height - 1) / 2}
+    camera = {"width": width, "height": height, "fx": spec["focal"], "fy": spec["focal"],
+              "cx": (width - 1) / 2, "cy": (height - 1) / 2}
     (folder / "made.json").write_text(json.dumps({"camera": camera, "frames": frames, "semi_axes": spec["semi_axes"],
                                                   "lamps": [lamp["kind"] for lamp in spec["lamps"]]}))
 

@@ -67,7 +67,8 @@ def shared(data):
             for file in ("scene.json", ANALYTIC):
                 if file == "scene.json" or (folder / ANALYTIC).exists():
                     name = f"{group}/{rung.name}" + (" (analytic)" if file == ANALYTIC else "")
-                    out.append(dataclasses.replace(rung, name=name, folder=str(folder), file=file, truth="truth" if group == "exact" else "contours"))
+                    truth = "truth" if group == "exact" else "contours"
+                    out.append(dataclasses.replace(rung, name=name, folder=str(folder), file=file, truth=truth))
     return out
 
 
@@ -121,15 +122,15 @@ RENDERED = [
     Rung("checker", "checker under the highlight", r"textur|paint|pattern", render={"texture": "checker"}),
     Rung("wood", "wood under the highlight", r"textur|paint|pattern", render={"texture": "wood"}),
     Rung("six-lamps", "six equal lamps, unlabelled", LAMPS, render={"lamps": around(6, 0.9, 1.3)}),
-    Rung("fresnel", "Fresnel, F0 0.04", r"Fresnel|grazing", "Fresnel and bounces", render={"fresnel": 1.45, "eye": 0.35}),
-    Rung("coat", "coat: two lobes", r"coat|two lobes|second lobe", "coats", render={"coat": [0.15, 0.5]}),
+    Rung("fresnel", "Fresnel, F0 0.04", r"Fresnel|grazing", "Fresnel and bounces", render={"fresnel": 0.5, "eye": 0.35}),
+    Rung("coat", "coat: two lobes", r"coat|two lobes|second lobe", "coats", render={"coat": [0.2, 0.55]}),
     Rung("brushed", "brushed about z", r"anisotrop|brushed", "brushed surfaces", render={"anisotropy": 0.6}),
-    Rung("roughness-varies", "roughness from 0.25 to 0.4 over the body", r"roughness|patch", render={"roughness": [0.25, 0.4]}),
+    Rung("roughness-varies", "roughness from 0.35 to 0.5 over the body", r"roughness|patch", render={"roughness": [0.35, 0.5]}),
     Rung("square-panel", "square panel", EXTENT, "lamps with a shape", render={"lamps": [AREA]}),
     Rung("oblong-panel", "panel 1 : 4", EXTENT, "lamps with a shape", render={"lamps": [dict(AREA, size=[0.2, 0.8])]}),
     Rung("window", "window at infinity", EXTENT, "lamps with a shape",
          render={"lamps": [dict(AREA, position=[30.0, -20.0, 45.0], size=[6.0, 9.0], power=60000.0)]}),
-    Rung("ring", "ring lamp", EXTENT, "lamps with a shape", render={"lamps": [{"kind": "ring", "position": [0.9, -0.5, 1.7], "radius": 0.25, "power": 60.0}]}),
+    Rung("ring", "ring lamp", EXTENT, "lamps with a shape", render={"lamps": [dict(AREA, kind="ring", radius=0.25)]}),
     Rung("white-floor", "white floor, two bounces", r"floor|bounce|reflect", "Fresnel and bounces", render={"floor": True}),
 ]
 

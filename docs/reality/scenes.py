@@ -35,8 +35,9 @@ def render(blender, ladder, cache):
             continue
         folder.mkdir(parents=True, exist_ok=True)
         (folder / "render.json").write_text(json.dumps(rung.render))
-        done = subprocess.run(["nice", "-n", "19", blender, "-b", "--factory-startup", "--python-exit-code", "1", "-t", "1", "-P", RENDER, "--",
-                               folder / "render.json", folder], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        command = ["nice", "-n", "19", blender, "-b", "--factory-startup", "--python-exit-code", "1", "-t", "1", "-P", RENDER,
+                   "--", folder / "render.json", folder]
+        done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         (folder / "blender.log").write_text(done.stdout)
         if done.returncode:
             print(f"{rung.name}: Blender failed, see {folder / 'blender.log'}", file=sys.stderr)

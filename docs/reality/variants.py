@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Scenes with one flaw, computed from clean ones: other curves, exposure, JPEG, vignetting, clipping, crops, meshes and poses.
 
-Each variant is written as a folder with scene.json, frames and truth. The scene states neither the flaw nor, unless it says so, a response.
+Each variant is written as a folder with scene.json, frames and truth. The scene does not state the flaw.
 """
 import copy
 import json
@@ -110,7 +110,8 @@ def rotation(vector):
 
 
 def shaken(poses, middle, seed=7, turn_deg=0.05, shift=0.0002):
-    """Poses as bundle adjustment leaves them: each turned about the object's middle, which the points pin, and shifted by a share of its distance."""
+    """Poses as bundle adjustment leaves them: each turned about the object's middle, which the points pin, and shifted by a
+    share of its distance."""
     rng = np.random.default_rng(seed)
     out = []
     for pose in poses:
@@ -145,7 +146,7 @@ def cut(contour, bottom):
 
 
 def crop_rows(truths, height):
-    """The first and last row of each frame's window, so that its lower border cuts the highlight; all windows are equally high."""
+    """First row and end of each frame's window, so that its lower border cuts the highlight; windows are equally high."""
     ends = []
     for k, truth in enumerate(truths):
         rows = [p[1] for c in truth["levels"]["0.50"] for p in c["points"]]
@@ -168,13 +169,16 @@ class Base:
 
     def lights(self):
         """Light of every frame, with the brightest pixel at PEAK."""
-        read = [self.light(pictures.dithered(pictures.read(self.file.parent / f["image"]), k)) for k, f in enumerate(self.scene["frames"])]
+        files = [self.file.parent / f["image"] for f in self.scene["frames"]]
+        read = [self.light(pictures.dithered(pictures.read(file), k)) for k, file in enumerate(files)]
         top = max(light.max() for light in read)
         return [PEAK / top * light for light in read]
 
     def mesh(self):
         (surface,) = self.scene["surfaces"].values()
-        return read_ply(self.file.parent / surface["mesh"]) if "mesh" in surface else ellipsoid_mesh(surface["analytic"]["semi_axes"])
+        if "mesh" in surface:
+            return read_ply(self.file.parent / surface["mesh"])
+        return ellipsoid_mesh(surface["analytic"]["semi_axes"])
 
 
 def without_maps(base):
@@ -217,7 +221,8 @@ def make(kind, base, folder):
         for surface in scene["surfaces"].values():
             surface["mesh"] = os.path.relpath((base.file.parent / surface["mesh"]).resolve(), folder.resolve())
     if kind == "poses":
-        for frame, pose in zip(scene["frames"], shaken([f["camera_from_world"] for f in scene["frames"]], base.mesh()[0].mean(0))):
+        poses = shaken([f["camera_from_world"] for f in scene["frames"]], base.mesh()[0].mean(0))
+        for frame, pose in zip(scene["frames"], poses):
             frame["camera_from_world"] = pose
     quality = JPEG.get(kind)
     for k, frame in enumerate(scene["frames"]):

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tests of docs/reality: level lines against circles and ellipses, variants against what they are said to do, and each verdict from a small
-evaluation as `glint evaluate --json` writes it. A judge that takes an error for an answer would hide what the page is for."""
+"""Tests of docs/reality: level lines against circles and ellipses, variants against what they are said to do, and each
+verdict from a small evaluation as `glint evaluate --json` writes it. A judge that takes an error for an answer would hide errors."""
 import json
 import math
 import pathlib
@@ -50,8 +50,9 @@ class LevelLines(unittest.TestCase):
         self.assertLess(math.dist(truth["peak_subpixel"], (60.2, 55.7)), 1e-6)  # the logarithm of this lobe is a paraboloid
 
     def testEachLampHasItsOwnHalf(self):
-        truth = contours.truth_of([lobe((80, 200), (50, 40), (9, 9), height=1.0), lobe((80, 200), (150, 40), (9, 9), height=0.2)])
-        self.assertEqual([away(c["points"], (x, 40), (9, 9)) < 0.05 for c, x in zip(truth["levels"]["0.50"], (50, 150))], [True, True])
+        truth = contours.truth_of([lobe((80, 200), (x, 40), (9, 9), height=h) for x, h in ((50, 1.0), (150, 0.2))])
+        for found, x in zip(truth["levels"]["0.50"], (50, 150), strict=True):
+            self.assertLess(away(found["points"], (x, 40), (9, 9)), 0.05)
 
     def testALineThatLeavesThePictureIsOpenAndWhole(self):
         ((points, closed),) = contours.level_lines(lobe((60, 60), (30, 2.5), (15, 15)), 0.5)
@@ -139,8 +140,10 @@ class Variants(unittest.TestCase):
             contours.write_truth(folder / "truth", "a", contours.truth_of([lobe((60, 80), (40, 30), (5, 5))]))
             camera = {"width": 80, "height": 60, "fx": 90, "fy": 90, "cx": 39.5, "cy": 29.5}
             (folder / "scene.json").write_text(json.dumps(
-                {"glint_scene": 1, "name": "a", "camera": camera, "surfaces": {"s": {"analytic": {"type": "sphere", "radius": 1}}},
-                 "lights": [{"id": "lamp", "position": [0, 0, 1]}], "frames": [{"id": "a", "image": "a.png", "radiance": "a.tiff"}]}))
+                {"glint_scene": 1, "name": "a", "camera": camera,
+                 "surfaces": {"s": {"analytic": {"type": "sphere", "radius": 1}}},
+                 "lights": [{"id": "lamp", "position": [0, 0, 1]}],
+                 "frames": [{"id": "a", "image": "a.png", "radiance": "a.tiff"}]}))
             base = variants.Base(folder / "scene.json", folder / "truth", lambda codes: codes)
             for kind in ("jpeg60", "cropped", "stated"):
                 variants.make(kind, base, folder / kind)
@@ -157,10 +160,12 @@ class Variants(unittest.TestCase):
             self.assertEqual(np.unravel_index(picture.argmax(), picture.shape)[0], 30 - (29.5 - own["cy"]))
 
 
-def evaluation(error_pct=0.1, error_px=0.2, status="ok", reason="", warnings=(), matched=8, missed=0, spurious=0, model="reflectance", coverage=0.95):
+def evaluation(error_pct=0.1, error_px=0.2, status="ok", reason="", warnings=(), matched=8, missed=0, spurious=0,
+               model="reflectance", coverage=0.95):
     statistic = {"mean": error_pct}
     return {"warnings": list(warnings), "chosen_model": model, "why_chosen": "", "models": {model: {
-        "status": status, "reason": reason, "fits": [{"reason": reason, "warnings": []}], "band": {"sigma_px": 0.1, "coverage_95": coverage},
+        "status": status, "reason": reason, "fits": [{"reason": reason, "warnings": []}],
+        "band": {"sigma_px": 0.1, "coverage_95": coverage},
         "summary": {"predicted": 0 if status == "failed" else 8, "matched": matched, "missed": missed, "spurious": spurious,
                     "contour_error_pct": statistic, "contour_error_px": {"mean": error_px}}}}}
 
@@ -174,6 +179,11 @@ class Verdicts(unittest.TestCase):
         self.assertEqual((found.verdict, found.error_pct, found.coverage), (verdict.RIGHT, 0.1, 0.95))
         self.assertEqual(self.judged(error_pct=0.9, error_px=0.04).verdict, verdict.RIGHT)  # a small highlight
         self.assertEqual(self.judged(error_pct=5.0, error_px=1.0, border=8).verdict, verdict.RIGHT)
+
+    def testJustAboveTheBorderIsNear(self):
+        self.assertEqual([self.judged(error_pct=e).verdict for e in (0.3, 0.301, 0.6, 0.601)],
+                         [verdict.RIGHT, verdict.NEAR, verdict.NEAR, verdict.CONFIDENT])
+        self.assertEqual(self.judged(error_pct=0.4, warnings=["a doubt"]).verdict, verdict.WARNED)
 
     def testAnErrorWithAWarningIsWarned(self):
         found = self.judged(error_pct=2.0, warnings=["reflectance, light lamp: the pixel residuals have a pattern"])
@@ -210,7 +220,8 @@ class Page(unittest.TestCase):
     def testEveryRungStandsOnThePage(self):
         page = (root / "docs/reality.md").read_text()
         names = [r.name for r in rungs.computed() + rungs.rendered()]
-        names += [f"{group}/{r.name}" for group, some in (("exact", rungs.EXACT), ("ladder", rungs.LADDER), ("cycles", rungs.CYCLES)) for r in some]
+        for group, some in (("exact", rungs.EXACT), ("ladder", rungs.LADDER), ("cycles", rungs.CYCLES)):
+            names += [f"{group}/{r.name}" for r in some]
         self.assertEqual([n for n in names if f"| {n} |" not in page], [])
         self.assertEqual(len(names), len(set(names)))
 
