@@ -37,8 +37,13 @@ def number(value):
     return math.nan if value is None else float(value)
 
 
+# How a warning about one model begins: "reflectance, light A, surface ball: ".
+OF_MODEL = r"([a-z-]+), light\b[^:]*: "
+
+
 def of_other_model(warning, model):
-    return re.match(r"[a-z-]+, light ", warning) and not warning.startswith(model + ", light ")
+    head = re.match(OF_MODEL, warning)
+    return head and head[1] != model
 
 
 def doubts(document, model):
@@ -50,7 +55,7 @@ def doubts(document, model):
         said += [result.get("reason", "")] + [fit.get("reason", "") for fit in result.get("fits", [])]
     kept = []
     for text in said:
-        bare = re.sub(r"^[a-z-]+, light [^:]*: ", "", text)  # of a warning about one model
+        bare = re.sub("^" + OF_MODEL, "", text)
         if bare and not any(re.search(pattern, bare) for pattern in NEUTRAL) and bare not in kept:
             kept.append(bare)
     return kept
