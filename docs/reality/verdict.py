@@ -38,7 +38,7 @@ def number(value):
 
 
 # How a warning about one model begins: "reflectance, light A, surface ball: ".
-OF_MODEL = r"([a-z-]+), light\b[^:]*: "
+OF_MODEL = r"(primal|dual|canonical|limit-angle|reflectance), [^:]*: "
 
 
 def of_other_model(warning, model):

@@ -194,7 +194,8 @@ class Verdicts(unittest.TestCase):
         self.assertEqual(self.judged(error_pct=2.0).verdict, verdict.CONFIDENT)
         neutral = "reflectance, light lamp: Fitted to one contour per highlight: no other levels are given."
         self.assertEqual(self.judged(error_pct=2.0, warnings=[neutral]).verdict, verdict.CONFIDENT)
-        for other in ("limit-angle, light lamp: poor: 3 px remain", "limit-angle, light: poor: 3 px remain"):
+        for other in ("limit-angle, light lamp: poor: 3 px remain", "limit-angle, light: poor: 3 px remain",
+                      "canonical, lightbulb, surface a: 3 px"):
             self.assertEqual(self.judged(error_pct=2.0, warnings=[other]).verdict, verdict.CONFIDENT)
 
     def testWhatIsMissedOrInventedIsNotRight(self):
