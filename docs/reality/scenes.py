@@ -50,7 +50,7 @@ def compose(rung, folder):
     """Photographs in sRGB, truth of each frame and the scene, from the light that Blender left as arrays."""
     made = json.loads((folder / "made.json").read_text())
     photos = [np.load(folder / "light" / f"{f['id']}.npy") for f in made["frames"]]
-    top = max(photo[..., :3].mean(2).max() for photo in photos)
+    top = max(photo.max() for photo in photos)  # no colour is clipped
     (folder / "frames").mkdir(exist_ok=True)
     for frame, photo in zip(made["frames"], photos):
         pictures.write(folder / "frames" / f"{frame['id']}.png", pictures.srgb_codes(variants.PEAK / top * photo))
