@@ -99,7 +99,7 @@ def alone(rung, model, record):
     if record["stopped"]:
         return verdict.Judgement(verdict.STOPPED, f"no answer in {record['limit']} s of the processor")
     if "document" not in record:
-        return verdict.refusal([record["error"]], rung.causes)
+        return verdict.refusal([record["error"]], "")  # about the files or the command, not about the photographs
     return verdict.judged(record["document"], model, rung.causes, rung.border_pct)
 
 

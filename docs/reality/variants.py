@@ -7,6 +7,7 @@ import copy
 import json
 import os
 import pathlib
+import shutil
 
 import numpy as np
 
@@ -219,7 +220,8 @@ def make(kind, base, folder):
         scene["surfaces"] = {name: {"mesh": "surface.ply"} for name in scene["surfaces"]}
     elif "mesh" in next(iter(scene["surfaces"].values())):
         for surface in scene["surfaces"].values():
-            surface["mesh"] = os.path.relpath((base.file.parent / surface["mesh"]).resolve(), folder.resolve())
+            shutil.copy(base.file.parent / surface["mesh"], folder / "surface.ply")  # a scene may not name files outside
+            surface["mesh"] = "surface.ply"
     if kind == "poses":
         poses = shaken([f["camera_from_world"] for f in scene["frames"]], base.mesh()[0].mean(0))
         for frame, pose in zip(scene["frames"], poses):
