@@ -128,7 +128,7 @@ def material(spec):
             paint(tree, spec["texture"], diffuse)
         low, high = spec.get("coat") or spec["roughness"]
         if "coat" in spec:
-            glossy = add(tree, lobe(tree, spec, low, 0.02), lobe(tree, spec, high, 0.3))
+            glossy = add(tree, lobe(tree, spec, low, 0.05), lobe(tree, spec, high, 0.3))
         else:
             glossy = lobe(tree, spec, low, 0.2)
             if low != high:

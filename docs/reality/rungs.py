@@ -124,7 +124,7 @@ RENDERED = [
     Rung("six-lamps", "six equal lamps, unlabelled", LAMPS, render={"lamps": around(6, 0.9, 1.3)}),
     Rung("fresnel", "Fresnel, F0 0.04, incidence of 55 to 70 degrees", r"Fresnel|grazing", "Fresnel and bounces",
          render={"fresnel": 0.5, "eye": 0.35, "lamps": [dict(LAMP, position=[-0.85, 1.0, 0.5])]}),
-    Rung("coat", "coat: two lobes", r"coat|two lobes|second lobe", "coats", render={"coat": [0.2, 0.55]}),
+    Rung("coat", "coat: two lobes", r"coat|two lobes|second lobe", "coats", render={"coat": [0.3, 0.6]}),
     Rung("brushed", "brushed about z", r"anisotrop|brushed", "brushed surfaces", render={"anisotropy": 0.6}),
     Rung("roughness-varies", "roughness from 0.35 to 0.5 over the body", r"roughness|patch", render={"roughness": [0.35, 0.5]}),
     Rung("square-panel", "square panel", EXTENT, "lamps with a shape", render={"lamps": [AREA]}),
