@@ -107,7 +107,8 @@ def computed():
 
 
 LAMP = {"kind": "sphere", "position": [0.75, -0.55, 1.3], "radius": 0.01, "power": 30.0}
-AREA = {"kind": "area", "position": [0.9, -0.5, 1.7], "size": [0.5, 0.5], "power": 60.0}
+AREA = {"kind": "area", "position": [0.9, -0.5, 1.7], "size": [0.8, 0.8], "power": 60.0}
+MIRRORING = [0.25, 0.25]  # roughness at which a lamp's shape shows
 
 
 def around(count, radius, height):
@@ -127,11 +128,13 @@ RENDERED = [
     Rung("coat", "coat: two lobes", r"coat|two lobes|second lobe", "coats", render={"coat": [0.3, 0.6]}),
     Rung("brushed", "brushed about z", r"anisotrop|brushed", "brushed surfaces", render={"anisotropy": 0.6}),
     Rung("roughness-varies", "roughness from 0.35 to 0.5 over the body", r"roughness|patch", render={"roughness": [0.35, 0.5]}),
-    Rung("square-panel", "square panel", EXTENT, "lamps with a shape", render={"lamps": [AREA]}),
-    Rung("oblong-panel", "panel 1 : 4", EXTENT, "lamps with a shape", render={"lamps": [dict(AREA, size=[0.2, 0.8])]}),
+    Rung("square-panel", "square panel", EXTENT, "lamps with a shape", render={"lamps": [AREA], "roughness": MIRRORING}),
+    Rung("oblong-panel", "panel 1 : 4", EXTENT, "lamps with a shape",
+         render={"lamps": [dict(AREA, size=[0.3, 1.2])], "roughness": MIRRORING}),
     Rung("window", "window at infinity", EXTENT, "lamps with a shape",
-         render={"lamps": [dict(AREA, position=[30.0, -20.0, 45.0], size=[6.0, 9.0], power=60000.0)]}),
-    Rung("ring", "ring lamp", EXTENT, "lamps with a shape", render={"lamps": [dict(AREA, kind="ring", radius=0.25)]}),
+         render={"lamps": [dict(AREA, position=[30.0, -20.0, 45.0], size=[10.0, 15.0], power=60000.0)], "roughness": MIRRORING}),
+    Rung("ring", "ring lamp", EXTENT, "lamps with a shape",
+         render={"lamps": [dict(AREA, kind="ring", radius=0.4)], "roughness": MIRRORING}),
     Rung("white-floor", "white floor, two bounces", r"floor|bounce|reflect", "Fresnel and bounces", render={"floor": True}),
 ]
 
