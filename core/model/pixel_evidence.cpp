@@ -21,17 +21,19 @@ constexpr std::size_t kFewestContours = 3;  // that tell a lamp's shape
 constexpr double kContradiction = 0.025;
 constexpr double kBlurShift = 1.5;  // times blur^2 / radius: how far blur moves a contour, of a lobe with a long tail too
 
+std::vector<ReflectedRay> peakRays(const std::vector<TrainingView>& views) {
+  std::vector<ReflectedRay> rays;
+  for (const TrainingView& v : views)
+    if (v.seen) rays.push_back(reflectedRay(v.seen->brightest, v.camera));
+  return rays;
+}
+
 /// The mean direction of the reflected peak rays, which no noise turns behind the surface.
-std::optional<Light> meanRay(const std::vector<TrainingView>& views) {
+std::optional<Light> meanRay(const std::vector<ReflectedRay>& rays) {
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  double count = 0;
-  for (const TrainingView& v : views) {
-    if (!v.seen) continue;
-    mean += reflectedRay(v.seen->brightest, v.camera).direction;
-    count += 1;
-  }
+  for (const ReflectedRay& r : rays) mean += r.direction;
   // Directions that cancel have no mean: 1e-6 is far above round-off.
-  return mean.norm() > 1e-6 * count ? std::optional<Light>(Light::towards(mean)) : std::nullopt;
+  return mean.norm() > 1e-6 * double(rays.size()) ? std::optional<Light>(Light::towards(mean)) : std::nullopt;
 }
 
 /// A sphere or a segment that explains the pixels clearly better than a point. The contours start the search: they tell a lamp's
@@ -156,7 +158,10 @@ Outcome<PixelFit> fitViewsPixels(const std::vector<TrainingView>& views, const s
   const std::vector<Lobe> lobes = lobesOf(settings);
   std::vector<Light> starts;
   if (light) starts.push_back(light->light);
-  if (const std::optional<Light> mean = meanRay(views)) starts.push_back(*mean);
+  const std::vector<ReflectedRay> rays = peakRays(views);
+  // Where highlights are unequal, their contours lie at different shares of their own peaks, and mislead; their peaks do not.
+  if (const Outcome<Triangulation> meet = triangulateLight(rays)) starts.push_back(meet->light);
+  if (const std::optional<Light> mean = meanRay(rays)) starts.push_back(*mean);
   Outcome<PixelFit> best = Failure{Reason::NoLight, "no reflected ray to start from"};
   PixelFitOptions options;
   options.progress = progress;

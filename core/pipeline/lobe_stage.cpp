@@ -39,6 +39,16 @@ std::vector<Highlight> ofOthers(const FrameEvidence& e, const std::string& light
   return others;
 }
 
+/// With the level as a share of the highlight's own peak: that of a weak one is larger than the level of the frame's strongest,
+/// and its contour small beside its footprint.
+Highlight atOwnLevel(Highlight h, const FrameEvidence& e) {
+  double strongest = h.peakValue;
+  for (const Highlight& o : e.highlights)
+    if (o.light == h.light) strongest = std::max(strongest, o.peakValue);
+  if (h.peakValue > 0) h.level *= strongest / h.peakValue;
+  return h;
+}
+
 bool wasDetected(const FrameEvidence& e) {
   return e.frame >= 0 && !e.highlights.empty() &&
          std::none_of(e.highlights.begin(), e.highlights.end(), [](const Highlight& h) { return h.fromScene; });
@@ -130,8 +140,8 @@ void fitLobes(Inspection& r, const SurfaceOfFrame& surfaceOf, bool together, con
             continue;
           TrainingView view = trainingView(evidence, h, frame.camera, surface);
           if (!view.seen) continue;
-          Outcome<PixelPatch> patch =
-              pixelPatch(*pixels, frame.camera, *surface, f, highlight, ofOthers(evidence, highlight.light));
+          Outcome<PixelPatch> patch = pixelPatch(*pixels, frame.camera, *surface, f, atOwnLevel(highlight, evidence),
+                                                 ofOthers(evidence, highlight.light));
           if (!patch) continue;
           view.pixels = std::make_shared<PixelPatch>(*std::move(patch));
           seen[static_cast<std::size_t>(n)].views.push_back(std::move(view));

@@ -61,6 +61,7 @@ int fillBasis(const PixelPatch& p, const FramePatches& frame, std::size_t i, Bac
       return 6;
     }
     case BackgroundKind::Cosine:
+    case BackgroundKind::AmbientCosine:
     case BackgroundKind::SlopedCosine: {
       const Eigen::Vector3d towards = at.lamp.centre.head<3>() - at.lamp.centre.w() * p.seen[i].position;
       const double distance = towards.norm();
@@ -68,6 +69,10 @@ int fillBasis(const PixelPatch& p, const FramePatches& frame, std::size_t i, Bac
       const double lit = distance > 0 ? std::max(0.0, p.seen[i].axes.normal.dot(towards)) / (distance * distance * distance) : 0;
       row[0] = frame.top * lit;
       if (kind == BackgroundKind::Cosine) return 1;
+      if (kind == BackgroundKind::AmbientCosine) {
+        row[1] = frame.top;
+        return 2;
+      }
       row[1] = u * row[0];
       row[2] = v * row[0];
       return 3;
@@ -82,6 +87,7 @@ int coefficientsOf(BackgroundKind kind) {
   switch (kind) {
     case BackgroundKind::None: return 0;
     case BackgroundKind::Cosine: return 1;
+    case BackgroundKind::AmbientCosine: return 2;
     case BackgroundKind::SlopedCosine: return 3;
     case BackgroundKind::Quadratic: return 6;
   }
@@ -199,7 +205,7 @@ LobeImage blurredImage(LobeImage sharp, const FramePatches& frame, const State& 
   return sharp;
 }
 
-bool dependsOnLight(BackgroundKind kind) { return kind == BackgroundKind::Cosine || kind == BackgroundKind::SlopedCosine; }
+bool dependsOnLight(BackgroundKind kind) { return kind != BackgroundKind::None && kind != BackgroundKind::Quadratic; }
 
 BackgroundBasis backgroundBasis(const FramePatches& frame, BackgroundKind kind, const State& at) {
   BackgroundBasis basis;

@@ -95,8 +95,8 @@ class Search {
     for (const Lobe lobe : lobes) {
       const Candidate* best = least([](const Candidate&) { return true; });
       const patch::State from = best ? best->attempt.at : start;
-      for (const BackgroundKind kind :
-           {BackgroundKind::None, BackgroundKind::Cosine, BackgroundKind::SlopedCosine, BackgroundKind::Quadratic})
+      for (const BackgroundKind kind : {BackgroundKind::None, BackgroundKind::Cosine, BackgroundKind::AmbientCosine,
+                                        BackgroundKind::SlopedCosine, BackgroundKind::Quadratic})
         // A lamp with an extent takes long: the first lobe tells which backgrounds compete.
         if ((!options_.background || kind == *options_.background) && (!best || start.lamp.isPoint() || kind == best->kind))
           tryOut(lobe, kind, from);
@@ -146,6 +146,7 @@ const char* nameOf(BackgroundKind kind) {
   switch (kind) {
     case BackgroundKind::None: return "none";
     case BackgroundKind::Cosine: return "cosine";
+    case BackgroundKind::AmbientCosine: return "cosine with ambient";
     case BackgroundKind::SlopedCosine: return "sloped cosine";
     case BackgroundKind::Quadratic: return "quadratic";
   }
