@@ -27,6 +27,8 @@ constexpr int kTailPoints = 600;           // of a view: two unknowns need no mo
 constexpr int kGainPoints = 1500;          // of a view: their median ratio is good to a few thousandths
 constexpr double kSameExposure = 0.02;     // automatic exposures differ by more; below it is noise, or Fresnel's transmission
 constexpr double kDark = 0.05;             // of the brightest value: ratios of darker ones are noise
+constexpr double kNormalSpread = 1.4826;   // standard deviations in a median of absolute ones
+constexpr double kLeastSpread = 1e-12;     // of exact pictures
 constexpr double kMostTail = 2;            // of the spot's own: more is no tail
 
 double gaussianTail(double radius2) { return std::exp2(-radius2); }
@@ -87,6 +89,45 @@ double middleOf(std::vector<double>& values) {
   for (std::size_t i = cut; i < values.size() - cut; ++i) sum += values[i];
   return sum / static_cast<double>(values.size() - 2 * cut);
 }
+
+/// Least squares of two shares, each point's own value eliminated.
+class TailEquations {
+ public:
+  /// One point as several views show it.
+  void add(const std::vector<double>& weights, const std::vector<double>& values, const std::vector<Eigen::Vector2d>& tails) {
+    double sum = 0, meanValue = 0;
+    Eigen::Vector2d meanTail = Eigen::Vector2d::Zero();
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+      sum += weights[i];
+      meanValue += weights[i] * values[i];
+      meanTail += weights[i] * tails[i];
+    }
+    meanValue /= sum;
+    meanTail /= sum;
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+      const Eigen::Vector2d tail = tails[i] - meanTail;
+      normal_ += weights[i] * tail * tail.transpose();
+      right_ += weights[i] * tail * (values[i] - meanValue);
+    }
+  }
+
+  /// At least 0 each: where one would be below, the other alone.
+  Eigen::Vector2d solved() const {
+    Eigen::Vector2d both = normal_.ldlt().solve(right_);
+    for (int k = 0; k < 2; ++k) {
+      if (both(k) >= 0) continue;
+      const int other = 1 - k;
+      both(k) = 0;
+      both(other) = normal_(other, other) > 0 ? std::max(0.0, right_(other) / normal_(other, other)) : 0;
+      break;
+    }
+    return both;
+  }
+
+ private:
+  Eigen::Matrix2d normal_ = Eigen::Matrix2d::Zero();
+  Eigen::Vector2d right_ = Eigen::Vector2d::Zero();
+};
 
 }  // namespace
 
@@ -223,29 +264,28 @@ Image TexturePanel::under(const TextureView& view) const {
     for (const double beside : {kSurelyBeside2, kBeside2}) {
       values.clear();
       for (const Sample& s : samples)
-        if (s.radius2 >= beside) values.push_back(s.value - tails_[0] * s.tail[0] - tails_[1] * s.tail[1]);
+        if (s.radius2 >= beside) values.push_back(withoutTails(s));
       if (values.size() >= kEnoughBeside) break;
     }
     if (values.empty()) {
       const Sample& farthest = *std::max_element(samples.begin(), samples.end(),
                                                  [](const Sample& a, const Sample& b) { return a.radius2 < b.radius2; });
-      values.push_back(farthest.value - tails_[0] * farthest.tail[0] - tails_[1] * farthest.tail[1]);
+      values.push_back(withoutTails(farthest));
     }
     diffuse.at(x, y) = static_cast<float>(std::max(0.0, middleOf(values)));
   });
   return diffuse;
 }
 
-void TexturePanel::fitTails() {
-  tails_ = {0, 0};
+std::vector<std::vector<TexturePanel::Sample>> TexturePanel::pointsInTails() const {
   std::vector<std::vector<Sample>> points;
+  std::vector<Sample> samples;
   for (const TextureView& view : views_) {
     const std::vector<double> gains = gainsFor(view);
     std::size_t around = 0;
     for (int y = 0; y < view.value.height; y += view.stride)
       for (int x = 0; x < view.value.width; x += view.stride) around += std::isfinite(view.value.at(x, y));
     const int step = std::max(1, static_cast<int>(view.stride * std::sqrt(static_cast<double>(around) / kTailPoints)));
-    std::vector<Sample> samples;
     overSurface(view, step, [&](int, int, const SurfacePoint& at) {
       look(at, -1, gains, samples);
       std::erase_if(samples, [](const Sample& s) { return s.radius2 < kBeside2; });
@@ -253,43 +293,36 @@ void TexturePanel::fitTails() {
       if (near && samples.size() >= kLeastForTails) points.push_back(samples);
     });
   }
+  return points;
+}
+
+double TexturePanel::withoutTails(const Sample& s) const { return s.value - tails_[0] * s.tail[0] - tails_[1] * s.tail[1]; }
+
+void TexturePanel::fitTails() {
+  tails_ = {0, 0};
+  const std::vector<std::vector<Sample>> points = pointsInTails();
   double spread = std::numeric_limits<double>::infinity();
   for (int round = 0; round < kTailRounds && !points.empty(); ++round) {
-    Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
-    Eigen::Vector2d right = Eigen::Vector2d::Zero();
+    TailEquations equations;
     std::vector<double> residuals;
     for (const std::vector<Sample>& samples : points) {
       std::vector<double> left;
-      for (const Sample& s : samples) left.push_back(s.value - tails_[0] * s.tail[0] - tails_[1] * s.tail[1]);
+      for (const Sample& s : samples) left.push_back(withoutTails(s));
       std::vector<double> sorted = left;
       const double middle = middleOf(sorted);
-      double weights = 0, meanValue = 0;
-      Eigen::Vector2d meanTail = Eigen::Vector2d::Zero();
-      std::vector<double> weight;
+      std::vector<double> weights, values;
+      std::vector<Eigen::Vector2d> tails;
       for (std::size_t i = 0; i < samples.size(); ++i) {
         residuals.push_back(std::abs(left[i] - middle));
         const double r = std::isfinite(spread) ? (left[i] - middle) / (kTailScale * spread) : 0;
-        weight.push_back(1 / (1 + r * r));
-        weights += weight.back();
-        meanValue += weight.back() * samples[i].value;
-        meanTail += weight.back() * Eigen::Vector2d(samples[i].tail[0], samples[i].tail[1]);
+        weights.push_back(1 / (1 + r * r));
+        values.push_back(samples[i].value);
+        tails.emplace_back(samples[i].tail[0], samples[i].tail[1]);
       }
-      meanValue /= weights;
-      meanTail /= weights;
-      for (std::size_t i = 0; i < samples.size(); ++i) {
-        const Eigen::Vector2d tail = Eigen::Vector2d(samples[i].tail[0], samples[i].tail[1]) - meanTail;
-        normal += weight[i] * tail * tail.transpose();
-        right += weight[i] * tail * (samples[i].value - meanValue);
-      }
+      equations.add(weights, values, tails);
     }
-    spread = std::max(1.4826 * upperMedian(residuals), 1e-12);
-    Eigen::Vector2d both = normal.ldlt().solve(right);
-    for (int k = 0; k < 2; ++k)
-      if (!(both(k) >= 0)) {
-        both(k) = 0;
-        both(1 - k) = normal(1 - k, 1 - k) > 0 ? std::max(0.0, right(1 - k) / normal(1 - k, 1 - k)) : 0;
-        break;
-      }
+    spread = std::max(kNormalSpread * upperMedian(residuals), kLeastSpread);
+    const Eigen::Vector2d both = equations.solved();
     tails_ = {std::min(both(0), kMostTail), std::min(both(1), kMostTail)};
   }
 }

@@ -64,6 +64,9 @@ class TexturePanel {
   void look(const SurfacePoint& at, int except, const std::vector<double>& gains, std::vector<Sample>& samples) const;
   /// Factor that brings each view of the panel to the exposure of this one: the median ratio over the surface.
   std::vector<double> gainsFor(const TextureView& view) const;
+  /// What views show of points near spots, from two to six radii off.
+  std::vector<std::vector<Sample>> pointsInTails() const;
+  double withoutTails(const Sample& sample) const;
   template <class Take>
   void overSurface(const TextureView& view, int step, const Take& take) const;
 
