@@ -43,7 +43,6 @@ std::optional<double> remainsOf(const std::vector<PixelPatch>& patches, const Pi
   for (const Lobe other : {Lobe::TorranceSparrow, Lobe::Ggx})
     if (other != start.model.lobe) lobes.push_back(other);
   PixelFitOptions options;
-  options.background = start.background;
   options.progress = progress;
   const Outcome<PixelFit> fit = fitPixels(lobes, all, start.model.lamp, start.model.roughness, options);
   return fit && !fit->poor ? std::optional(fit->rmsPx) : std::nullopt;
