@@ -84,22 +84,6 @@ Prepared prepare(const Image& linear, const Image* mask, double clipValue) {
   return p;
 }
 
-/// Takes the diffuse light off; what it is not known for is no longer used, and no fault of the image.
-void takeOff(const DiffuseLight& under, Prepared& p) {
-  for (int y = 0; y < p.value.height; ++y)
-    for (int x = 0; x < p.value.width; ++x) {
-      const std::size_t i = static_cast<std::size_t>(y) * p.value.width + x;
-      const float diffuse = under.at(x, y);
-      if (std::isfinite(diffuse)) {
-        if (!p.bad[i]) p.value.data[i] -= diffuse;
-        continue;
-      }
-      p.value.data[i] = 0;
-      p.usableCount -= p.usable[i] != 0;
-      p.usable[i] = 0;
-    }
-}
-
 /// Median and 1.4826 MAD of the usable pixels (every k-th of a big image).
 struct Level {
   double median = 0, spread = 0;
@@ -600,7 +584,7 @@ Outcome<std::vector<Highlight>> detectHighlights(const Image& linear, const Imag
   require(!mask || (mask->width == linear.width && mask->height == linear.height), "detectHighlights: mask of another size");
   require(options.level > 0 && options.level < 1, "detectHighlights: level between 0 and 1");
   Prepared prepared = prepare(linear, mask, options.clipValue);
-  if (options.under) takeOff(*options.under, prepared);
+  if (options.under) prepared.usableCount = takeOff(*options.under, prepared.value, prepared.usable);
   if (prepared.usableCount == 0) {
     if (prepared.badCount > 0)
       return Failure{Reason::NotFinite, std::to_string(prepared.badCount) + " pixels are negative or not finite"};

@@ -22,6 +22,17 @@ constexpr std::size_t kLeastToTell = 400;  // that tell structure from chance
 
 }  // namespace
 
+int takeOff(const DiffuseLight& under, Image& value, std::vector<char>& usable) {
+  for (int y = 0; y < value.height; ++y)
+    for (int x = 0; x < value.width; ++x) {
+      const float diffuse = under.at(x, y);
+      float& v = value.at(x, y);
+      v = std::isfinite(diffuse) ? v - diffuse : 0.f;
+      if (!std::isfinite(diffuse)) usable[static_cast<std::size_t>(y) * value.width + x] = 0;
+    }
+  return static_cast<int>(std::count_if(usable.begin(), usable.end(), [](char u) { return u != 0; }));
+}
+
 bool FineStructure::isTexture() const { return top > 0 && amount > kWorthShare * top; }
 
 FineStructure fineStructure(const Image& image, const std::vector<char>& usable) {

@@ -20,8 +20,13 @@ struct DiffuseLight {
   }
 };
 
-/// What a picture shows beside smooth shading: the distance of its pixels from a copy that is smoothed over a few of them, exceeded
-/// by a fifth of the usable pixels. Print and wood have it all over; highlights and silhouettes cover less than a fifth.
+/// Takes the light off a frame's values. Where it is unknown they become 0, and are no longer usable.
+/// @return  how many still are
+int takeOff(const DiffuseLight& under, Image& value, std::vector<char>& usable);
+
+/// What a picture shows beside smooth shading: the distance of its pixels from a copy that is smoothed over a few of them,
+/// exceeded by a fifth of the usable pixels. Print and wood have it all over; highlights and silhouettes cover less than a
+/// fifth.
 struct FineStructure {
   double amount = 0;  ///< in the picture's values, the share that noise explains taken off
   double top = 0;     ///< the value that one usable pixel in 200 exceeds

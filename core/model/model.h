@@ -90,7 +90,7 @@ struct LightEstimate {
 /// What fits to pixels have said already.
 struct KnownPixels {
   std::shared_ptr<const PixelFit> fit{};  ///< of exactly these views
-  /// Of these views and a few more: the search starts there, and keeps the lobe and the background.
+  /// A fit of these views and a few more: the search starts there, and keeps the lobe and the background.
   std::shared_ptr<const PixelFit> near{};
   /// A fit that failed: it answers the same question, or one of fewer views.
   std::shared_ptr<const UnexplainedPixels> unexplained{};

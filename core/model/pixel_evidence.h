@@ -33,7 +33,8 @@ struct UnexplainedPixels {
                           const Settings& otherSettings) const;
 };
 
-/// The reflectance model from the pixels of a fit's views, taken from FitInput::pixels where that knows it. NotSupported where a view has no pixels; the failures of fitViewsPixels().
+/// The reflectance model from the pixels of a fit's views, taken from FitInput::pixels where that knows it. NotSupported where
+/// a view has no pixels; the failures of fitViewsPixels().
 Outcome<ModelFit> reflectanceFromPixels(const FitInput& input, const Settings& settings);
 
 }  // namespace glint

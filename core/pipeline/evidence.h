@@ -39,7 +39,8 @@ Outcome<LinearPixels> pixelsOf(const Frame& frame, FrameSource source, const Det
 void addOtherLevels(const std::vector<Highlight>& given, std::vector<Highlight>& highlights);
 
 /// Highlights of one frame in ideal pixels: those that the scene gives, else detected ones (each at the level of its own peak if
-/// the frame states several lights), over the diffuse light if that is known. Sets the light if the frame says which one is on (one light: its id; none stated: "light").
+/// the frame states several lights), over the diffuse light if that is known. Sets the light if the frame says which one is on
+/// (one light: its id; none stated: "light").
 FrameEvidence gatherEvidence(const Scene& scene, int frame, FrameSource source, const DetectSettings& settings,
                              const SeparateLights& lights = {}, std::shared_ptr<const DiffuseLight> diffuse = {});
 

@@ -19,8 +19,8 @@ struct LightFit {
   SurfaceCorrection correction;
 };
 
-/// The one way from views to a light: estimateLight(), then what light.smooth_mesh, light.refine_depth and light.refine_normals ask
-/// for. A correction is kept where the views on the corrected surface keep what it promised.
+/// The one way from views to a light: estimateLight(), then what light.smooth_mesh, light.refine_depth and light.refine_normals
+/// ask for. A correction is kept where the views on the corrected surface keep what it promised.
 /// @param views   of one light, and of one surface where models are per surface; on the surfaces as they are given.
 /// @param chosen  that of more views of this light, see chosenFor(): its smoothed mesh serves, and no other is looked for; may be
 ///                null.

@@ -125,7 +125,8 @@ struct Inspection {
 };
 
 /// The surface that predictions of a light in a frame use: the frame's own, corrected where the light's contours correct it
-/// (light.smooth_mesh, light.refine_depth, light.refine_normals). Thread-safe. The failures of correctedSurface(); NoSurface without a cache.
+/// (light.smooth_mesh, light.refine_depth, light.refine_normals). Thread-safe. The failures of correctedSurface(); NoSurface
+/// without a cache.
 /// @param light  id.
 Outcome<std::shared_ptr<const Surface>> surfaceFor(const Inspection& inspection, int frame, const std::string& light);
 

@@ -15,11 +15,12 @@
 namespace glint {
 namespace {
 
-constexpr double kExplainedPx = 0.1;    // contours on exact meshes leave 0.01 to 0.05 px
-constexpr double kClearlyBetter = 0.7;  // what is left, over what the given mesh leaves: less gain may be chance
-constexpr double kFirstEdges = 2.5;     // radius in edges: holds the dozen vertices that a quadric needs
-constexpr double kLargestShare = 0.25;  // of the mesh's size: a quadric does not describe more of any object
-constexpr int kWorseInRow = 2;          // radii after which no better one is to be expected
+constexpr double kExplainedPx = 0.1;        // contours on exact meshes leave 0.01 to 0.05 px
+constexpr double kClearlyBetter = 0.7;      // what is left, over what the given mesh leaves: less gain may be chance
+constexpr double kFirstEdges = 2.5;         // radius in edges: holds the dozen vertices that a quadric needs
+constexpr double kLargestShare = 0.25;      // of the mesh's size: a quadric does not describe more of any object
+constexpr double kLeastNormalNoise = 2e-4;  // rad, of a mesh that is worth smoothing: exact ones have 1e-5, scans some 1e-3
+constexpr int kWorseInRow = 2;              // radii after which no better one is to be expected
 
 /// What a light leaves of its contours, RMS over the views; infinite without a light.
 double leftPx(const Outcome<LightEstimate>& light) {
@@ -55,6 +56,7 @@ std::optional<SmoothedMesh> smoothedMesh(const std::vector<TrainingView>& views,
   for (double radius = kFirstEdges * smoother.spacing(); radius < kLargestShare * smoother.size() && worse < kWorseInRow;
        radius *= std::sqrt(2)) {
     SmoothMesh smooth = smoother.at(radius);
+    if (smooth.normalNoise < kLeastNormalNoise && !best) return std::nullopt;  // something else is wrong
     SmoothedMesh tried;
     tried.surface = surface;
     tried.radius = radius;

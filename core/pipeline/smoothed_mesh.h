@@ -22,10 +22,10 @@ struct SmoothedMesh {
   std::string remark() const;
 };
 
-/// Chooses how much to smooth the mesh that all views of one light see. Radii grow by sqrt(2) from a few edges on; the light that is
-/// estimated on each tells how well it explains the contours. The best one counts if it is clearly better than the mesh as given.
-/// Empty where the given mesh explains the contours (nothing is tried then), no radius does clearly better, or light.smooth_mesh
-/// is off.
+/// Chooses how much to smooth the mesh that all views of one light see. Radii grow by sqrt(2) from a few edges on; the light
+/// that is estimated on each tells how well it explains the contours. The best one counts if it is clearly better than the mesh
+/// as given. Empty where the given mesh explains the contours (nothing is tried then), no radius does clearly better, or
+/// light.smooth_mesh is off.
 /// @param views    on the mesh as given. @param plain  their light. @param surface  their key.
 std::optional<SmoothedMesh> smoothedMesh(const std::vector<TrainingView>& views, const Outcome<LightEstimate>& plain,
                                          const std::string& surface, const Settings& settings);

@@ -38,9 +38,9 @@ Outcome<TextureView> textureView(const Scene& scene, int frame, FrameSource sour
                                  const Surface& surface);
 
 /// Views of one surface that tell what lies under the highlights of each other (method.md section 1, "Texture underneath").
-/// Diffuse light is the same in all views of a surface point, as far as lamps rest beside the surface: D(X) = I_j(P_j X) in any view
-/// j whose highlight is elsewhere. Where lobes have tails, I_j = D(X) + a G_j + b Q_j, with a Gaussian's tail G and GGX's Q around
-/// the spots of view j; a and b are shared by all points and views, and D is eliminated.
+/// Diffuse light is the same in all views of a surface point, as far as lamps rest beside the surface: D(X) = I_j(P_j X) in any
+/// view j whose highlight is elsewhere. Where lobes have tails, I_j = D(X) + a G_j + b Q_j, with a Gaussian's tail G and GGX's
+/// Q around the spots of view j; a and b are shared by all points and views, and D is eliminated.
 class TexturePanel {
  public:
   TexturePanel(std::vector<TextureView> views, std::shared_ptr<const Surface> surface);

@@ -16,7 +16,8 @@
 namespace glint {
 
 /// What lies under a highlight, in one patch. Cosine: albedo x N.L / r^2 of the highlight's own lamp, as a matt base would show;
-/// with ambient: plus a constant, light from everywhere; sloped: times 1 + a u + b v. Quadratic: any smooth shading, six coefficients in the pixel.
+/// with ambient: plus a constant, light from everywhere; sloped: times 1 + a u + b v. Quadratic: any smooth shading, six
+/// coefficients in the pixel.
 enum class BackgroundKind { None, Cosine, AmbientCosine, SlopedCosine, Quadratic };
 /// "none", "cosine", "cosine with ambient", "sloped cosine", "quadratic".
 const char* nameOf(BackgroundKind kind);

@@ -122,15 +122,7 @@ LinearPixels linearPixels(const Image& linear, const Image* mask, double clipVal
     p.usable[i] = good & !full;
     p.value.data[i] = std::isfinite(sum) ? static_cast<float>(sum / linear.channels) : 0.f;
   }
-  for (int y = 0; under && y < linear.height; ++y)
-    for (int x = 0; x < linear.width; ++x) {
-      const float diffuse = under->at(x, y);
-      const std::size_t i = static_cast<std::size_t>(y) * linear.width + x;
-      if (std::isfinite(diffuse))
-        p.value.data[i] -= diffuse;
-      else
-        p.usable[i] = 0;
-    }
+  if (under) takeOff(*under, p.value, p.usable);
   return p;
 }
 
