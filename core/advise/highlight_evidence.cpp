@@ -60,7 +60,8 @@ Outcome<ModelFit> fitAnyway(const Inspection& inspection, const HighlightModel& 
       if (v.seen && !v.canonical) addCanonicalContour(v, (*light)->light, settings);
   const auto pixels = inspection.pixelFits.find(key);
   return fitModel(model, std::move(views), light, settings,
-                  pixels != inspection.pixelFits.end() && pixels->second ? *pixels->second : nullptr, progress);
+                  pixels != inspection.pixelFits.end() && pixels->second ? KnownPixels{*pixels->second} : KnownPixels{},
+                  progress);
 }
 
 /// What the fit leaves of each of its views, by the view's place in Inspection::views.

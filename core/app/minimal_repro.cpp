@@ -57,7 +57,7 @@ Fault answer(const Inspection& inspection, const Fault& fault, const std::vector
   if (model.needsLight()) light = fitLight(views, *inspection.scene, *inspection.surfaces, settings);
   const Camera& camera = inspection.scene->frames[static_cast<std::size_t>(fault.frame)].camera;
   Prediction prediction;
-  const Outcome<ModelFit> fit = light ? fitModel(model, light->views, light->light, settings, nullptr, progress)
+  const Outcome<ModelFit> fit = light ? fitModel(model, light->views, light->light, settings, {}, progress)
                                       : fitModel(model, std::move(views), std::nullopt, settings);
   if (fit) {
     std::shared_ptr<const Surface> surface;

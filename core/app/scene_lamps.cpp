@@ -224,7 +224,7 @@ class SceneLamp {
     const auto known = r_.pixelFits.find(r_.keyFor(views_.front().frame, light_.id));
     const bool use = whole_ && !lit.correction && known != r_.pixelFits.end() && known->second;
     const Outcome<ModelFit> fit =
-        accepted(fitModel(radianceModel(), views_, estimate_, settings, use ? *known->second : std::shared_ptr<const PixelFit>()),
+        accepted(fitModel(radianceModel(), views_, estimate_, settings, use ? KnownPixels{*known->second} : KnownPixels{}),
                  PoorFits::Refuse);
     if (!fit || !fit->lightEstimate || !fit->uncertainty) return false;
     a_.solver = fit->solver;

@@ -117,7 +117,7 @@ std::map<std::string, Fold> wholeFolds(const Inspection& inspection, const std::
     for (std::size_t v = 0; v < inspection.views.size(); ++v)
       if (inspection.views[v].seen && inspection.views[v].highlight.light == light)
         all.others.push_back(inspection.viewAsGiven(static_cast<int>(v)));
-    all.pixelFit = pixelFitFor(inspection, {light, {}});
+    all.pixels = knownPixelsOf(inspection, {light, {}});
   }
   return whole;
 }

@@ -11,6 +11,7 @@
 #include "core/base/progress.h"
 #include "core/base/stage_times.h"
 #include "core/light/left_out.h"
+#include "core/pipeline/lobe_stage.h"
 #include "core/pipeline/metrics.h"
 #include "core/pipeline/training.h"
 #include "core/surface/mesh_policy.h"
@@ -90,7 +91,7 @@ Outcome<std::shared_ptr<const Surface>> Fold::surfaceOf(int frame, const Highlig
 
 Outcome<ModelFit> fitFold(Fold& fold, const HighlightModel& model, const Settings& settings, PoorFits poor,
                           const ProgressFn& progress) {
-  if (!model.needsLight()) return accepted(fitModel(model, fold.others, std::nullopt, settings, fold.pixelFit, progress), poor);
+  if (!model.needsLight()) return accepted(fitModel(model, fold.others, std::nullopt, settings, fold.pixels, progress), poor);
   if (!fold.light) {
     fold.light = fitLight(fold.others, *fold.inspection->scene, *fold.inspection->surfaces, settings);
     if (fold.light->correction) {
@@ -100,9 +101,9 @@ Outcome<ModelFit> fitFold(Fold& fold, const HighlightModel& model, const Setting
   }
   if (model.needsCanonicalContours() && fold.light->light && !std::exchange(fold.canonicalTried, true))
     for (TrainingView& v : fold.light->views) addCanonicalContour(v, fold.light->light->light, settings);
-  return accepted(
-      fitModel(model, fold.light->views, fold.light->light, settings, fold.light->correction ? nullptr : fold.pixelFit, progress),
-      poor);
+  return accepted(fitModel(model, fold.light->views, fold.light->light, settings,
+                           fold.light->correction ? KnownPixels{} : fold.pixels, progress),
+                  poor);
 }
 
 PoorFits poorFitsFor(const ModelResult& result) {
@@ -138,6 +139,8 @@ std::vector<Fold> foldsOf(const Inspection& inspection, LeaveOut together) {
       if (!v.seen || v.frame == fold.left.frame || inspection.keyFor(v.frame, v.highlight.light) != key) continue;
       fold.others.push_back(inspection.viewAsGiven(static_cast<int>(i)));
     }
+    fold.pixels = knownPixelsOf(inspection, key);
+    fold.pixels.near = std::exchange(fold.pixels.fit, nullptr);  // that of all views
     all.push_back(std::move(fold));
   }
   return all;

@@ -23,7 +23,7 @@ struct Fold {
   std::optional<LightFit> light;     ///< of the others, with their own correction of the surface
   bool canonicalTried = false;
   std::shared_ptr<const Surface> leftSurface;  ///< of the left-out view, corrected by what the others say
-  std::shared_ptr<const PixelFit> pixelFit;    ///< of exactly these views, where it is known already
+  KnownPixels pixels;                          ///< what the fit to the pixels of all views has said
   /// The surface on which a model predicts in some frame. The failures of correctedSurface().
   Outcome<std::shared_ptr<const Surface>> surfaceOf(int frame, const HighlightModel& model) const;
 };

@@ -87,13 +87,21 @@ struct LightEstimate {
   std::optional<ParameterUncertainty> uncertainty;
 };
 
+/// What fits to pixels have said already.
+struct KnownPixels {
+  std::shared_ptr<const PixelFit> fit{};  ///< of exactly these views
+  /// Of these views and a few more: the search starts there, and keeps the lobe and the background.
+  std::shared_ptr<const PixelFit> near{};
+  /// A fit that failed: it answers the same question, or one of fewer views.
+  std::shared_ptr<const UnexplainedPixels> unexplained{};
+};
+
 /// What a fit may use. Views are of one light (and one surface, when models are per surface).
 struct FitInput {
-  std::vector<TrainingView> views;                       ///< those that were not `seen` are skipped
-  std::optional<LightEstimate> light;                    ///< for models with needsLight()
-  std::optional<Failure> lightFailure;                   ///< why `light` is empty
-  std::shared_ptr<const PixelFit> pixelFit;              ///< of the pixels of exactly these views, where it is known already
-  std::shared_ptr<const UnexplainedPixels> unexplained;  ///< a fit to pixels that failed: it answers the same question
+  std::vector<TrainingView> views;      ///< those that were not `seen` are skipped
+  std::optional<LightEstimate> light;   ///< for models with needsLight()
+  std::optional<Failure> lightFailure;  ///< why `light` is empty
+  KnownPixels pixels;                   ///< for models with takesPixels()
   /// A fit of the same model to nearly these views (cameras moved a little). `reflectance` starts from its lamp and keeps the
   /// lamp's shape.
   std::shared_ptr<const ModelFit> near;
@@ -246,7 +254,7 @@ class HighlightModel {
   virtual std::string reference() const = 0;          ///< paper or "method.md section 7"
   virtual bool needsLight() const = 0;                ///< the fit uses FitInput::light
   virtual bool needsCanonicalContours() const = 0;    ///< the fit uses TrainingView::canonical
-  virtual bool takesPixels() const { return false; }  ///< the fit may use TrainingView::pixels, FitInput::pixelFit
+  virtual bool takesPixels() const { return false; }  ///< the fit may use TrainingView::pixels, FitInput::pixels
   virtual bool walks() const { return false; }        ///< predictions follow predict.query: they can walk on local quadrics
   virtual bool hasOutlines() const { return false; }  ///< it reconstructs an ellipsoid from one outline in each view
   /// The outline that it takes from a view; empty where the view has none, or where the model takes none.

@@ -146,7 +146,7 @@ bool havePixels(const std::vector<TrainingView>& views) {
 }
 
 Outcome<PixelFit> fitViewsPixels(const std::vector<TrainingView>& views, const std::optional<LightEstimate>& light,
-                                 const Settings& settings, const ProgressFn& progress) {
+                                 const Settings& settings, const ProgressFn& progress, const PixelFit* near) {
   std::vector<const PixelPatch*> patches;
   double level = 0.5;
   for (const TrainingView& v : views) {
@@ -155,6 +155,15 @@ Outcome<PixelFit> fitViewsPixels(const std::vector<TrainingView>& views, const s
     level = v.highlight.level;
   }
   if (patches.empty()) return Failure{Reason::TooFewViews, "no training view has pixels"};
+  PixelFitOptions options;
+  options.progress = progress;
+  if (near) {
+    PixelFitOptions same = options;
+    same.background = near->background;
+    same.blur = near->model.blurVariance != 0;
+    Outcome<PixelFit> fit = fitPixels({near->model.lobe}, patches, near->model.lamp, near->model.roughness, same);
+    if (fit && !fit->poor) return fit;
+  }
   const std::vector<Lobe> lobes = lobesOf(settings);
   std::vector<Light> starts;
   if (light) starts.push_back(light->light);
@@ -163,8 +172,6 @@ Outcome<PixelFit> fitViewsPixels(const std::vector<TrainingView>& views, const s
   if (const Outcome<Triangulation> meet = triangulateLight(rays)) starts.push_back(meet->light);
   if (const std::optional<Light> mean = meanRay(rays)) starts.push_back(*mean);
   Outcome<PixelFit> best = Failure{Reason::NoLight, "no reflected ray to start from"};
-  PixelFitOptions options;
-  options.progress = progress;
   for (const Light& start : starts) {
     const double alpha = medianContourAngle(views, start, kWidthPoints);
     if (!(alpha > 0)) continue;
@@ -193,18 +200,22 @@ const Failure* UnexplainedPixels::answerTo(const std::vector<TrainingView>& othe
   const auto start = [](const std::optional<LightEstimate>& l) {
     return l ? std::optional(l->light.homogeneous()) : std::nullopt;
   };
-  const bool same = settings == otherSettings && start(light) == start(otherLight) &&
-                    std::equal(asked.begin(), asked.end(), other.begin(), other.end(),
-                               [](const TrainingView* a, const TrainingView* b) { return showTheSame(*a, *b); });
+  const bool fewer = !other.empty() && other.size() < asked.size();
+  const auto wasAsked = [&](const TrainingView* v) {
+    return std::any_of(asked.begin(), asked.end(), [&](const TrainingView* a) { return showTheSame(*a, *v); });
+  };
+  const bool same = settings == otherSettings && (fewer || (other.size() == asked.size() && start(light) == start(otherLight))) &&
+                    std::all_of(other.begin(), other.end(), wasAsked);
   return same ? &failure : nullptr;
 }
 
 Outcome<ModelFit> reflectanceFromPixels(const FitInput& input, const Settings& settings) {
   if (!havePixels(input.views)) return Failure{Reason::NotSupported, "not every training view has pixels"};
-  if (input.unexplained && !input.pixelFit)
-    if (const Failure* const before = input.unexplained->answerTo(input.views, input.light, settings)) return *before;
-  const Outcome<PixelFit> known =
-      input.pixelFit ? Outcome<PixelFit>(*input.pixelFit) : fitViewsPixels(input.views, input.light, settings, input.progress);
+  const KnownPixels& said = input.pixels;
+  if (said.unexplained && !said.fit)
+    if (const Failure* const before = said.unexplained->answerTo(input.views, input.light, settings)) return *before;
+  const Outcome<PixelFit> known = said.fit ? Outcome<PixelFit>(*said.fit)
+                                           : fitViewsPixels(input.views, input.light, settings, input.progress, said.near.get());
   if (!known) return known.failure();
   const PixelFit& pixels = *known;
   ModelFit fit;

@@ -109,7 +109,7 @@ FittedBand bandOf(const HighlightModel& model, const ModelFit& fit, const FitInp
   std::vector<Other> others;
   std::vector<double> squares{meanSquare(model, fit, input, settings)};
   FitInput anew = input;
-  anew.pixelFit.reset();  // it is that of the lobe chosen
+  anew.pixels.fit.reset();  // it is that of the lobe chosen
   const auto tryOther = [&](const HighlightModel& m, const Settings& with, const std::string& name) {
     Outcome<ModelFit> other = accepted(m.fit(anew, with), poor);
     const double square = other ? meanSquare(m, *other, input, settings) : std::nan("");

@@ -73,11 +73,11 @@ LightFit fitLight(std::vector<TrainingView> views, const Scene& scene, const Sur
 }
 
 FitInput fitInput(const HighlightModel& model, std::vector<TrainingView> views,
-                  const std::optional<Outcome<LightEstimate>>& light, const Settings& settings,
-                  std::shared_ptr<const PixelFit> pixelFit, const ProgressFn& progress) {
+                  const std::optional<Outcome<LightEstimate>>& light, const Settings& settings, KnownPixels pixels,
+                  const ProgressFn& progress) {
   FitInput input;
   input.views = std::move(views);
-  input.pixelFit = std::move(pixelFit);
+  input.pixels = std::move(pixels);
   input.progress = progress;
   if (!model.needsLight() || !light) return input;
   if (!*light) {
@@ -97,9 +97,9 @@ FitInput fitInput(const HighlightModel& model, std::vector<TrainingView> views,
 }
 
 Outcome<ModelFit> fitModel(const HighlightModel& model, std::vector<TrainingView> views,
-                           const std::optional<Outcome<LightEstimate>>& light, const Settings& settings,
-                           std::shared_ptr<const PixelFit> pixelFit, const ProgressFn& progress) {
-  return model.fit(fitInput(model, std::move(views), light, settings, std::move(pixelFit), progress), settings);
+                           const std::optional<Outcome<LightEstimate>>& light, const Settings& settings, KnownPixels pixels,
+                           const ProgressFn& progress) {
+  return model.fit(fitInput(model, std::move(views), light, settings, std::move(pixels), progress), settings);
 }
 
 }  // namespace glint

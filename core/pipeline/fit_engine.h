@@ -26,15 +26,15 @@ LightFit fitLight(std::vector<TrainingView> views, const Scene& scene, const Sur
 
 /// What a model is fitted to: the views, with canonical contours under the light where the model needs them and a view has none.
 /// @param light     for models that need one; empty if none was asked for.
-/// @param pixelFit  of the pixels of exactly these views, where it is known already.
+/// @param pixels    what fits to these and other views' pixels have said.
 FitInput fitInput(const HighlightModel& model, std::vector<TrainingView> views,
-                  const std::optional<Outcome<LightEstimate>>& light, const Settings& settings,
-                  std::shared_ptr<const PixelFit> pixelFit = nullptr, const ProgressFn& progress = {});
+                  const std::optional<Outcome<LightEstimate>>& light, const Settings& settings, KnownPixels pixels = {},
+                  const ProgressFn& progress = {});
 
 /// Fits a model to that input. Fails as the model does.
 Outcome<ModelFit> fitModel(const HighlightModel& model, std::vector<TrainingView> views,
-                           const std::optional<Outcome<LightEstimate>>& light, const Settings& settings,
-                           std::shared_ptr<const PixelFit> pixelFit = nullptr, const ProgressFn& progress = {});
+                           const std::optional<Outcome<LightEstimate>>& light, const Settings& settings, KnownPixels pixels = {},
+                           const ProgressFn& progress = {});
 
 /// A fit's band (predict.band), and remarks about it, in words.
 struct FittedBand {

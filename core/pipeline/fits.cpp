@@ -24,10 +24,8 @@ FitInput fitInputOf(const Inspection& in, const HighlightModel& model, const Fit
   // Corrected normals are not those that the stage saw.
   const bool known = havePixels(views) && !in.corrections.count(key);
   const auto light = in.lights.find(key);
-  FitInput input = fitInput(model, std::move(views), light == in.lights.end() ? std::nullopt : std::optional(light->second),
-                            in.request.settings, known ? pixelFitFor(in, key) : nullptr);
-  if (const auto failed = in.unexplained.find(key); known && failed != in.unexplained.end()) input.unexplained = failed->second;
-  return input;
+  return fitInput(model, std::move(views), light == in.lights.end() ? std::nullopt : std::optional(light->second),
+                  in.request.settings, known ? knownPixelsOf(in, key) : KnownPixels{});
 }
 
 FittedBand bandOf(const Inspection& in, const HighlightModel& model, const ModelResult::Fit& fit) {

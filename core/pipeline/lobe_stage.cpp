@@ -159,9 +159,12 @@ void fitLobes(Inspection& r, const SurfaceOfFrame& surfaceOf, bool together, con
   }
 }
 
-std::shared_ptr<const PixelFit> pixelFitFor(const Inspection& r, const FitKey& key) {
+KnownPixels knownPixelsOf(const Inspection& r, const FitKey& key) {
+  KnownPixels known;
   const auto fit = r.pixelFits.find(key);
-  return fit != r.pixelFits.end() && fit->second && takesAnyLobe(r.request.settings) ? *fit->second : nullptr;
+  if (fit != r.pixelFits.end() && fit->second && takesAnyLobe(r.request.settings)) known.fit = *fit->second;
+  if (const auto failed = r.unexplained.find(key); failed != r.unexplained.end()) known.unexplained = failed->second;
+  return known;
 }
 
 std::optional<FrameEvidence> contouredAgain(const Inspection& lobes, const Scene& scene, const EvidenceInputs& in, int f,

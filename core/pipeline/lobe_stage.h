@@ -28,9 +28,9 @@ using SurfaceOfFrame = std::function<std::shared_ptr<const Surface>(int frame)>;
 /// Stopped.
 void fitLobes(Inspection& inspection, const SurfaceOfFrame& surfaceOf, bool together, const ProgressFn& progress);
 
-/// The stage's fit of a light for the reflectance model. Nothing without such a fit, or where the request names the lobe or the
-/// lamp's shape: the stage does not look at these, so that contours are the same for all of them.
-std::shared_ptr<const PixelFit> pixelFitFor(const Inspection& inspection, const FitKey& key);
+/// The stage's fit of a light for the reflectance model, or what failed. No fit where the request names the lobe or the lamp's
+/// shape: the stage does not look at these, so that contours are the same for all of them.
+KnownPixels knownPixelsOf(const Inspection& inspection, const FitKey& key);
 
 /// Replaces the evidence of frames that were not looked at before by contours with the lobe's background; keeps the evidence as
 /// detected in Inspection::detected. Throws Stopped.

@@ -52,7 +52,7 @@ ModelFit fit(const ModelHandle& handle, const std::vector<TrainingView>& views, 
     std::optional<Outcome<LightEstimate>> of;
     if (light) of = *light;
     if (!light && handle.model->needsLight()) of = estimateLight(views, s);
-    ModelFit fitted = valueOf(fitModel(*handle.model, views, of, s, nullptr, report));
+    ModelFit fitted = valueOf(fitModel(*handle.model, views, of, s, {}, report));
     fitted.model = handle.model->id();
     fitted.light = views.front().highlight.light;
     return fitted;

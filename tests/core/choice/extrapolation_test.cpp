@@ -6,10 +6,13 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <numbers>
 #include <random>
 
+#include "core/base/solver_trace.h"
 #include "core/choice/surface_assumption.h"
+#include "core/model/pixel_evidence.h"
 #include "tests/core/pipeline/exact_scene.h"
 
 namespace glint {
@@ -181,6 +184,52 @@ TEST(FoldsOf, AViewFromTheSamePlaceIsLeftOutWithIt) {
   for (const Fold& f : foldsOf(inspection, LeaveOut::Place))
     EXPECT_EQ(f.others.size(), f.left.frame == 2 || f.left.frame == 6 ? 5u : 6u);
   for (const Fold& f : foldsOf(inspection, LeaveOut::Frame)) EXPECT_EQ(f.others.size(), 6u);
+}
+
+int fitsToPixels(const SolverTrace& trace) {
+  return static_cast<int>(std::count_if(trace.runs().begin(), trace.runs().end(),
+                                        [](const SolverRun& run) { return run.what.find("from pixels") != std::string::npos; }));
+}
+
+std::shared_ptr<const Scene> cyclesIfAny(const char* name) {
+  const std::filesystem::path file = std::filesystem::path(GLINT_SHARED_DIR) / "data" / "cycles" / name / "scene.json";
+  return std::filesystem::exists(file) ? std::make_shared<const Scene>(readScene(file.string())) : nullptr;
+}
+
+// The lamp is that of the path tracer. A search from anew tries four lobes over several backgrounds.
+TEST(FitFold, PixelsWithAViewLeftOutStartFromTheFitOfAllViews) {
+  const auto scene = cyclesIfAny("sphere");
+  if (!scene) GTEST_SKIP() << "no shared/data/cycles/sphere beside the project";
+  const Inspection inspection = extrapolationEvidence(scene, "spread:4");
+  std::vector<Fold> folds = foldsOf(inspection, LeaveOut::Place);
+  ASSERT_EQ(folds.size(), 4u);
+  const SolverTrace trace;
+  const Outcome<ModelFit> fit = fitFold(folds[0], radianceModel(), inspection.request.settings);
+  ASSERT_TRUE(fit) << fit.failure().message();
+  EXPECT_EQ(fit->solver, "pixels");
+  EXPECT_LT((fit->lightEstimate->position() - Eigen::Vector3d(1.1, -1.2, 1.5)).norm(), 0.02);
+  EXPECT_GE(fitsToPixels(trace), 1);
+  EXPECT_LE(fitsToPixels(trace), 2) << "on few cells and on all";
+}
+
+// Where no lobe explains the pixels of all views, those of fewer views are not asked again.
+TEST(FitFold, PixelsThatNoLobeExplainsAreNotFittedAgainForFewerViews) {
+  const auto given = cyclesIfAny("sphere");
+  if (!given) GTEST_SKIP() << "no shared/data/cycles/sphere beside the project";
+  Inspection inspection = extrapolationEvidence(given, "spread:4");
+  ASSERT_EQ(inspection.pixelFits.size(), 1u);
+  const FitKey key = inspection.pixelFits.begin()->first;
+  const Failure failure{Reason::NotConverged, "no lobe"};
+  const std::optional<LightEstimate> light = *inspection.lightOf(key);
+  inspection.pixelFits.insert_or_assign(key, failure);
+  inspection.unexplained.insert_or_assign(key, std::make_shared<const UnexplainedPixels>(UnexplainedPixels{
+                                                   inspection.views, light, inspection.request.settings, failure}));
+  std::vector<Fold> folds = foldsOf(inspection, LeaveOut::Place);
+  const SolverTrace trace;
+  const Outcome<ModelFit> fit = fitFold(folds[0], radianceModel(), inspection.request.settings);
+  ASSERT_TRUE(fit) << fit.failure().message();
+  EXPECT_EQ(fit->solver, "contours");
+  EXPECT_EQ(fitsToPixels(trace), 0);
 }
 
 }  // namespace

@@ -22,10 +22,11 @@ struct Scene {
   Eigen::Vector3d lamp{0.9, -0.5, 2.2};
   Lobe lobe = Lobe::Ggx;
   double roughness = 0.12;
-  double albedo = 0;  ///< of a matt base; 1 shows about half the peak's radiance
-  double tilt = 0;    ///< slope of a further light across the image, share of the peak over its width
-  double noise = 0;   ///< standard deviation, share of the peak
-  double clip = 0;    ///< share of the peak at which values end; 0 = never
+  double albedo = 0;   ///< of a matt base; 1 shows about half the peak's radiance
+  double ambient = 0;  ///< that the base shows everywhere, share of the peak
+  double tilt = 0;     ///< slope of a further light across the image, share of the peak over its width
+  double noise = 0;    ///< standard deviation, share of the peak
+  double clip = 0;     ///< share of the peak at which values end; 0 = never
   double blurPx = 0;
   int views = 4;
   int sub = 3;  ///< samples across a pixel
@@ -117,7 +118,7 @@ Photograph photograph(const Scene& s, int view) {
   Pixel sum(0, 0);
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x < kWidth; ++x) {
-      double v = value[y * kWidth + x] + p.top * (s.tilt * x / kWidth + s.noise * gauss(engine));
+      double v = value[y * kWidth + x] + p.top * (s.ambient + s.tilt * x / kWidth + s.noise * gauss(engine));
       if (s.clip > 0) v = std::min(v, clipValue(s, p.top));
       p.image.at(x, y) = float(std::max(0.0, v));
       if (gloss[y * kWidth + x] < 0.5 * p.top) continue;
@@ -223,6 +224,62 @@ TEST(PixelFit, AMattBaseIsNamed) {
   const Outcome<PixelFit> fit = fitted(s, {Lobe::Ggx});
   ASSERT_TRUE(fit);
   EXPECT_EQ(fit->background, BackgroundKind::Cosine) << nameOf(fit->background);
+}
+
+Scene overexposedBaseInARoom() {
+  Scene s;
+  s.albedo = 0.3;
+  s.ambient = 0.03;
+  s.clip = 1.0 / 3;
+  return s;
+}
+
+TEST(PixelFit, AMattBaseInARoomIsNamedAndDoesNotMoveTheLamp) {
+  const Scene s = overexposedBaseInARoom();
+  const Outcome<PixelFit> fit = fitted(s);
+  ASSERT_TRUE(fit) << fit.failure().message();
+  EXPECT_EQ(fit->background, BackgroundKind::AmbientCosine) << nameOf(fit->background);
+  EXPECT_EQ(fit->model.lobe, Lobe::Ggx);
+  EXPECT_NEAR(fit->model.roughness / s.roughness, 1, 2 * kRoughnessTolerance);
+  EXPECT_LT(offBy(*fit, s), 2 * kLightTolerance);
+}
+
+TEST(PixelFit, AMattBaseInARoomOfAnyScale) {
+  Scene unit = overexposedBaseInARoom();
+  unit.views = 3;
+  const Outcome<PixelFit> reference = fitted(unit, {Lobe::Ggx});
+  ASSERT_TRUE(reference);
+  for (const double scale : {1e-3, 1e3}) {
+    Scene s = unit;
+    s.scale = scale;
+    const Outcome<PixelFit> fit = fitted(s, {Lobe::Ggx});
+    ASSERT_TRUE(fit) << scale;
+    EXPECT_EQ(fit->background, reference->background) << scale;
+    EXPECT_LT((fit->model.lamp.position() / scale - reference->model.lamp.position()).norm(), 1e-5) << scale;
+  }
+}
+
+TEST(PixelFit, NoiseOnAMattBaseInARoom) {
+  Scene s = overexposedBaseInARoom();
+  s.noise = 0.002;
+  const Outcome<PixelFit> fit = fitted(s, {Lobe::Ggx});
+  ASSERT_TRUE(fit) << fit.failure().message();
+  const Eigen::Vector3d error = fit->model.lamp.position() - s.lamp;
+  // 99.99 % of a chi-squared with three degrees of freedom.
+  EXPECT_LT(error.dot(fit->positionCovariance.inverse() * error), 21.1);
+}
+
+// Both coefficients where there is a constant alone, and where there is nothing.
+TEST(PixelFit, ABaseWithoutShadingLeavesTheLamp) {
+  for (const double ambient : {0.0, 0.03}) {
+    Scene s;
+    s.ambient = ambient;
+    PixelFitOptions options;
+    options.background = BackgroundKind::AmbientCosine;
+    const Outcome<PixelFit> fit = fitted(s, {Lobe::Ggx}, options);
+    ASSERT_TRUE(fit) << fit.failure().message();
+    EXPECT_LT(offBy(*fit, s), kLightTolerance) << ambient;
+  }
 }
 
 TEST(PixelFit, AFurtherLightAcrossTheImageDoesNotMoveTheLamp) {
