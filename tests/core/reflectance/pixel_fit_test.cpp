@@ -228,7 +228,7 @@ TEST(PixelFit, AMattBaseIsNamed) {
 
 Scene overexposedBaseInARoom() {
   Scene s;
-  s.albedo = 0.3;
+  s.albedo = 0.15;
   s.ambient = 0.03;
   s.clip = 1.0 / 3;
   return s;
@@ -492,7 +492,7 @@ double keptAgainstAnew(patch::PixelProblem& problem, const patch::State& at, dou
 
 TEST(PixelProblem, AStepOfTheBlurEqualsOneThatComputesAllAnew) {
   Scene s;
-  s.albedo = 0.3;
+  s.albedo = 0.15;
   const std::vector<PixelPatch> patches = patchesOf(s);
   std::vector<const PixelPatch*> pointers;
   for (const PixelPatch& p : patches) pointers.push_back(&p);
