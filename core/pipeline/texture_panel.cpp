@@ -28,7 +28,7 @@ constexpr int kGainPoints = 1500;          // of a view: their median ratio is g
 constexpr double kSameExposure = 0.02;     // automatic exposures differ by more; below it is noise, or Fresnel's transmission
 constexpr double kDark = 0.05;             // of the brightest value: ratios of darker ones are noise
 constexpr double kNormalSpread = 1.4826;   // standard deviations in a median of absolute ones
-constexpr double kLeastSpread = 1e-12;     // of exact pictures
+constexpr double kExactSpread = 1e-12;     // of exact pictures
 constexpr double kMostTail = 2;            // of the spot's own: more is no tail
 
 double gaussianTail(double radius2) { return std::exp2(-radius2); }
@@ -321,7 +321,7 @@ void TexturePanel::fitTails() {
       }
       equations.add(weights, values, tails);
     }
-    spread = std::max(kNormalSpread * upperMedian(residuals), kLeastSpread);
+    spread = std::max(kNormalSpread * upperMedian(residuals), kExactSpread);
     const Eigen::Vector2d both = equations.solved();
     tails_ = {std::min(both(0), kMostTail), std::min(both(1), kMostTail)};
   }
