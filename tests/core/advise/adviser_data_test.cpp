@@ -53,11 +53,11 @@ TEST_P(AdviserData, NamesTheBestHeldOutModelAtOnce) {
   }
 }
 
-/// No lobe of one width explains the pixels of an anisotropic surface. To find that out takes as long as a fit that succeeds.
+/// No lobe of one width explains the pixels of brushed metal. To find that out takes as long as a fit that succeeds.
 class AdviserUnexplained : public testing::Test {
  protected:
   void SetUp() override {
-    const std::filesystem::path file = std::filesystem::path(GLINT_SOURCE_DIR) / "../shared/data/exact/aniso_ax/scene.json";
+    const std::filesystem::path file = std::filesystem::path(GLINT_SOURCE_DIR) / "../shared/data/ladder/brushed/scene.json";
     if (!std::filesystem::exists(file)) GTEST_SKIP() << "no data in " << file;
     scene_ = std::make_shared<const Scene>(readScene(file.string()));
   }
