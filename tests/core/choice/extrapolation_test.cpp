@@ -220,10 +220,9 @@ TEST(FitFold, PixelsThatNoLobeExplainsAreNotFittedAgainForFewerViews) {
   ASSERT_EQ(inspection.pixelFits.size(), 1u);
   const FitKey key = inspection.pixelFits.begin()->first;
   const Failure failure{Reason::NotConverged, "no lobe"};
-  const std::optional<LightEstimate> light = *inspection.lightOf(key);
   inspection.pixelFits.insert_or_assign(key, failure);
   inspection.unexplained.insert_or_assign(key, std::make_shared<const UnexplainedPixels>(UnexplainedPixels{
-                                                   inspection.views, light, inspection.request.settings, failure}));
+                                                   inspection.views, {}, inspection.request.settings, failure}));
   std::vector<Fold> folds = foldsOf(inspection, LeaveOut::Place);
   const SolverTrace trace;
   const Outcome<ModelFit> fit = fitFold(folds[0], radianceModel(), inspection.request.settings);
