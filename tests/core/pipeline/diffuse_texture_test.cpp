@@ -5,6 +5,7 @@
 
 #include <opencv2/imgcodecs.hpp>
 
+#include "core/pipeline/hand_edits.h"
 #include "tests/core/pipeline/painted_scene.h"
 #include "tests/core/pipeline/questions.h"
 #include "tests/core/scene/scene_fixture.h"
@@ -130,17 +131,34 @@ TEST(TextureUnderneath, NoiseAndUnequalExposuresMoveContoursByAFractionOfAPixel)
   expectHighlights(inspect(scene, asked()), inspect(photographed({}, folder, false), asked()), 0.3, 0.08);
 }
 
+/// The stage alone: dozens of squares would be taken for highlights, and fitted.
+std::vector<FrameEvidence> afterStage(const std::shared_ptr<Scene>& scene, const InspectionRequest& request) {
+  Inspection r;
+  r.scene = r.given = scene;
+  r.request = request;
+  r.surfaces = std::make_shared<SurfaceCache>(*scene);
+  r.inputs.evidence = evidenceInputs(request, false);
+  std::vector<int> frames;
+  for (int f = 0; f < static_cast<int>(scene->frames.size()); ++f) {
+    frames.push_back(f);
+    r.evidence.push_back(evidenceFor(*scene, f, *r.inputs.evidence));
+  }
+  const std::shared_ptr<const Surface> surface = *r.surfaces->surfaceOf(0, {});
+  takeTextureOff(r, frames, [&](int) { return surface; }, {});
+  return r.evidence;
+}
+
 TEST(TextureUnderneath, WithTooFewViewsOrOffNothingIsTakenOff) {
   const TemporaryFolder folder;
   Printed few;
   few.views = 3;
-  InspectionRequest all = asked();
-  all.train = "0-2";
-  all.models = {};  // dozens of squares would be taken for highlights, and fitted
-  for (const FrameEvidence& e : inspect(photographed(few, folder, true), all).evidence) EXPECT_FALSE(e.diffuse);
-  InspectionRequest off = asked("off");
-  off.models = {};
-  for (const FrameEvidence& e : inspect(photographed({}, folder, true), off).evidence) {
+  for (const FrameEvidence& e : afterStage(photographed(few, folder, true), asked())) {
+    EXPECT_TRUE(e.structure.isTexture());
+    EXPECT_FALSE(e.diffuse);
+  }
+  const auto scene = photographed({}, folder, true);
+  for (const FrameEvidence& e : afterStage(scene, asked())) EXPECT_TRUE(e.diffuse);
+  for (const FrameEvidence& e : afterStage(scene, asked("off"))) {
     EXPECT_FALSE(e.diffuse);
     EXPECT_EQ(e.structure.amount, 0);
   }
