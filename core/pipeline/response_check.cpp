@@ -74,9 +74,9 @@ std::string responseDoubt(const Scene& scene, FrameSource source, const std::vec
   }
   if (!better) return "";
   return formatted(
-      "no response of the camera is stated, and the pixels of the highlights do not follow the sRGB curve: as %s, %.2g px remain "
-      "instead of %.2g px (state it: \"response\": \"%s\" in the camera, or --response %s for a capture)",
-      CameraResponse::named(better, "", "")->words().c_str(), least, *given, better, better);
+      "no response of the camera is stated, and the pixels of the highlights do not follow the sRGB curve: read as %s, the fit "
+      "leaves %.2g px instead of %.2g px (state it: \"response\": \"%s\" in the camera, or --response %s for a capture)",
+      better, least, *given, better, better);
 }
 
 }  // namespace glint
