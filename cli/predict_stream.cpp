@@ -57,7 +57,7 @@ std::string nextAnswer(PoseLineReader& reader, const LivePredictor& predictor, M
     const std::optional<PoseLine> pose = reader.next();
     if (!pose) return {};
     if (!reader.warning().empty() && missed.odd++ == 0) missed.firstOdd = reader.warning();
-    const Outcome<LiveAnswer> answer = predictor.predict(pose->id, pose->cameraFromWorld, pose->camera);
+    const Outcome<LiveAnswer> answer = predictor.predict(pose->id, pose->cameraFromWorld, pose->camera, pose->worldFromObject);
     if (!answer) return liveRefusal(pose->id, reader.line(), "failed", answer.failure().message());
     return liveLine({pose->id, pose->time}, *answer, microsecondsSince(reader.arrived()));
   } catch (const LostPose& e) {

@@ -11,6 +11,7 @@
 #include "core/base/number_text.h"
 #include "core/base/numeric.h"
 #include "core/light/estimate.h"
+#include "core/light/shared_lamp.h"
 #include "core/model/model.h"
 #include "core/model/plausible.h"
 #include "core/model/reflectance_settings.h"
@@ -54,6 +55,12 @@ class Check {
       return std::move(result_);
     }
     asGiven_ = lampAfter({});
+    if (std::string moves = movesWithCamera(); !moves.empty()) {
+      const Scene there = inCameras(scene_);
+      CameraCheck check = Check(there, progress_).run();
+      check.lightFrame = std::move(moves);
+      return check;
+    }
     if (asGiven_ && asGiven_->miss < EIGEN_PI / 2) result_.missDeg = asGiven_->miss * kDegrees;
     const std::optional<Fitted> given = asGiven_ ? fit({}, *asGiven_, agreeing(*asGiven_), {}) : std::nullopt;
     add("as given", given);
@@ -448,8 +455,18 @@ class Check {
                     searched_.size()));
   }
 
-  void sayThatNothingFits(const std::optional<Fitted>& given) {
+  /// In words, where the mirrored rays meet in the axes of the cameras and not in the world; else "".
+  std::string movesWithCamera() const {
     const std::optional<SharedLamp> carried = lampAfter({}, true);
+    const double fixed = asGiven_ ? asGiven_->miss : EIGEN_PI;
+    if (!carried || !(carried->miss < kMeets) || !(fixed > std::max(2 * carried->miss, kMeets))) return "";
+    return formatted(
+        "the lamp moves with the camera (or the object turned before a camera that stood still): the mirrored rays "
+        "miss it by %.2g degrees, and one that stands still by %s",
+        carried->miss * kDegrees, missText(asGiven_).c_str());
+  }
+
+  void sayThatNothingFits(const std::optional<Fitted>& given) {
     const double fixed = asGiven_ ? asGiven_->miss : EIGEN_PI;
     const int inside = insideOfSurface();
     int beside = 0;
@@ -458,13 +475,7 @@ class Check {
     if (given)
       words += formatted("; the best light leaves %.2g px, %.0f %% of their radius", given->rmsPx,
                          100 * given->rmsPx / radiusOf(*asGiven_));
-    if (carried && carried->miss < kMeets && fixed > 2 * carried->miss && fixed > kMeets)
-      words += formatted(
-          "; the lamp seems to move with the camera: if it does, the mirrored rays miss it by %.2g degrees; if it stands still, "
-          "by %s (a "
-          "flash or a ring light; Glint expects a lamp that stands still)",
-          carried->miss * kDegrees, missText(asGiven_).c_str());
-    else if (fixed < kMeets)
+    if (fixed < kMeets)
       words += formatted(
           "; their positions fit: the mirrored rays miss one lamp by only %.2g degrees. Their shapes do not: no model covers "
           "this scene "

@@ -23,20 +23,6 @@ CameraCheck checkCameras(const Scene& scene, const ProgressFn& progress = {});
 /// The convention report. Adds this check if most cameras see their surface or it finds why not, and a misplaced mesh's place.
 ConventionReport fullReport(const Scene& scene, const ProgressFn& progress = {});
 
-/// A lamp that most views have in common, by the mirrored rays of their highlights alone: no shape of a highlight has a say.
-struct SharedLamp {
-  Light light;
-  std::vector<int> chosen;     ///< of each view, the ray that passes the lamp best; -1 if the view has none
-  std::vector<double> misses;  ///< of each view, rad: by which that ray passes the lamp; pi without a ray
-  double miss = 0;             ///< largest one of the best three quarters of the views
-};
-
-/// The lamp that rays pass most closely, sought among the places where two rays of different views come nearest to each other,
-/// and the directions of single rays. A view may show other lamps, too, or a highlight twice.
-/// @param views  the mirrored rays of each view's highlights; a view may have none
-/// @return nothing if fewer than two views have a ray
-std::optional<SharedLamp> sharedLamp(const std::vector<std::vector<ReflectedRay>>& views);
-
 /// Walks down a smooth function of three numbers, even in a narrow oblique valley: the minimum of the quadric through ten
 /// values, up to four times. At most 60 values. Avoids places without a `cost`. @param step  between values, in units of `at`
 /// @return the place of the least value that was met; `at` where it has none

@@ -131,6 +131,14 @@ std::vector<ParamSpec>& params() {
                "pixels. Triangulated: min Σ |(I - r rᵀ)(L - P)|², r = v - 2 (v·N) N. Bundle: min Σ ((α(P_ij; L) - α_lim) / "
                "|∂α/∂pixel|)².",
        .stage = "light"},
+      {.key = "light.frame",
+       .title = "Light stands still in",
+       .symbol = "F",
+       .defaultValue = std::string("auto"),
+       .choices = {"auto", "world", "camera"},
+       .help = "World: lamps stand still. Camera: they move with the camera, as a flash does, or the object turned before a camera "
+               "that stood still. Auto: the one in which the mirrored rays of the training highlights meet. L stays the same in F.",
+       .stage = "light"},
       {.key = "light.bundle_points",
        .title = "Bundle points",
        .symbol = "j",

@@ -12,6 +12,7 @@
 #include "core/model/model.h"
 #include "core/pipeline/comparison.h"
 #include "core/pipeline/frame_evidence.h"
+#include "core/pipeline/light_frame_choice.h"
 #include "core/pipeline/stage_inputs.h"
 #include "core/pipeline/surface_correction.h"
 #include "core/pipeline/training.h"
@@ -79,9 +80,11 @@ struct WorkCounts {
 
 /// Everything that was computed; the viewer shows all of it.
 struct Inspection {
-  std::shared_ptr<const Scene> scene;  ///< with the request's what-if
+  std::shared_ptr<const Scene> scene;  ///< with the request's what-if, in the coordinates in which its lights stand still
+  std::shared_ptr<const Scene> world;  ///< the same in the world; the same object where the lights stand still there
   std::shared_ptr<const Scene> given;  ///< as it was read; the same object where the what-if leaves the scene alone
-  std::shared_ptr<const SurfaceCache> surfaces;
+  std::shared_ptr<const SurfaceCache> surfaces;  ///< of `scene`
+  LightFrameChoice lightFrame;                   ///< which coordinates `scene` has
   InspectionRequest request;
   TrainSpec train;
   std::vector<FrameEvidence> evidence;  ///< one per frame; `frame` is -1 where nobody looked

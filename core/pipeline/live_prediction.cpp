@@ -17,6 +17,7 @@
 #include "core/reflectance/lobe.h"
 #include "core/surface/mesh_policy.h"
 #include "core/surface/occlusion.h"
+#include "core/surface/posed_surface.h"
 
 namespace glint {
 
@@ -91,7 +92,8 @@ std::optional<Failure> LivePredictor::failure() const {
 }
 
 Outcome<LiveAnswer> LivePredictor::predict(const std::string& id, const Eigen::Isometry3d& cameraFromWorld,
-                                           const std::optional<Camera>& camera) const {
+                                           const std::optional<Camera>& camera,
+                                           const std::optional<Eigen::Isometry3d>& worldFromObject) const {
   LiveAnswer answer;
   if (const auto found = frames_.find(id); found != frames_.end()) answer.frame = found->second;
   const Scene& scene = *inspection_.scene;
@@ -104,14 +106,23 @@ Outcome<LiveAnswer> LivePredictor::predict(const std::string& id, const Eigen::I
   else
     return Failure{Reason::NotSupported,
                    "the frames have different cameras, and none of them has this id: the line needs a camera"};
+  Eigen::Isometry3d place = worldFromObject.value_or(Eigen::Isometry3d::Identity());
+  if (!worldFromObject && answer.frame)
+    place = inspection_.world->frames[static_cast<std::size_t>(*answer.frame)].worldFromObject;
   answer.camera.camFromWorld = cameraFromWorld;
+  if (inspection_.lightFrame.frame == LightFrame::Camera) {
+    place = cameraFromWorld * place;
+    answer.camera.camFromWorld.setIdentity();
+  }
   const std::optional<int> frame = answer.frame ? answer.frame : anyFrameOfSurface_;
   for (const std::string& name : inspection_.request.models) {
     const HighlightModel& model = modelByName(name);
     for (const ModelResult::Fit& fit : inspection_.models.at(name).fits) {
       if (fit.surface && frame && *fit.surface != inspection_.surfaces->keyOf(*frame)) continue;
       if (answer.frame && !isOn(scene, inspection_.request.whatIf, *answer.frame, fit.light)) continue;
-      const std::shared_ptr<const Surface> surface = surfaceOfModel(inspection_, model, frame.value_or(-1), fit.light);
+      std::shared_ptr<const Surface> surface = surfaceOfModel(inspection_, model, frame.value_or(-1), fit.light);
+      if (surface && !scene.frames[static_cast<std::size_t>(*frame)].surface.empty())
+        surface = movedTo(place, std::move(surface));
       Prediction prediction = predictionFor(inspection_, fit, model, frame.value_or(-1), answer.camera, surface.get());
       if (const auto band = bands_.find({name, fit.key()}); band != bands_.end())
         for (PredictedHighlight& h : prediction.editable()) h.sigmaPx = band->second->sigmaPx(h, answer.camera, surface.get());

@@ -39,7 +39,7 @@ struct LiveHighlights {
 };
 
 struct LiveAnswer {
-  Camera camera;                           ///< that was predicted for
+  Camera camera;                           ///< that was predicted for, in the coordinates of Inspection::scene
   std::optional<int> frame;                ///< of the scene, whose id was given
   std::vector<LiveHighlights> highlights;  ///< by model and light, those that failed too
 };
@@ -58,9 +58,11 @@ class LivePredictor {
   /// @param id      of a frame of the scene: its surface and the lights that are on in it count, and its intrinsics. Another id:
   ///                all fitted lights, and the surface and intrinsics that all frames share
   /// @param camera  intrinsics and size, where they are given; ignores its pose
+  /// @param worldFromObject  where the object stands, if it moves; else where the frame of this id has it, or at its own place
   /// @return  NotSupported if the intrinsics are not known. That a surface is not known is the failure of a prediction.
   Outcome<LiveAnswer> predict(const std::string& id, const Eigen::Isometry3d& cameraFromWorld,
-                              const std::optional<Camera>& camera) const;
+                              const std::optional<Camera>& camera,
+                              const std::optional<Eigen::Isometry3d>& worldFromObject = {}) const;
 
  private:
   Inspection inspection_;

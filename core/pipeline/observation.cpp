@@ -27,6 +27,8 @@ std::optional<Observation> observeFrame(std::shared_ptr<const Scene> scene, cons
   const std::vector<int> alone{frame};
   seen.given = scene;
   seen.scene = w.changesScene() ? changedScene(*scene, w, seen.inputs.evidence->detect.level, progress, &alone) : scene;
+  if (known && known->given == scene && known->lightFrame.frame != LightFrame::World)
+    seen.scene = std::make_shared<const Scene>(inLightFrame(*seen.scene, known->lightFrame.frame));
   seen.request = request;
   seen.frame = frame;
   if (!report(progress, {"detect", 0, 1})) throw Stopped{};

@@ -23,7 +23,7 @@ std::shared_ptr<const Scene> whatIfScene(const std::shared_ptr<const Scene>& giv
   const double level = question.request.settings.number("detect.level");
   if (!w.synthesise) {
     for (const Inspection* k : known)
-      if (!k->request.whatIf.synthesise && k->request.whatIf.poses == w.poses) return k->scene;
+      if (!k->request.whatIf.synthesise && k->request.whatIf.poses == w.poses) return k->world;
     return changedScene(*given, w, level, progress);
   }
   const WhatIf part = synthesisOf(w);
@@ -40,7 +40,7 @@ std::shared_ptr<const Scene> whatIfScene(const std::shared_ptr<const Scene>& giv
     if (wanted && !(same && same->evidence[static_cast<std::size_t>(i)].frame >= 0)) missing.push_back(i);
   }
   if (!same) return changedScene(*given, w, level, progress, &missing);
-  return missing.empty() ? same->scene : withContours(*same->scene, w, level, missing, progress);
+  return missing.empty() ? same->world : withContours(*same->world, w, level, missing, progress);
 }
 
 std::shared_ptr<const SurfaceCache> surfacesOf(const std::shared_ptr<const Scene>& scene, const Known& known) {
@@ -57,7 +57,9 @@ Inspection begun(std::shared_ptr<const Scene> scene, const Question& question, c
   Inspection r;
   r.given = scene;
   r.train = parseTrainSpec(request.train, *scene);
-  r.scene = whatIfScene(scene, question, r.train, progress, known);
+  r.world = whatIfScene(scene, question, r.train, progress, known);
+  // Evidence is judged around the object, on which paint rests; StageRun::standInLightFrame() turns to the lights.
+  r.scene = standsStill(*r.world) ? r.world : std::make_shared<const Scene>(inObject(*r.world));
   r.surfaces = surfacesOf(r.scene, known);
   r.request = request;
   r.correctedDepthMaps = std::make_shared<CorrectedDepthMaps>();

@@ -10,6 +10,7 @@
 #include "core/pipeline/training.h"
 #include "core/surface/mesh.h"
 #include "core/surface/mesh_policy.h"
+#include "core/surface/posed_surface.h"
 #include "core/surface/smooth_mesh.h"
 
 namespace glint {
@@ -48,7 +49,7 @@ std::optional<SmoothedMesh> smoothedMesh(const std::vector<TrainingView>& views,
   if (plainPx < kExplainedPx || (!plain && plain.failure().reason == Reason::TooFewViews)) return std::nullopt;
   const auto one = std::find_if(views.begin(), views.end(), [](const TrainingView& v) { return v.seen && v.surface; });
   if (one == views.end()) return std::nullopt;
-  const MeshSmoother smoother(one->surface->tessellate(Eigen::AlignedBox3d(), 0));
+  const MeshSmoother smoother(objectOf(*one->surface).tessellate(Eigen::AlignedBox3d(), 0));
   if (!(smoother.spacing() > 0)) return std::nullopt;
   std::optional<SmoothedMesh> best;
   double least = std::numeric_limits<double>::infinity();
@@ -65,7 +66,7 @@ std::optional<SmoothedMesh> smoothedMesh(const std::vector<TrainingView>& views,
     tried.mesh = makeMesh(std::move(smooth.mesh), meshPolicy(settings));
     std::vector<TrainingView> there;
     for (const TrainingView& v : views)
-      if (v.seen) there.push_back(seenAgain(v, v.camera, tried.mesh));
+      if (v.seen) there.push_back(seenAgain(v, v.camera, movedTo(poseOf(*v.surface), tried.mesh)));
     tried.smoothPx = leftPx(estimateLight(there, settings));
     if (tried.smoothPx < least) {
       least = tried.smoothPx;

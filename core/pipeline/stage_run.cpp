@@ -105,7 +105,9 @@ void StageRun::highlights() {
   r_.inputs.evidence = evidenceInputs(q, together_);
   r_.inputs.lobes = lobeInputs(q, r_.train, together_);
   std::vector<int> judged;
+  std::optional<LightFrame> evidenceFrame;
   if (const Inspection* const known = evidenceSource(known_, r_.inputs)) {
+    evidenceFrame = known->lightFrame.frame;
     r_.evidence = known->evidence;
     for (const auto& [frame, before] : known->evidenceBefore) r_.evidence[std::size_t(frame)] = before;
     if (serves(*known, Stage::Lobes)) {
@@ -134,7 +136,31 @@ void StageRun::highlights() {
       progress_);
   takeTextureOff(
       r_, judged, [this](int frame) { return surfaceOf(frame); }, progress_);
-  if (together_ && !missing.empty()) assignSeveralLights();
+  const LightFrame before = evidenceFrame.value_or(LightFrame::World);
+  standInLightFrame();
+  if (together_ && (!missing.empty() || before != r_.lightFrame.frame)) assignSeveralLights();
+}
+
+/// From here on the scene is that in whose coordinates the lights stand still; answers in others do not serve.
+void StageRun::standInLightFrame() {
+  const SurfaceCache* const around = r_.surfaces.get();
+  const auto inWorld = r_.scene == r_.world ? r_.surfaces : std::make_shared<const SurfaceCache>(*r_.world, *around);
+  std::vector<int> training;
+  for (const int frame : r_.train.frames)
+    if (r_.isTraining(frame)) training.push_back(frame);
+  r_.lightFrame = chooseLightFrame(*r_.world, *inWorld, training, r_.evidence, r_.request.settings);
+  std::erase_if(known_, [&](const Inspection* k) { return k->lightFrame.frame != r_.lightFrame.frame; });
+  const auto same = std::find_if(known_.begin(), known_.end(), [&](const Inspection* k) { return k->world == r_.world; });
+  if (same != known_.end()) {
+    r_.scene = (*same)->scene;
+    r_.surfaces = (*same)->surfaces;
+    return;
+  }
+  const bool worldly =
+      r_.lightFrame.frame == LightFrame::World && std::all_of(r_.world->lights.begin(), r_.world->lights.end(),
+                                                              [](const TrueLight& l) { return l.frame == LightFrame::World; });
+  r_.scene = worldly ? r_.world : std::make_shared<const Scene>(inLightFrame(*r_.world, r_.lightFrame.frame));
+  r_.surfaces = worldly ? inWorld : std::make_shared<const SurfaceCache>(*r_.scene, *around);
 }
 
 /// Frames whose evidence does not exist yet and is asked for.
@@ -371,6 +397,7 @@ ModelResult::Fit StageRun::fitOf(const HighlightModel& model, const FitKey& key,
   const auto add = [&](std::string remark) {
     if (!remark.empty()) fit.remarks.push_back(std::move(remark));
   };
+  add(r_.lightFrame.doubt);
   add(mergedRemark(r_, fit));
   add(repeatedRemark(r_, fit));
   add(byHandRemark(r_, fit));

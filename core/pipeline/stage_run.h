@@ -67,13 +67,14 @@ class StageRun {
   ModelResult::Fit fitOf(const HighlightModel& model, const FitKey& key, const ProgressFn& goesOn) const;
   std::vector<std::shared_ptr<const Band>> bandsOf(const HighlightModel& model, ModelResult& result);
   void predict(const HighlightModel& model, ModelResult& result);
+  void standInLightFrame();
   void assignSeveralLights();
   void gather(const std::vector<int>& frames);
   std::vector<int> framesToGather() const;
 
   Inspection& r_;
   const ProgressFn& progress_;
-  const std::vector<const Inspection*> known_;
+  std::vector<const Inspection*> known_;
   const Only only_;
   const bool together_;           ///< lights are told apart from all frames
   bool viewsLackPixels_ = false;  ///< they are of an answer that left them out

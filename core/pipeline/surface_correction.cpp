@@ -2,14 +2,16 @@
 #include "core/pipeline/surface_correction.h"
 
 #include "core/pipeline/corrected_depth.h"
+#include "core/surface/posed_surface.h"
 
 namespace glint {
 
 Outcome<std::shared_ptr<const Surface>> correctedSurface(const Scene& scene, const SurfaceCache& surfaces, int frame,
                                                          const SurfaceCorrection& correction, MeshPolicy policy) {
-  if (correction.normals && correction.normals->surface == surfaces.keyOf(frame)) return correction.normals->mesh;
-  if (correction.smoothed && correction.smoothed->surface == surfaces.keyOf(frame)) return correction.smoothed->mesh;
   const Frame& f = scene.frames[static_cast<std::size_t>(frame)];
+  const std::string key = surfaces.keyOf(frame);
+  if (correction.normals && correction.normals->surface == key) return movedTo(f.worldFromObject, correction.normals->mesh);
+  if (correction.smoothed && correction.smoothed->surface == key) return movedTo(f.worldFromObject, correction.smoothed->mesh);
   if (correction.depth && f.surface.empty()) return correctedDepthMap(f, policy, *correction.depth);
   return surfaces.surfaceOf(frame, policy);
 }

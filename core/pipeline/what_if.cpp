@@ -11,6 +11,7 @@
 #include "core/base/progress.h"
 #include "core/geometry/polyline.h"
 #include "core/surface/analytic.h"
+#include "core/surface/posed_surface.h"
 #include "core/synth/exact_highlight.h"
 
 namespace glint {
@@ -74,7 +75,7 @@ WhatIf switched(WhatIf w, const Scene& scene, int frame, const std::string& ligh
 std::vector<TrueLight> lightsOn(const Scene& scene, const WhatIf& w, int frame) {
   std::vector<TrueLight> on;
   for (const TrueLight& light : scene.lights)
-    if (isOn(scene, w, frame, light.id)) on.push_back(light);
+    if (isOn(scene, w, frame, light.id)) on.push_back(inWorld(light, scene.frames[std::size_t(frame)]));
   return on;
 }
 
@@ -156,7 +157,7 @@ void synthesise(Scene& scene, const AnalyticSurfaces& surfaces, const WhatIf& wh
         options.marginPx = kEdgeShare * std::max(f.camera.width, f.camera.height);
         for (const TrueLight& light : lightsOn(scene, lit, index)) {
           const Outcome<std::vector<Highlight>> found =
-              exactHighlights(*surfaces.at(f.surface), f.camera, light, material, options);
+              exactHighlights(*movedTo(f.worldFromObject, surfaces.at(f.surface)), f.camera, light, material, options);
           if (!found) continue;  // not lit, or not visible from here
           for (Highlight h : *found) {
             h.light = light.id;

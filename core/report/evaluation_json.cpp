@@ -95,6 +95,18 @@ void lampJson(const std::optional<Lamp>& lamp, Json& j) {
   }
 }
 
+/// In which coordinates the light stands still, and what it would leave of the training peaks in each.
+void lightFrameJson(const LightFrameChoice& choice, const std::string& light, Json& j) {
+  j["frame"] = nameOf(choice.frame);
+  j["frame_reason"] = choice.reason;
+  const auto found = choice.byLight.find(light);
+  const auto px = [](const std::optional<double>& v) { return v ? numberOrNull(*v) : Json(nullptr); };
+  if (found == choice.byLight.end())
+    j["residual_px_by_frame"] = nullptr;
+  else
+    j["residual_px_by_frame"] = {{"world", px(found->second.world)}, {"camera", px(found->second.camera)}};
+}
+
 Json fitJson(const Inspection& inspection, const ModelResult::Fit& entry) {
   Json j;
   j["light"] = entry.light;
@@ -121,6 +133,7 @@ Json fitJson(const Inspection& inspection, const ModelResult::Fit& entry) {
   } else {
     j["light_position"] = nullptr;
   }
+  lightFrameJson(inspection.lightFrame, entry.light, j);
   j["limit_angle_deg"] = f.limitAngle() ? numberOrNull(*f.limitAngle() * 180 / M_PI) : Json(nullptr);
   j["roughness"] = lobe ? numberOrNull(lobe->roughness.mean) : Json(nullptr);
   if (lobe && hasTwoWidths(lobe->lobe)) j["roughness_ratio"] = numberOrNull(lobe->roughness.ratio);

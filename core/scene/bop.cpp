@@ -113,7 +113,12 @@ Camera bopCamera(const JsonNode& node, const std::array<int, 2>& size) {
 /// How far an object moves in the world, against where it is in the first image that says where its camera is.
 class BopMotion {
  public:
-  void add(const Eigen::Isometry3d& worldFromModel, const std::string& image) {
+  /// @param camFromModel  of the image's object  @param camFromWorld  where the file says it
+  void add(const Eigen::Isometry3d& camFromModel, const std::optional<Eigen::Isometry3d>& camFromWorld,
+           const std::string& image) {
+    cameras_.push_back(camFromWorld);
+    if (!camFromWorld) return;
+    const Eigen::Isometry3d worldFromModel = camFromWorld->inverse() * camFromModel;
     if (images_++ == 0) {
       first_ = worldFromModel;
       firstImage_ = image;
@@ -126,20 +131,37 @@ class BopMotion {
     mm_ = std::max(mm_, (worldFromModel.translation() - first_.translation()).norm());
   }
 
-  void report(Capture& capture) const {
+  /// Says what it found. Where the object moves and every camera's place is known, the cameras' world becomes that of the views,
+  /// and each view says where the object stands; else the object stays the world.
+  void apply(Capture& capture) const {
     const std::string far = formatted("%.3g mm and %.3g degrees", mm_, degrees_);
     if (images_ < 2)
       capture.facts.push_back(
           "whether the object stands still is not known: the cameras' places in the world (cam_R_w2c) are not given");
     else if (mm_ > kBopStillMm || degrees_ > kBopStillDegrees)
-      capture.warnings.push_back("the object moves: up to " + far + " from where it is in " + firstImage_ +
-                                 "; lamps that stand still in the world do not stand still relative to it");
+      move(capture, "the object moves: up to " + far + " from where it is in " + firstImage_);
     else
       capture.facts.push_back("the object stands still in the world: within " + far + " over " + std::to_string(images_) +
                               " images");
   }
 
  private:
+  void move(Capture& capture, const std::string& words) const {
+    if (std::any_of(cameras_.begin(), cameras_.end(), [](const auto& camera) { return !camera; })) {
+      capture.warnings.push_back(words +
+                                 "; images without cam_R_w2c say no place in the world, so that the object is taken as the "
+                                 "world: lamps that stand still do not stand still relative to it");
+      return;
+    }
+    for (std::size_t i = 0; i < capture.views.size(); ++i) {
+      CaptureView& view = capture.views[i];
+      view.worldFromObject = cameras_[i]->inverse() * view.camera.camFromWorld;
+      view.camera.camFromWorld = *cameras_[i];
+    }
+    capture.facts.push_back(words + "; each image says where it stands (cam_R_w2c)");
+  }
+
+  std::vector<std::optional<Eigen::Isometry3d>> cameras_;  // of each view, world to camera
   Eigen::Isometry3d first_ = Eigen::Isometry3d::Identity();
   std::string firstImage_;
   std::size_t images_ = 0;
@@ -300,10 +322,10 @@ class BopReading {
     view.camera = bopCamera(image.camera, sizes_.of(view.image, capture_.file.string(), place));
     view.camera.camFromWorld = bopPose(image.pose.at("cam_R_m2c"), image.pose.at("cam_t_m2c"), odd_);
     const auto isKnown = [&](const char* key) { return image.camera.has(key) && !capture::isLostPose(image.camera.at(key)); };
-    if (isKnown("cam_R_w2c") || isKnown("cam_t_w2c")) {
-      const Eigen::Isometry3d camFromWorld = bopPose(image.camera.at("cam_R_w2c"), image.camera.at("cam_t_w2c"), odd_);
-      motion_.add(camFromWorld.inverse() * view.camera.camFromWorld, view.name);
-    }
+    std::optional<Eigen::Isometry3d> camFromWorld;
+    if (isKnown("cam_R_w2c") || isKnown("cam_t_w2c"))
+      camFromWorld = bopPose(image.camera.at("cam_R_w2c"), image.camera.at("cam_t_w2c"), odd_);
+    motion_.add(view.camera.camFromWorld, camFromWorld, view.name);
     capture_.views.push_back(std::move(view));
   }
 
@@ -347,7 +369,7 @@ class BopReading {
     if (most > least) scale += " .. " + formatted("%.6g", most / kBopMillimetre);
     capture_.facts.push_back("depth: " + std::to_string(depths) + of + ", " + scale +
                              " mm per unit; masks of what is visible: " + std::to_string(masks) + of);
-    motion_.report(capture_);
+    motion_.apply(capture_);
     if (leftOut_ > 0)
       capture_.warnings.push_back(std::to_string(leftOut_) + (leftOut_ == 1 ? " image does" : " images do") +
                                   " not show object " + std::to_string(object_) + " and " + (leftOut_ == 1 ? "is" : "are") +

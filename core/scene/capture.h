@@ -44,6 +44,7 @@ struct CaptureView {
   std::optional<VideoPicture> ofVideo;       ///< `image` is a video, and this is the picture of it
   double depthScale = 0;                     ///< metres per stored unit of `depth`; 0 = not given
   Camera camera;                             ///< with the size of its image
+  Eigen::Isometry3d worldFromObject = Eigen::Isometry3d::Identity();  ///< where the surface stands
 };
 
 /// A mesh that the other program names itself (BOP's models).

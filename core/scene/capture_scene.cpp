@@ -238,6 +238,8 @@ Scene sceneOfCapture(const Capture& capture, const ReadOptions& options) {
     frame.camera = view.camera;
     frame.response = response;
     frame.camera.camFromWorld.translation() *= metres;
+    frame.worldFromObject = view.worldFromObject;
+    frame.worldFromObject.translation() *= metres;
     if (!(frame.camera.camFromWorld.translation().cwiseAbs().maxCoeff() <= kFarthest))
       throw InputError(capture.file.string(), view.name, "its camera is farther than 1e15 m from the origin");
     if (onPoints || !mesh.empty()) frame.surface = kSurfaceId;

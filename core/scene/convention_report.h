@@ -35,9 +35,10 @@ struct CameraCheck {
   std::string whyNot;                  ///< why it did not run
   /// The angle by which mirrored rays of the highlights miss the lamp that they share best, in three quarters of the views.
   std::optional<double> missDeg;
-  std::optional<double> focalPct;        ///< the change of the focal length that fits best, percent
-  std::optional<double> shiftPx;         ///< the shift of the principal point, the same along x and y, that fits best
-  std::vector<std::string> findings;     ///< what is clear, one line each; mostly empty
+  std::string lightFrame;             ///< where the lamp moves with the camera, in words; "" = it stands still, or nothing fits
+  std::optional<double> focalPct;     ///< the change of the focal length that fits best, percent
+  std::optional<double> shiftPx;      ///< the shift of the principal point, the same along x and y, that fits best
+  std::vector<std::string> findings;  ///< what is clear, one line each; mostly empty
   std::optional<Correction> correction;  ///< that undoes the last finding
 };
 

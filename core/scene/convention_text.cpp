@@ -29,9 +29,9 @@ std::string lightLines(const ConventionReport& r) {
 /// What the highlights say about the cameras.
 std::string cameraLines(const CameraCheck& check) {
   if (check.hypotheses.empty()) return "\n  cameras   not checked with highlights: " + check.whyNot + "\n";
-  std::string out =
-      formatted("\n  cameras   from the highlights of %d frames: mirrored rays pass one lamp by %s; contours fit one light ",
-                check.views, check.missDeg ? formatted("%.2g degrees", *check.missDeg).c_str() : "more than can be measured");
+  std::string out = check.lightFrame.empty() ? "" : "\n  lamp      " + check.lightFrame;
+  out += formatted("\n  cameras   from the highlights of %d frames: mirrored rays pass one lamp by %s; contours fit one light ",
+                   check.views, check.missDeg ? formatted("%.2g degrees", *check.missDeg).c_str() : "more than can be measured");
   std::string separator;
   constexpr std::size_t kAlwaysListed = 4;  // as given, and mirrored images
   std::size_t listed = 0, others = 0;
@@ -156,6 +156,7 @@ std::string toJson(const ConventionReport& r) {
       hypotheses.push_back({{"change", h.change}, {"rms_px", h.rmsPx ? Json(*h.rmsPx) : Json()}});
     j["cameras"] = {{"views", c.views},
                     {"miss_deg", c.missDeg ? Json(*c.missDeg) : Json()},
+                    {"light_frame", c.lightFrame.empty() ? Json() : Json(c.lightFrame)},
                     {"why_not", c.whyNot.empty() ? Json() : Json(c.whyNot)},
                     {"hypotheses", std::move(hypotheses)},
                     {"focal_pct", c.focalPct ? Json(*c.focalPct) : Json()},

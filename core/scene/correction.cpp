@@ -169,12 +169,17 @@ void applySimilarity(Scene& scene, std::string_view fix) {
   const SurfaceSource& surface = scene.surfaces.begin()->second;
   if (!surface.file() || std::get_if<CapturePoints>(&surface)) refuse("the surface is no mesh of its own file");
   for (Frame& f : scene.frames) {
+    if (!standsStill(f)) refuse("frame " + f.id + " has an object that moves (world_from_object)");
     if (!f.normals.empty()) refuse("frame " + f.id + " has a map of normals, which would have to turn, too");
     if (!f.depth.empty() && !(f.depthScale > 0))
       refuse("frame " + f.id + " has a depth map in floating point, in the unit of the cameras");
     moveIntoMeshFrame(f, s);
   }
-  for (TrueLight& light : scene.lights) light.lamp = transformed(light.lamp, back.scale, back.rotation, back.translation);
+  for (TrueLight& light : scene.lights) {
+    const bool inWorld = light.frame == LightFrame::World;
+    light.lamp = transformed(light.lamp, back.scale, inWorld ? back.rotation : Eigen::Matrix3d::Identity(),
+                             inWorld ? back.translation : Eigen::Vector3d::Zero());
+  }
 }
 
 }  // namespace

@@ -27,7 +27,8 @@ namespace {
 }
 
 bool isSamePose(const PoseLine& a, const PoseLine& b) {
-  if (a.time != b.time || a.cameraFromWorld.matrix() != b.cameraFromWorld.matrix()) return false;
+  const auto place = [](const PoseLine& p) { return p.worldFromObject.value_or(Eigen::Isometry3d::Identity()).matrix(); };
+  if (a.time != b.time || a.cameraFromWorld.matrix() != b.cameraFromWorld.matrix() || place(a) != place(b)) return false;
   if (!a.camera || !b.camera) return !a.camera && !b.camera;
   const Camera &c = *a.camera, &d = *b.camera;
   return c.width == d.width && c.height == d.height && c.pixelFromRay == d.pixelFromRay && c.lens.model == d.lens.model &&
@@ -94,6 +95,8 @@ PoseLine PoseLineReader::fromJson(const std::string& line) {
     if (capture::isCutPose(matrix)) throw CutPose(name_, place() + ": camera_from_world", "has fewer numbers than a pose");
     pose.cameraFromWorld = readPoseJson(matrix, &warning_);
     if (!warning_.empty()) warning_ = place() + ": " + warning_;
+    if (const auto object = root.find("world_from_object"); object && !object->isNull())
+      pose.worldFromObject = readPoseJson(*object);
     if (const auto camera = root.find("camera"); camera && !camera->isNull()) {
       if (camera->has("response")) camera->at("response").fail("is not read here: name it by --response");
       pose.camera = readCameraJson(*camera);

@@ -16,14 +16,16 @@
 namespace glint {
 
 /// A camera of a live stream, a video or a folder of photographs. The first sign of a line tells its kind:
-///   {"id": "0007", "time": 1.23, "camera_from_world": [4x4], "camera": {optional}}      JSON, keys as in scene files
+///   {"id": "0007", "time": 1.23, "camera_from_world": [4x4], "camera": {}, "world_from_object": [4x4]}
+///                                                                                       JSON, keys as in scene files; the last two optional
 ///   1305031102.1758 tx ty tz qx qy qz qw                                                TUM: camera to world, quaternion w last
 /// Times in seconds (others: capture::secondsOf); lengths in the unit of the scene.
 struct PoseLine {
   std::string id;              ///< as the line writes it; if it has none (TUM), the time as written. Never empty
   std::optional<double> time;  ///< s
   Eigen::Isometry3d cameraFromWorld = Eigen::Isometry3d::Identity();
-  std::optional<Camera> camera;  ///< where the line has one; its pose is `cameraFromWorld`
+  std::optional<Camera> camera;                      ///< where the line has one; its pose is `cameraFromWorld`
+  std::optional<Eigen::Isometry3d> worldFromObject;  ///< where the line says where the object stands
 };
 
 /// The line says that there is no pose: TUM's NaN, or null in JSON. Trackers write it where they have lost the camera.

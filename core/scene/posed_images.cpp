@@ -202,6 +202,7 @@ class PosedPictures {
       view.ofVideo = picture.ofVideo;
       view.camera = cameraOf(line, size ? *size : sizes.of(picture.file, capture_.folder.string(), picture.name), picture);
       view.camera.camFromWorld = line.cameraFromWorld;
+      view.worldFromObject = line.worldFromObject.value_or(view.worldFromObject);
       capture_.views.push_back(std::move(view));
     }
   }

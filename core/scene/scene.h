@@ -19,6 +19,7 @@
 #include "core/reflectance/lamp.h"
 #include "core/scene/camera_response.h"
 #include "core/scene/input_choices.h"
+#include "core/scene/light_frame.h"
 #include "core/scene/surface_source.h"
 #include "core/scene/video.h"
 
@@ -34,7 +35,9 @@ struct Frame {
   CameraResponse response;  ///< of `image`
   /// The camera that took `depth`, if not `camera`; its camFromWorld starts at the frame's camera, not at the world.
   std::optional<Camera> depthCamera;
-  std::string surface;                ///< id in Scene::surfaces; "" = this frame's own depth map
+  std::string surface;  ///< id in Scene::surfaces; "" = this frame's own depth map
+  /// Where that surface stands, rigid; an own depth map stands where its camera does.
+  Eigen::Isometry3d worldFromObject = Eigen::Isometry3d::Identity();
   std::vector<std::string> lightsOn;  ///< empty = not stated
   std::vector<Highlight> highlights;  ///< given ones; used instead of detection when not empty
 };
@@ -52,7 +55,8 @@ struct FilesFolder {
 /// Truth for evaluation and display only; never read by reconstruction or prediction.
 struct TrueLight {
   std::string id;
-  Lamp lamp;
+  Lamp lamp;  ///< in the coordinates of `frame`
+  LightFrame frame = LightFrame::World;
 };
 
 /// Everything a scene file says, checked. Images and surfaces are loaded on demand.
@@ -165,6 +169,8 @@ class SurfaceCache {
   Outcome<std::shared_ptr<const Surface>> surfaceOf(int frame, MeshPolicy policy) const;
   /// A key that is equal for frames that see the same surface ("body"; "depth:0004" for a frame's own depth).
   std::string keyOf(int frame) const;
+  /// The same for frames that see it in the same place: where an object moves, "body@3" with the first frame that shows it there.
+  std::string placedKeyOf(int frame) const;
   /// What the fusion of depth maps (DepthPolicy::fusedFrames) left out of these frames, in words; "" = nothing, or they were not
   /// loaded.
   std::string fusionRemark(const std::vector<int>& frames) const;

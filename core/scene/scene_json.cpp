@@ -9,6 +9,7 @@
 
 #include "core/base/bounded_json.h"
 #include "core/base/json_dom.h"
+#include "core/base/number_text.h"
 #include "core/geometry/camera.h"
 #include "core/scene/capture_file_names.h"
 #include "core/scene/scene_files.h"
@@ -45,9 +46,12 @@ void keep(Json& target, const std::string& key, Json value) {
   if (!value.empty()) json_dom::append(target, key, std::move(value));  // every key stands once
 }
 
+constexpr int kNewestScene = 2;
+constexpr const char* kNeedsVersion2 = "needs a scene of version 2 (\"glint_scene\": 2)";
+constexpr const char *kObjectPoseKey = "world_from_object", *kLightFrameKey = "frame";
 const std::set<std::string> kCameraKeys = {"width", "height", "fx", "fy", "cx", "cy", "skew", "distortion", "model", "response"};
 std::set<std::string> lightKeys() {
-  std::set<std::string> keys{"id", "position", "direction", "radius"};
+  std::set<std::string> keys{"id", "position", "direction", "radius", kLightFrameKey};
   for (const PlacedShape& shape : placedShapes()) keys.insert(shape.name);
   return keys;
 }
@@ -71,6 +75,9 @@ const std::set<std::string> kSceneGeometry = {"scale",      "world_scale", "tran
                                               "offset"};
 
 }  // namespace
+
+int versionOf(const Frame& frame) { return standsStill(frame) ? 1 : 2; }
+int versionOf(const TrueLight& light) { return light.frame == LightFrame::World ? 1 : 2; }
 
 bool isMadeBySynth(const JsonNode& root) {
   const auto n = root.find(kMadeBy);
@@ -109,6 +116,11 @@ TrueLight readLightJson(const JsonNode& node) {
     const double radius = bounded(*n, kFarthest);
     if (radius < 0) n->fail("must not be negative");
     light.lamp = withRadius(light.lamp, radius);
+  }
+  if (const auto n = node.find(kLightFrameKey)) {
+    if (n->text() != nameOf(LightFrame::World) && n->text() != nameOf(LightFrame::Camera))
+      n->fail("must be \"world\" or \"camera\"");
+    if (n->text() == nameOf(LightFrame::Camera)) light.frame = LightFrame::Camera;
   }
   return light;
 }
@@ -224,6 +236,10 @@ Frame readFrame(const JsonNode& node, const FrameContext& context, Json& rest) {
   std::string warning;
   frame.camera.camFromWorld = readPoseJson(node.at("camera_from_world"), &warning);
   if (!warning.empty()) context.scene.warnings.push_back(warning);
+  if (const auto n = node.find(kObjectPoseKey)) {
+    frame.worldFromObject = readPoseJson(*n, &warning);
+    if (!warning.empty()) context.scene.warnings.push_back(warning);
+  }
   if (const auto n = node.find("surface"); n && !n->isNull()) {
     frame.surface = n->text();
     if (!scene.surfaces.count(frame.surface)) n->fail("surface '" + frame.surface + "' does not exist");
@@ -261,7 +277,9 @@ Scene readSceneJson(const std::string& text, const fs::path& file, const ReadOpt
   refuseGeometry(root, kSceneGeometry);
 
   const JsonNode version = root.at("glint_scene");
-  if (version.integer() != 1) version.fail("version " + std::to_string(version.integer()) + " is not supported, only 1");
+  if (version.integer() < 1 || version.integer() > kNewestScene)
+    version.fail(
+        formatted("version %lld is not supported, only 1 to %d", static_cast<long long>(version.integer()), kNewestScene));
   if (!root.has("frames") && root.has("path")) root.fail("is a specification, not a scene (`glint synth` makes a scene from it)");
   scene.name = scene.folder.filename().string();
   if (const auto n = root.find("name")) scene.name = n->text();
@@ -307,6 +325,7 @@ Scene readSceneJson(const std::string& text, const fs::path& file, const ReadOpt
     for (std::size_t i = 0; i < n->size(); ++i) {
       const JsonNode node = n->at(i);
       scene.lights.push_back(readLightJson(node));
+      if (version.integer() < versionOf(scene.lights.back())) node.at(kLightFrameKey).fail(kNeedsVersion2);
       const std::string& id = scene.lights.back().id;
       if (!lightIds.insert(id).second) node.at("id").fail("duplicate id '" + id + "'");
       keep(lightRests, id, unknown.of(node, lightKeys()));
@@ -321,8 +340,9 @@ Scene readSceneJson(const std::string& text, const fs::path& file, const ReadOpt
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const JsonNode node = frames.at(i);
     Json rest = unknown.of(node, {"id", "image", "of_video", "radiance", "depth", "normals", "mask", "depth_scale", "camera",
-                                  "depth_camera", "camera_from_world", "surface", "lights_on", "highlights"});
+                                  "depth_camera", "camera_from_world", kObjectPoseKey, "surface", "lights_on", "highlights"});
     Frame frame = readFrame(node, context, rest);
+    if (version.integer() < versionOf(frame)) node.at(kObjectPoseKey).fail(kNeedsVersion2);
     if (!frameIds.insert(frame.id).second) node.at("id").fail("duplicate id '" + frame.id + "'");
     if (!lightIds.empty())
       for (const std::string& light : frame.lightsOn)

@@ -79,6 +79,7 @@ Json toJson(const Highlight& h, const Camera& camera) {
 
 Json toJson(const TrueLight& light) {
   Json j = {{"id", light.id}};
+  if (light.frame != LightFrame::World) j["frame"] = nameOf(light.frame);
   for (const LampField& f : fieldsOf(light.lamp)) {
     if (f.value.size() == 1)
       j[f.name] = f.value(0);
@@ -112,7 +113,10 @@ std::string sceneToJson(const Scene& scene, const fs::path& folder) {
     if (r.isStated()) camera["response"] = r.file().empty() ? r.text() : relative(r.file(), place + "response");
     return camera;
   };
-  Json root = {{"glint_scene", 1}, {"name", scene.name}, {"units", "m"}};
+  int version = 1;
+  for (const Frame& frame : scene.frames) version = std::max(version, versionOf(frame));
+  for (const TrueLight& light : scene.lights) version = std::max(version, versionOf(light));
+  Json root = {{"glint_scene", version}, {"name", scene.name}, {"units", "m"}};
   const bool shared = std::all_of(scene.frames.begin(), scene.frames.end(), [&](const Frame& f) {
     return sameIntrinsics(f.camera, scene.frames.front().camera) && f.response == scene.frames.front().response;
   });
@@ -141,6 +145,7 @@ std::string sceneToJson(const Scene& scene, const fs::path& folder) {
       if (kept.contains("depth_camera")) restore(j["depth_camera"], kept["depth_camera"]);
     }
     j["camera_from_world"] = toJson(frame.camera.camFromWorld.matrix());
+    if (!standsStill(frame)) j["world_from_object"] = toJson(frame.worldFromObject.matrix());
     if (!frame.surface.empty()) j["surface"] = frame.surface;
     if (!frame.lightsOn.empty()) j["lights_on"] = frame.lightsOn;
     for (const Highlight& h : frame.highlights) j["highlights"].push_back(toJson(h, frame.camera));

@@ -10,6 +10,7 @@
 #include "core/surface/depth_filter.h"
 #include "core/surface/depth_fusion.h"
 #include "core/surface/depth_map.h"
+#include "core/surface/posed_surface.h"
 
 namespace glint {
 
@@ -85,8 +86,12 @@ struct SurfaceCache::Impl {
     std::vector<DepthView> others;
     for (const auto& [distance, other] : near) {
       if (static_cast<int>(others.size()) == options.mesh.depth.fusedFrames) break;
-      if (Outcome<std::optional<Image>> read = readDepth(*other, options.mesh.depth); read && *read)
-        others.push_back({other->id, *std::move(*read), other->camera});
+      if (Outcome<std::optional<Image>> read = readDepth(*other, options.mesh.depth); read && *read) {
+        Camera camera = other->camera;  // as it sees the object where this frame has it
+        if (!standsStill(frame) || !standsStill(*other))
+          camera.camFromWorld = camera.camFromWorld * other->worldFromObject * frame.worldFromObject.inverse();
+        others.push_back({other->id, *std::move(*read), std::move(camera)});
+      }
     }
     const double radius = options.mesh.depth.radius > 0 ? options.mesh.depth.radius : options.normalRadius * medianDepth(depth);
     FusedDepth result = fusedDepth(depth, frame.camera, others, radius);
@@ -136,19 +141,30 @@ std::string SurfaceCache::keyOf(int index) const {
   return frame.surface.empty() ? "depth:" + frame.id : frame.surface;
 }
 
+std::string SurfaceCache::placedKeyOf(int index) const {
+  const Frame& frame = impl_->frame(index);
+  if (frame.surface.empty() || standsStill(frame)) return keyOf(index);
+  const auto first = std::find_if(impl_->frames.begin(), impl_->frames.end(), [&](const Frame& f) {
+    return f.surface == frame.surface && f.worldFromObject.matrix() == frame.worldFromObject.matrix();
+  });
+  return keyOf(index) + "@" + std::to_string(first - impl_->frames.begin());
+}
+
 Outcome<std::shared_ptr<const Surface>> SurfaceCache::surfaceOf(int index, MeshPolicy policy) const {
   const Frame& frame = impl_->frame(index);
   std::string key =
       keyOf(index) + "|" + std::to_string(static_cast<int>(policy.normals)) + std::to_string(static_cast<int>(policy.rays));
   if (frame.surface.empty()) key += textOf(policy.depth);
   if (frame.surface.empty()) impl_->touch(key);
-  return impl_->once(impl_->surfaces, key, [&] {
+  Outcome<SharedSurface> surface = impl_->once(impl_->surfaces, key, [&] {
     {
       const std::lock_guard<std::mutex> lock(impl_->mutex);
       ++impl_->statistics.loads;
     }
     return impl_->load(frame, policy);
   });
+  if (surface && !frame.surface.empty()) surface = movedTo(frame.worldFromObject, *std::move(surface));
+  return surface;
 }
 
 std::string SurfaceCache::fusionRemark(const std::vector<int>& asked) const {

@@ -69,7 +69,8 @@ cv::Mat quantised(const Image& linear, const CameraResponse& response, int bits)
 std::vector<TrueLight> lightsOf(const Scene& scene, const Frame& frame) {
   std::vector<TrueLight> lights;
   for (const TrueLight& light : scene.lights)
-    if (std::find(frame.lightsOn.begin(), frame.lightsOn.end(), light.id) != frame.lightsOn.end()) lights.push_back(light);
+    if (std::find(frame.lightsOn.begin(), frame.lightsOn.end(), light.id) != frame.lightsOn.end())
+      lights.push_back(inWorld(light, frame));
   return lights;
 }
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "core/light/shared_lamp.h"
+
 #include <algorithm>
 #include <cmath>
 
-#include "core/advise/camera_check.h"
 #include "core/base/numeric.h"
 
 namespace glint {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "core/light/shared_lamp.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
-
-#include "core/advise/camera_check.h"
 
 namespace glint {
 namespace {

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/pipeline/light_frame_choice.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <set>
+#include <utility>
+
+#include "core/base/evenly.h"
+#include "core/base/number_text.h"
+#include "core/light/shared_lamp.h"
+#include "core/surface/brightest_point.h"
+#include "core/surface/mesh_policy.h"
+
+namespace glint {
+namespace {
+
+constexpr std::size_t kMostViews = 12;      // more do not make the answer surer
+constexpr std::size_t kMostHighlights = 6;  // of a frame: more are texture, and the lamp's is among the largest
+constexpr double kPeaksExplained = 0.25;    // of the contours' radius: what a lamp with a size and grazing views leave of peaks
+constexpr double kLessThanWorld = 1.0 / 3;  // of what the world leaves: a wrong frame leaves tens of percent of the radius
+constexpr double kAlike = 1.5;              // residuals of one frame over those of the other that cannot be told apart
+constexpr double kLeastPx = 0.1;            // peaks are known no better
+
+struct PeakView {
+  int frame = -1;
+  const Camera* camera = nullptr;
+  std::shared_ptr<const Surface> surface;
+  std::vector<Pixel> peaks;
+  std::vector<SurfacePoint> places;  ///< of the peaks, on the surface
+  std::vector<ReflectedRay> rays;    ///< mirrored there, world
+  double radiusPx = 0;               ///< mean of its highlights
+};
+
+ReflectedRay turned(const Eigen::Isometry3d& to, const ReflectedRay& ray) {
+  return {to * ray.origin, to.linear() * ray.direction, to.linear() * ray.normal};
+}
+
+Light carried(const Eigen::Isometry3d& to, const Light& light) { return Light::homogeneous(to.matrix() * light.homogeneous()); }
+
+/// The largest highlights of one light in a frame.
+PeakView peakViewOf(const Scene& scene, const FrameEvidence& evidence, const std::string& light,
+                    const std::shared_ptr<const Surface>& surface) {
+  PeakView view{evidence.frame, &scene.frames[static_cast<std::size_t>(evidence.frame)].camera, surface, {}, {}, {}, 0};
+  std::vector<const Highlight*> list;
+  for (const Highlight& h : evidence.highlights)
+    if (h.light == light && h.areaPx2 > 0 && (!h.touchesBorder || h.fromScene)) list.push_back(&h);
+  std::stable_sort(list.begin(), list.end(), [](const Highlight* a, const Highlight* b) { return a->areaPx2 > b->areaPx2; });
+  if (list.size() > kMostHighlights) list.resize(kMostHighlights);
+  for (const Highlight* h : list) {
+    const Outcome<BrightestPoint> seen = observedBrightestPoint(*surface, *view.camera, h->peak);
+    if (!seen) continue;
+    view.peaks.push_back(h->peak);
+    view.places.push_back(seen->point);
+    view.rays.push_back(reflectedRay(*seen, *view.camera));
+    view.radiusPx += std::sqrt(h->areaPx2 / EIGEN_PI);
+  }
+  if (!view.peaks.empty()) view.radiusPx /= double(view.peaks.size());
+  return view;
+}
+
+/// By how far the lamp's brightest point misses the nearest peak of a view, px; nothing without one.
+std::optional<double> missedPx(const PeakView& view, const Light& inWorld) {
+  BrightestPointOptions options;
+  options.hintsOnly = true;
+  for (const SurfacePoint& p : view.places) options.hints.push_back(p.position);
+  const Outcome<std::vector<BrightestPoint>> found = predictedBrightestPoints(*view.surface, *view.camera, inWorld, options);
+  if (!found) return std::nullopt;
+  double least = std::numeric_limits<double>::infinity();
+  for (const BrightestPoint& b : *found)
+    for (const Pixel& peak : view.peaks) least = std::min(least, (b.pixel - peak).norm());
+  return std::isfinite(least) ? std::optional(least) : std::nullopt;
+}
+
+/// What the lamp that stands still in a frame of coordinates leaves of the peaks. Three quarters of the views count: a single one
+/// may show something else.
+std::optional<double> residualPx(const std::vector<PeakView>& views, LightFrame frame) {
+  const auto fromWorld = [&](const PeakView& v) {
+    return frame == LightFrame::Camera ? v.camera->camFromWorld : Eigen::Isometry3d::Identity();
+  };
+  std::vector<std::vector<ReflectedRay>> rays;
+  for (const PeakView& v : views) {
+    rays.emplace_back();
+    for (const ReflectedRay& ray : v.rays) rays.back().push_back(turned(fromWorld(v), ray));
+  }
+  const std::optional<SharedLamp> lamp = sharedLamp(rays);
+  if (!lamp) return std::nullopt;
+  std::vector<double> missed;
+  for (const PeakView& v : views)
+    missed.push_back(missedPx(v, carried(fromWorld(v).inverse(), lamp->light)).value_or(std::numeric_limits<double>::infinity()));
+  std::sort(missed.begin(), missed.end());
+  const std::size_t counted = std::max<std::size_t>(2, (3 * missed.size() + 3) / 4);
+  double sum = 0;
+  for (std::size_t i = 0; i < std::min(counted, missed.size()); ++i) sum += missed[i] * missed[i];
+  const double rms = std::sqrt(sum / double(std::min(counted, missed.size())));
+  return std::isfinite(rms) ? std::optional(rms) : std::nullopt;
+}
+
+std::string pxText(const std::optional<double>& px) { return px ? formatted("%.2g px", *px) : std::string("no such lamp"); }
+
+/// What the highlights of one light say.
+struct Verdict {
+  LightFrame frame = LightFrame::World;
+  bool told = false;
+  std::string reason;
+};
+Verdict verdictOf(const LightFrameChoice::Residuals& r, double radiusPx) {
+  const double none = std::numeric_limits<double>::infinity();
+  const double world = r.world.value_or(none), camera = r.camera.value_or(none),
+               bound = std::max(kLeastPx, kPeaksExplained * radiusPx);
+  const std::string both =
+      "standing still it misses the peaks by " + pxText(r.world) + ", moving with the camera by " + pxText(r.camera);
+  if (camera <= bound && camera < kLessThanWorld * std::max(world, kLeastPx))
+    return {LightFrame::Camera, true, "the lamp moves with the camera: " + both};
+  if (world <= bound && !(camera <= kAlike * std::max(world, kLeastPx)))
+    return {LightFrame::World, true, "the lamp stands still: " + both};
+  if (world <= bound && camera <= bound)
+    return {LightFrame::World, false, "the views do not tell whether the lamp stands still or moves with the camera: " + both};
+  return {LightFrame::World, false,
+          "no lamp explains the peaks, neither one that stands still nor one that moves with the camera: " + both};
+}
+
+}  // namespace
+
+LightFrameChoice chooseLightFrame(const Scene& scene, const SurfaceCache& surfaces, const std::vector<int>& training,
+                                  const std::vector<FrameEvidence>& evidence, const Settings& settings) {
+  LightFrameChoice choice;
+  std::map<std::string, std::vector<PeakView>> views;
+  for (const int frame : evenly(training, kMostViews)) {
+    const FrameEvidence& e = evidence[static_cast<std::size_t>(frame)];
+    if (e.frame < 0 || e.highlights.empty()) continue;
+    const Outcome<std::shared_ptr<const Surface>> surface = surfaces.surfaceOf(frame, meshPolicy(settings));
+    if (!surface) continue;
+    std::set<std::string> labels;
+    for (const Highlight& h : e.highlights) labels.insert(h.light);
+    for (const std::string& label : labels)
+      if (PeakView view = peakViewOf(scene, e, label, *surface); !view.peaks.empty()) views[label].push_back(std::move(view));
+  }
+  int still = 0, moving = 0;  // lights of which it is told
+  for (const auto& [label, list] : views) {
+    double radius = 0;
+    for (const PeakView& v : list) radius += v.radiusPx / double(list.size());
+    const LightFrameChoice::Residuals& r =
+        choice.byLight[label] = {residualPx(list, LightFrame::World), residualPx(list, LightFrame::Camera)};
+    const Verdict verdict = verdictOf(r, radius);
+    if (verdict.told) ++(verdict.frame == LightFrame::Camera ? moving : still);
+    if (choice.reason.empty() || (verdict.told && verdict.frame == LightFrame::Camera)) choice.reason = verdict.reason;
+    if (!verdict.told && list.size() > 1 && r.world && r.camera && choice.doubt.empty()) choice.doubt = verdict.reason;
+  }
+  const std::string& wanted = settings.text("light.frame");
+  const bool carried = moving > 0 && moving >= still;
+  choice.frame = wanted == "camera" || (wanted == "auto" && carried) ? LightFrame::Camera : LightFrame::World;
+  const bool inCamera = choice.frame == LightFrame::Camera;
+  if (moving > 0 && still > 0)
+    choice.doubt = formatted(
+        "some lamps stand still (%d) and others move with the camera (%d): one light is fitted to those that %s (light.frame)",
+        still, moving, inCamera ? "move with the camera" : "stand still");
+  else if (wanted != "auto" && (inCamera ? still : moving) > 0)
+    choice.doubt = "light.frame=" + wanted + ", but " + choice.reason;
+  return choice;
+}
+
+}  // namespace glint
