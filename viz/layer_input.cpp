@@ -27,7 +27,9 @@ constexpr int kCoarseDivisions = 120;  ///< cells along the longest side: some 5
 
 }  // namespace
 
-bool LayerInput::onSurface(int frame) const { return !inspection->surfaces || inspection->surfaces->keyOf(frame) == surfaceKey; }
+bool LayerInput::onSurface(int frame) const {
+  return !inspection->surfaces || inspection->surfaces->placedKeyOf(frame) == inspection->surfaces->placedKeyOf(selection.frame);
+}
 
 std::vector<const TrainingView*> LayerInput::views() const {
   std::vector<const TrainingView*> result;

@@ -21,17 +21,24 @@ constexpr std::size_t kFoldsShown = 6;  // left-out fits that predict the views:
 /// Mean of |x| over its root mean square, for Gaussian x: contour errors are means of absolute distances.
 const double kMeanOfGaussian = std::sqrt(2 / std::numbers::pi);
 
-/// Where a light's training highlights are.
-Eigen::Vector3d middleOf(const std::vector<Fold>& folds, const std::string& light) {
+/// Where a light's training highlights are on the object.
+Eigen::Vector3d middleOf(const Scene& scene, const std::vector<Fold>& folds, const std::string& light) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   int count = 0;
   for (const Fold& f : folds)
-    if (f.left.highlight.light == light && f.left.seen) sum += f.left.seen->brightest.point.position, ++count;
+    if (f.left.highlight.light == light && f.left.seen) {
+      sum += scene.frames[f.left.frame].worldFromObject.inverse() * f.left.seen->brightest.point.position;
+      ++count;
+    }
   return count ? Eigen::Vector3d(sum / count) : sum;
 }
 
-double distanceDeg(const Camera& a, const Camera& b, const Eigen::Vector3d& middle) {
-  const Eigen::Vector3d u = a.centreInWorld() - middle, v = b.centreInWorld() - middle;
+/// Where a camera is as the object sees it, which may move before a camera that stands still.
+Eigen::Vector3d eyeAround(const Frame& frame) { return frame.worldFromObject.inverse() * frame.camera.centreInWorld(); }
+
+/// @param a, b, middle  in the object
+double distanceDeg(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& middle) {
+  const Eigen::Vector3d u = a - middle, v = b - middle;
   const double angle = std::atan2(u.cross(v).norm(), u.dot(v)), ratio = std::log(u.norm() / v.norm());
   return std::hypot(angle, ratio) * 180 / std::numbers::pi;
 }
@@ -69,15 +76,16 @@ std::vector<ViewToPredict> viewsToPredict(const Inspection& inspection, const st
   std::set<std::string> lights, surfaces;
   for (const Fold& f : folds) lights.insert(f.left.highlight.light), surfaces.insert(scene.frames[f.left.frame].surface);
   for (const std::string& light : lights) {
-    const Eigen::Vector3d middle = middleOf(folds, light);
+    const Eigen::Vector3d middle = middleOf(scene, folds, light);
     std::vector<const TrainingView*> training;
     for (const Fold& f : folds)
       if (f.left.highlight.light == light) training.push_back(&f.left);
+    const auto eye = [&](int frame) { return eyeAround(scene.frames[frame]); };
     double tested = 0;
     for (const Fold& f : folds) {
       if (f.left.highlight.light != light) continue;
       double nearest = HUGE_VAL;
-      for (const TrainingView& o : f.others) nearest = std::min(nearest, distanceDeg(f.left.camera, o.camera, middle));
+      for (const TrainingView& o : f.others) nearest = std::min(nearest, distanceDeg(eye(f.left.frame), eye(o.frame), middle));
       if (std::isfinite(nearest)) tested = std::max(tested, nearest);
     }
     for (int f = 0; f < static_cast<int>(scene.frames.size()); ++f) {
@@ -89,7 +97,7 @@ std::vector<ViewToPredict> viewsToPredict(const Inspection& inspection, const st
       view.testedDeg = tested;
       view.distanceDeg = HUGE_VAL;
       for (const TrainingView* t : training)
-        view.distanceDeg = std::min(view.distanceDeg, distanceDeg(view.camera, t->camera, middle));
+        view.distanceDeg = std::min(view.distanceDeg, distanceDeg(eye(f), eye(t->frame), middle));
       const std::string& surface = scene.frames[f].surface;
       view.outside = !(view.distanceDeg <= kBeyond * tested) || (!surface.empty() && !surfaces.count(surface));
       all.push_back(std::move(view));

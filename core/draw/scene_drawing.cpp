@@ -171,7 +171,7 @@ SceneDrawing frameThings(const Inspection& inspection, int frame, const std::sha
   mesh.role = SceneRole::Surface;
   mesh.frame = frame;
   mesh.mesh = surface;
-  if (inspection.surfaces) mesh.surface = inspection.surfaces->keyOf(frame);
+  if (inspection.surfaces) mesh.surface = inspection.surfaces->placedKeyOf(frame);
   things.push_back(std::move(mesh));
   if (static_cast<std::size_t>(frame) < inspection.evidence.size()) addObserved(things, inspection, frame, surface, options);
   for (const std::string& model : modelsInOrder(inspection))

@@ -157,7 +157,7 @@ SharedSurfaces surfacesOf(const Inspection& inspection, const std::vector<int>& 
   std::map<std::string, int> index;
   std::vector<std::pair<std::string, int>> first;  // key, frame
   for (const int frame : frames) {
-    const std::string key = inspection.surfaces ? inspection.surfaces->keyOf(frame) : "";
+    const std::string key = inspection.surfaces ? inspection.surfaces->placedKeyOf(frame) : "";
     const auto [found, isNew] = index.emplace(key, static_cast<int>(first.size()));
     if (isNew) first.emplace_back(key, frame);
     out.ofFrame.push_back(inspection.surfaces ? found->second : -1);

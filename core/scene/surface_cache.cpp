@@ -28,12 +28,14 @@ std::string textOf(const DepthPolicy& p) {
 
 struct SurfaceCache::Impl {
   std::vector<Frame> frames;
+  std::vector<int> firstThere;  // of each frame: the first one that shows the same surface in the same place
   std::map<std::string, SurfaceSource> sources;
   mutable std::mutex mutex;
   mutable std::map<std::string, std::shared_future<SurfaceTriangles>> triangles;       // by surface id, shared by the policies
   mutable std::map<std::string, std::shared_future<Outcome<SharedSurface>>> surfaces;  // by key and policy
-  mutable std::list<std::string> recentDepthMaps;                                      // keys, the last used one first
-  mutable std::map<std::string, FusedDepth> fused;                                     // by frame id, without the depth itself
+  mutable std::map<std::string, SharedSurface> placed;  // of objects that move, by place and policy
+  mutable std::list<std::string> recentDepthMaps;       // keys, the last used one first
+  mutable std::map<std::string, FusedDepth> fused;      // by frame id, without the depth itself
   mutable Statistics statistics;
 
   const Frame& frame(int index) const {
@@ -122,6 +124,12 @@ struct SurfaceCache::Impl {
 SurfaceCache::SurfaceCache(const Scene& scene) : impl_(std::make_unique<Impl>()) {
   impl_->frames = scene.frames;
   impl_->sources = scene.surfaces;
+  std::map<std::pair<std::string, std::vector<double>>, int> first;
+  for (int f = 0; f < static_cast<int>(scene.frames.size()); ++f) {
+    const Frame& frame = scene.frames[static_cast<std::size_t>(f)];
+    const double* const pose = frame.worldFromObject.matrix().data();
+    impl_->firstThere.push_back(first.try_emplace({frame.surface, {pose, pose + 16}}, f).first->second);
+  }
 }
 SurfaceCache::SurfaceCache(const Scene& scene, const SurfaceCache& other) : SurfaceCache(scene) {
   const std::lock_guard<std::mutex> lock(other.impl_->mutex);
@@ -144,10 +152,7 @@ std::string SurfaceCache::keyOf(int index) const {
 std::string SurfaceCache::placedKeyOf(int index) const {
   const Frame& frame = impl_->frame(index);
   if (frame.surface.empty() || standsStill(frame)) return keyOf(index);
-  const auto first = std::find_if(impl_->frames.begin(), impl_->frames.end(), [&](const Frame& f) {
-    return f.surface == frame.surface && f.worldFromObject.matrix() == frame.worldFromObject.matrix();
-  });
-  return keyOf(index) + "@" + std::to_string(first - impl_->frames.begin());
+  return keyOf(index) + "@" + std::to_string(impl_->firstThere[static_cast<std::size_t>(index)]);
 }
 
 Outcome<std::shared_ptr<const Surface>> SurfaceCache::surfaceOf(int index, MeshPolicy policy) const {
@@ -163,8 +168,13 @@ Outcome<std::shared_ptr<const Surface>> SurfaceCache::surfaceOf(int index, MeshP
     }
     return impl_->load(frame, policy);
   });
-  if (surface && !frame.surface.empty()) surface = movedTo(frame.worldFromObject, *std::move(surface));
-  return surface;
+  if (!surface || frame.surface.empty() || standsStill(frame)) return surface;
+  // One object for each place: who remembers things by surface finds it again.
+  const std::string place = placedKeyOf(index) + key.substr(key.find('|'));
+  const std::lock_guard<std::mutex> lock(impl_->mutex);
+  SharedSurface& placed = impl_->placed[place];
+  if (!placed) placed = movedTo(frame.worldFromObject, *std::move(surface));
+  return placed;
 }
 
 std::string SurfaceCache::fusionRemark(const std::vector<int>& asked) const {

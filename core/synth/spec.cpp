@@ -65,6 +65,40 @@ std::vector<Eigen::Isometry3d> readPath(const JsonNode& node) {
   return poses;
 }
 
+/// Where the object stands in each frame: {"poses": [4x4, ...]} or {"turn": {"axis", "through", "from", "to", "count"}}, rad.
+std::vector<Eigen::Isometry3d> readMotion(const JsonNode& node) {
+  std::vector<Eigen::Isometry3d> poses;
+  if (const auto list = node.find("poses")) {
+    for (std::size_t i = 0; i < list->size(); ++i) poses.push_back(readPoseJson(list->at(i)));
+    if (poses.empty()) list->fail("is empty");
+    return poses;
+  }
+  const JsonNode turn = node.at("turn");
+  const Eigen::Vector3d axis = lengths3(turn.at("axis")), through = lengths3(turn.at("through"));
+  if (!(axis.norm() > 0)) turn.at("axis").fail("must not be zero");
+  const double from = bounded(turn.at("from"), kLargestFactor), to = bounded(turn.at("to"), kLargestFactor);
+  const int count = countOf(turn.at("count"), 1, 100000);
+  for (int i = 0; i < count; ++i) {
+    const double a = count == 1 ? from : from + (to - from) * i / (count - 1);
+    poses.push_back(Eigen::Translation3d(through) * Eigen::AngleAxisd(a, axis.normalized()) * Eigen::Translation3d(-through));
+  }
+  return poses;
+}
+
+/// One camera and one place of the object for each frame of a path: as many of both, or one of one that serves all.
+std::vector<std::pair<Eigen::Isometry3d, Eigen::Isometry3d>> pairedPaths(const JsonNode& root, const JsonNode& path) {
+  const std::vector<Eigen::Isometry3d> cameras = readPath(path);
+  const auto motion = root.find("object");
+  const std::vector<Eigen::Isometry3d> objects = motion ? readMotion(*motion) : std::vector{Eigen::Isometry3d::Identity()};
+  const std::size_t count = std::max(cameras.size(), objects.size());
+  if ((cameras.size() > 1 && cameras.size() != count) || (objects.size() > 1 && objects.size() != count))
+    motion->fail(formatted("has %zu places, and the path %zu cameras", objects.size(), cameras.size()));
+  std::vector<std::pair<Eigen::Isometry3d, Eigen::Isometry3d>> pairs;
+  for (std::size_t i = 0; i < count; ++i)
+    pairs.emplace_back(cameras[cameras.size() == 1 ? 0 : i], objects[objects.size() == 1 ? 0 : i]);
+  return pairs;
+}
+
 std::vector<double> readSteps(const JsonNode& node) {
   if (const auto values = node.find("values")) {
     const std::vector<double> list = boundedAll(*values, kFarthest).numbers();
@@ -143,13 +177,15 @@ struct SynthCamera {
   CameraResponse response;
 };
 
-void addFrame(Scene& scene, const SynthCamera& of, const Eigen::Isometry3d& pose, const std::string& surface) {
+void addFrame(Scene& scene, const SynthCamera& of, const Eigen::Isometry3d& pose, const std::string& surface,
+              const Eigen::Isometry3d& worldFromObject = Eigen::Isometry3d::Identity()) {
   Frame frame;
   frame.id = padded(scene.frames.size());
   frame.camera = of.camera;
   frame.response = of.response;
   frame.camera.camFromWorld = pose;
   frame.surface = surface;
+  frame.worldFromObject = worldFromObject;
   for (const TrueLight& light : scene.lights) frame.lightsOn.push_back(light.id);
   scene.frames.push_back(std::move(frame));
 }
@@ -212,7 +248,9 @@ void readFrames(const JsonNode& frames, const SynthCamera& camera, const std::ve
         surface = n->text();
         if (!scene.surfaces.count(surface)) n->fail("surface '" + surface + "' does not exist");
       }
-      addFrame(scene, camera, readPoseJson(node.at("camera_from_world")), surface);
+      const auto object = node.find("world_from_object");
+      addFrame(scene, camera, readPoseJson(node.at("camera_from_world")), surface,
+               object ? readPoseJson(*object) : Eigen::Isometry3d::Identity());
       Frame& frame = scene.frames.back();
       if (const auto n = node.find("id"); n && order.size() == 1) {
         frame.id = readIdJson(*n);
@@ -270,10 +308,10 @@ SynthSpec readSynthSpec(const std::filesystem::path& file) {
     requireWithin(Limit::SynthFrames, double(order.size()) * double(cameras), file.string(), node.place());
   };
   if (const auto path = root.find("path")) {
-    const std::vector<Eigen::Isometry3d> poses = readPath(*path);
+    const auto poses = pairedPaths(root, *path);
     requireFew(poses.size(), *path);
     for (const std::string& surface : order)
-      for (const Eigen::Isometry3d& pose : poses) addFrame(scene, camera, pose, surface);
+      for (const auto& [pose, object] : poses) addFrame(scene, camera, pose, surface, object);
   } else {
     const JsonNode frames = root.at("frames");
     requireFew(frames.size(), frames);
