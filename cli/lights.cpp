@@ -120,7 +120,7 @@ LampsReport ofScene(const LightsArguments& a, const Context& context) {
   }
   const bool lines =
       std::any_of(a.out.begin(), a.out.end(), [](const std::string& f) { return std::filesystem::path(f).extension() == ".lp"; });
-  if (lines) report.lines = lampLinesOf(*scene, report.lamps, report.warnings);
+  if (lines) report.lines = lampLinesOf(*inspection.scene, report.lamps, report.warnings);
   return report;
 }
 

@@ -10,6 +10,7 @@
 #include "core/base/progress.h"
 #include "core/geometry/camera.h"
 #include "core/geometry/ellipsoid.h"
+#include "core/scene/light_frame.h"
 
 namespace glint {
 
@@ -48,10 +49,13 @@ struct LampSighting {
   std::optional<Eigen::Vector2d> leftOutPx;
 };
 
-/// Where a lamp is, or why that is unknown. Directions are unit vectors from `from`; world frame (of balls: the camera's).
+/// Where a lamp is, or why that is unknown. Directions are unit vectors from `from`; in the coordinates of `frame` (of balls: the
+/// camera's).
 struct LampAnswer {
   std::string id;
   std::vector<std::string> frames;            ///< ids
+  std::optional<LightFrame> frame;            ///< in which the lamp of a scene stands still
+  std::string frameReason;                    ///< why, in words
   std::optional<Failure> failure;             ///< then nothing below is known but `dropped`
   std::optional<Eigen::Vector3d> position;    ///< where the data determine a distance
   std::optional<Eigen::Matrix3d> covariance;  ///< of the position

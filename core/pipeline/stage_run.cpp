@@ -389,6 +389,10 @@ ModelResult::Fit StageRun::fitOf(const HighlightModel& model, const FitKey& key,
   input.progress = goesOn;
   const auto start = std::chrono::steady_clock::now();
   entry.fit = model.fit(input, r_.request.settings);
+  if (!entry.fit && entry.fit.failure().reason == Reason::RankDeficient && r_.lightFrame.frame == LightFrame::Camera)
+    entry.fit =
+        Failure{Reason::RankDeficient, entry.fit.failure().detail +
+                                           "; the lamp moves with the camera, and in the lamp's coordinates all cameras are one"};
   if (!entry.fit) return entry;
   ModelFit& fit = *entry.fit;
   fit.model = model.id();

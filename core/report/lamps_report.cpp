@@ -82,6 +82,10 @@ Ordered lampJson(const LampAnswer& lamp) {
                {"degrees_of_freedom", known ? numberOrNull(lamp.degreesOfFreedom) : Ordered()},
                {"highlights", lamp.highlights},
                {"dropped", droppedJson(lamp)}};
+  if (lamp.frame) {
+    j["frame"] = nameOf(*lamp.frame);
+    j["frame_reason"] = lamp.frameReason;
+  }
   if (!lamp.solver.empty()) j["solver"] = lamp.solver;
   if (lamp.outlineShare && known) j["outline_share"] = numberOrNull(*lamp.outlineShare);
   if (!lamp.sightings.empty()) j["sightings"] = sightingsJson(lamp);
@@ -195,9 +199,11 @@ std::string lampsTable(const LampsReport& report) {
     }
     const std::string at = lamp.position ? formatted("%.5g %.5g %.5g", lamp.position->x(), lamp.position->y(), lamp.position->z())
                                          : std::string("-");
+    const bool carried = lamp.frame == LightFrame::Camera;
     const std::string towards = formatted("%.5f %.5f %.5f", lamp.direction.x(), lamp.direction.y(), lamp.direction.z());
-    out += formatted("%-16.40s %-34s %-28s %10.3g %9.3g %5d  %zu\n", lamp.id.c_str(), at.c_str(), towards.c_str(),
-                     degrees(lamp.directionSigma), lamp.residualPx, lamp.highlights, lamp.dropped.size());
+    out += formatted("%-16.40s %-34s %-28s %10.3g %9.3g %5d  %zu%s\n", lamp.id.c_str(), at.c_str(), towards.c_str(),
+                     degrees(lamp.directionSigma), lamp.residualPx, lamp.highlights, lamp.dropped.size(),
+                     carried ? "  (moves with the camera: x right, y down, z forward)" : "");
   }
   return out;
 }

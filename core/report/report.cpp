@@ -19,6 +19,11 @@ std::string cell(double v, const char* format = "%.3f") {
   return formatted(format, v);
 }
 
+/// Where the lamps stand still, if not in the world.
+std::string carriedLine(const Inspection& inspection) {
+  return inspection.lightFrame.frame == LightFrame::Camera ? inspection.lightFrame.reason + "\n" : std::string();
+}
+
 /// What the rows of a table are over, and what the models were made from.
 std::string captionOf(const Inspection& inspection) {
   const std::string all = std::to_string(inspection.scene->frames.size());
@@ -28,7 +33,7 @@ std::string captionOf(const Inspection& inspection) {
   for (int frame = 0; frame < static_cast<int>(inspection.scene->frames.size()); ++frame) heldOut += inspection.isHeldOut(frame);
   return "contour errors of held-out frames (" + std::to_string(heldOut) + "); trained on " +
          std::to_string(inspection.train.frames.size()) + " of " + all + " frames (" +
-         trainText(inspection.train, *inspection.scene) + "); % of a highlight's diameter\n";
+         trainText(inspection.train, *inspection.scene) + "); % of a highlight's diameter\n" + carriedLine(inspection);
 }
 
 }  // namespace

@@ -96,9 +96,10 @@ NumberGroup trainingView(const TrainingView& view) {
   return {QObject::tr("Training view"), lines.text()};
 }
 
-NumberGroup lightGroup(const std::string& id, const LightEstimate& estimate) {
+NumberGroup lightGroup(const std::string& id, const LightEstimate& estimate, const LightFrameChoice& frame) {
   Lines lines;
   addLight(lines, estimate.light);
+  if (frame.frame == LightFrame::Camera) lines.note(QObject::tr("in the camera's frame: %1").arg(toQString(frame.reason)));
   lines.add(QObject::tr("solver"), toQString(estimate.solver));
   lines.add(QObject::tr("limit angle"), estimate.limitAngle * kDegPerRad, "deg");
   lines.add(QObject::tr("condition"), estimate.condition);
@@ -226,7 +227,7 @@ std::vector<NumberGroup> describeSelection(const Inspection& inspection, const d
     if (!*estimate)
       groups.push_back({lightTitle(id), toQString(estimate->failure().message())});
     else if (light.empty() || id == light)
-      groups.push_back(lightGroup(id, **estimate));
+      groups.push_back(lightGroup(id, **estimate, inspection.lightFrame));
   }
   for (NumberGroup& group : groups) group.lines = toQString(withoutFolder(group.lines.toStdString(), *inspection.scene));
   return groups;
