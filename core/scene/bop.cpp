@@ -223,11 +223,11 @@ class BopReading {
     }
     const std::size_t colon = std::min(options_.object.find(':'), options_.object.size());
     const std::optional<int> chosen = bopId(options_.object.substr(0, colon));
-    if (const auto nth = bopId(options_.object.substr(std::min(colon + 1, options_.object.size()))); nth && *nth > 0)
+    if (const auto nth = bopId(options_.object.substr(std::min(colon + 1, options_.object.size()))); nth && *nth >= 0)
       instance_ = std::size_t(*nth);
     else if (colon < options_.object.size())
       throw InputError(poseFile, "--object",
-                       io::quoted(options_.object) + " is not OBJECT:N, the N-th one of the object in each image, from 1");
+                       io::quoted(options_.object) + " is not OBJECT:N, the N-th one of the object in each image, from 0");
     if (!chosen || !objects.count(*chosen))
       throw InputError(
           poseFile, "--object",
@@ -238,7 +238,7 @@ class BopReading {
   /// Which of several that are alike: the files number them in each image anew.
   [[noreturn]] void askInstance(std::size_t most, const std::string& poseFile) const {
     std::vector<UndecidedInput::Answer> answers;
-    for (std::size_t i = 1; i <= std::min(most, kBopMostNumbers); ++i) {
+    for (std::size_t i = 0; i < std::min(most, kBopMostNumbers); ++i) {
       const std::string n = std::to_string(i);
       answers.push_back(
           {std::to_string(object_) + ":" + n, "number " + n + " of object " + std::to_string(object_) + " in each image"});
@@ -246,7 +246,7 @@ class BopReading {
     throw UndecidedInput(poseFile,
                          "an image shows object " + std::to_string(object_) + " " + std::to_string(most) +
                              " times; choose one by --object " + std::to_string(object_) +
-                             ":N, the N-th in each image (whether that is the same one throughout, the files do not say)",
+                             ":N, the N-th in each image from 0 (whether that is the same one throughout, the files do not say)",
                          UndecidedInput::Question::Object, std::move(answers));
   }
 
@@ -261,13 +261,13 @@ class BopReading {
         if (list.at(i).at("obj_id").integer() == object_) entries.push_back(i);
       if (entries.empty()) continue;
       most = std::max(most, entries.size());
-      if (instance_ > entries.size()) continue;
-      const std::size_t entry = entries[std::max<std::size_t>(instance_, 1) - 1];
+      if (instance_.value_or(0) >= entries.size()) continue;
+      const std::size_t entry = entries[instance_.value_or(0)];
       const auto camera = cameras.find(id);
       if (camera == cameras.end()) list.fail(std::string("has no camera in ") + kBopCameras);
       images.push_back({id, entry, list.at(entry), camera->second});
     }
-    if (most > 1 && instance_ == 0) askInstance(most, poseFile);
+    if (most > 1 && !instance_) askInstance(most, poseFile);
     if (images.empty())
       throw InputError(poseFile, "--object",
                        io::quoted(options_.object) + ": no image shows the object more than " + std::to_string(most) + " times");
@@ -384,7 +384,7 @@ class BopReading {
   capture::PassedOver lost_;
   Capture capture_;
   int object_ = 0;
-  std::size_t instance_ = 0;  ///< 1: the first one of the object in each image; 0 = the only one
+  std::optional<std::size_t> instance_;  ///< from 0; nothing = the only one of the object in each image
   std::size_t leftOut_ = 0;
   std::string lastName_;  ///< pattern of the photograph that was found last
   capture::ImageSizes sizes_;

@@ -231,14 +231,20 @@ TEST(BopCapture, AnObjectThatStandsStillInTheWorldIsAFact) {
   EXPECT_THAT(capture.facts, Contains(HasSubstr("stands still in the world: within 0.5 mm and 0.05 degrees over 2 images")));
 }
 
-TEST(BopCapture, AnObjectThatMovesIsAWarning) {
+TEST(BopCapture, AnObjectThatMovesStandsWhereTheCamerasWorldHasIt) {
   const BopSet shifted;
   placeCameras(shifted, -1.5, 0);
-  EXPECT_THAT(readBop(shifted.scene()).warnings,
-              ElementsAre(AllOf(HasSubstr("the object moves: up to 1.5 mm"), HasSubstr("000003.png"))));
+  const Capture capture = readBop(shifted.scene());
+  EXPECT_THAT(capture.warnings, IsEmpty());
+  EXPECT_THAT(capture.facts, Contains(AllOf(HasSubstr("the object moves: up to 1.5 mm"), HasSubstr("000003.png"))));
+  // The cameras are those of cam_R_w2c, in mm, and the object lies where placeCameras() has it.
+  EXPECT_LT((capture.views[0].camera.camFromWorld * Eigen::Vector3d(1, 0, 0) - Eigen::Vector3d(0, 1, 600)).norm(), 1e-9);
+  EXPECT_LT((capture.views[0].worldFromObject.translation() - Eigen::Vector3d(20, -10, -100)).norm(), 1e-9);
+  EXPECT_LT((capture.views[1].worldFromObject.translation() - Eigen::Vector3d(18.5, -10, -100)).norm(), 1e-9);
+  EXPECT_TRUE(capture.views[1].worldFromObject.linear().isApprox(Eigen::Matrix3d::Identity()));
   const BopSet turned;
   placeCameras(turned, 0, 0.2);
-  EXPECT_THAT(readBop(turned.scene()).warnings, ElementsAre(HasSubstr("and 0.2 degrees")));
+  EXPECT_THAT(readBop(turned.scene()).facts, Contains(HasSubstr("and 0.2 degrees")));
 }
 
 TEST(BopCapture, WithoutCamerasInTheWorldMotionIsNotKnown) {
