@@ -36,9 +36,14 @@ std::vector<std::string> leftOutOf(const Scene& scene) {
   say(count([](const Frame& f) { return !f.normals.empty(); }), "normal maps");
   if (const long n = count([](const Frame& f) { return f.response.isStated(); }))
     lines.push_back("the camera response of " + std::to_string(n) + " frames is left out: name it by --response");
+  if (const long n = count([](const Frame& f) { return !standsStill(f); }))
+    lines.push_back("the object moves in " + std::to_string(n) + " frames: the cameras are written as it sees them");
   if (!scene.lights.empty()) lines.push_back(std::to_string(scene.lights.size()) + " lights are left out");
   return lines;
 }
+
+/// The cameras as the object sees them: other programs know no motion.
+Scene asTheObjectSeesIt(const Scene& scene) { return standsStill(scene) ? scene : inObject(scene); }
 
 /// The photograph, else the radiance image. Other programs cannot read a picture of a video as a file.
 fs::path pictureOf(const Frame& frame) {
@@ -52,10 +57,11 @@ std::string pathFrom(const fs::path& file, const fs::path& folder) {
 
 }  // namespace
 
-Exported transformsOf(const Scene& scene, const fs::path& file) {
+Exported transformsOf(const Scene& given, const fs::path& file) {
+  const Scene scene = asTheObjectSeesIt(given);
   const fs::path folder = fs::absolute(file).lexically_normal().parent_path();
   Exported exported;
-  exported.leftOut = leftOutOf(scene);
+  exported.leftOut = leftOutOf(given);
   constexpr double kMillimetre = 0.001;
   std::vector<PosedImage> images;
   int otherDepth = 0, outside = 0, unnamed = 0;
@@ -82,12 +88,13 @@ Exported transformsOf(const Scene& scene, const fs::path& file) {
   return exported;
 }
 
-Exported colmapOf(const Scene& scene, const fs::path& folder) {
+Exported colmapOf(const Scene& given, const fs::path& folder) {
+  const Scene scene = asTheObjectSeesIt(given);
   const fs::path own = fs::absolute(folder / "cameras.txt").lexically_normal();
   const std::vector<fs::path> others = foldersOfCapture(own);
   const fs::path root = others.empty() ? own.parent_path() : others.front();
   Exported exported;
-  exported.leftOut = leftOutOf(scene);
+  exported.leftOut = leftOutOf(given);
   const auto allBelow = [&](const fs::path& place) {
     return std::all_of(scene.frames.begin(), scene.frames.end(),
                        [&](const Frame& f) { return pictureOf(f).empty() || !below(pictureOf(f), place).empty(); });
