@@ -102,23 +102,29 @@ std::string pxText(const std::optional<double>& px) { return px ? formatted("%.2
 
 /// What the highlights of one light say.
 struct Verdict {
+  enum class Told { Nothing, Either, Yes };  ///< no frame explains the peaks, both do, one does
   LightFrame frame = LightFrame::World;
-  bool told = false;
+  Told told = Told::Nothing;
   std::string reason;
 };
-Verdict verdictOf(const LightFrameChoice::Residuals& r, double radiusPx) {
+/// @param still  the camera never moves: a lamp on it stands still in the world, too
+Verdict verdictOf(const LightFrameChoice::Residuals& r, double radiusPx, bool still) {
   const double none = std::numeric_limits<double>::infinity();
   const double world = r.world.value_or(none), camera = r.camera.value_or(none),
                bound = std::max(kLeastPx, kPeaksExplained * radiusPx);
   const std::string both =
       "standing still it misses the peaks by " + pxText(r.world) + ", moving with the camera by " + pxText(r.camera);
-  if (camera <= bound && camera < kLessThanWorld * std::max(world, kLeastPx))
-    return {LightFrame::Camera, true, "the lamp moves with the camera: " + both};
+  if (camera <= bound && world > kLeastPx && camera < kLessThanWorld * world)
+    return {LightFrame::Camera, Verdict::Told::Yes, "the lamp moves with the camera: " + both};
+  if (world <= bound && still)
+    return {LightFrame::World, Verdict::Told::Yes,
+            "the camera stands still, and so does the lamp: it misses the peaks by " + pxText(r.world)};
   if (world <= bound && !(camera <= kAlike * std::max(world, kLeastPx)))
-    return {LightFrame::World, true, "the lamp stands still: " + both};
-  if (world <= bound && camera <= bound)
-    return {LightFrame::World, false, "the views do not tell whether the lamp stands still or moves with the camera: " + both};
-  return {LightFrame::World, false,
+    return {LightFrame::World, Verdict::Told::Yes, "the lamp stands still: " + both};
+  if (world <= bound)
+    return {LightFrame::World, Verdict::Told::Either,
+            "the views do not tell whether the lamp stands still or moves with the camera: " + both};
+  return {LightFrame::World, Verdict::Told::Nothing,
           "no lamp explains the peaks, neither one that stands still nor one that moves with the camera: " + both};
 }
 
@@ -144,10 +150,13 @@ LightFrameChoice chooseLightFrame(const Scene& scene, const SurfaceCache& surfac
     for (const PeakView& v : list) radius += v.radiusPx / double(list.size());
     const LightFrameChoice::Residuals& r =
         choice.byLight[label] = {residualPx(list, LightFrame::World), residualPx(list, LightFrame::Camera)};
-    const Verdict verdict = verdictOf(r, radius);
-    if (verdict.told) ++(verdict.frame == LightFrame::Camera ? moving : still);
-    if (choice.reason.empty() || (verdict.told && verdict.frame == LightFrame::Camera)) choice.reason = verdict.reason;
-    if (!verdict.told && list.size() > 1 && r.world && r.camera && choice.doubt.empty()) choice.doubt = verdict.reason;
+    const bool stays = std::all_of(list.begin(), list.end(), [&, &first = list.front()](const PeakView& v) {
+      return v.camera->camFromWorld.isApprox(first.camera->camFromWorld);
+    });
+    const Verdict verdict = verdictOf(r, radius, stays);
+    if (verdict.told == Verdict::Told::Yes) ++(verdict.frame == LightFrame::Camera ? moving : still);
+    if (choice.reason.empty() || verdict.frame == LightFrame::Camera) choice.reason = verdict.reason;
+    if (verdict.told == Verdict::Told::Either && choice.doubt.empty()) choice.doubt = verdict.reason;
   }
   const std::string& wanted = settings.text("light.frame");
   const bool carried = moving > 0 && moving >= still;

@@ -24,9 +24,9 @@ from capture import WRITERS, Capture, Frame
 COUNT, SIZE, FOCAL = 12, (400, 300), 520
 AXES = (0.24, 0.20, 0.17)
 FLASH, LAMP = [0.05, -0.02, 0.0], [0.9, -0.6, 1.4]
-ORBIT = {"centre": [0, 0, 0], "radius": 0.9, "height": 0.5, "from": 0.0, "to": 5.5, "count": COUNT}
-TURN = {"axis": [0.1, 0.0, 1.0], "through": [0.0, 0.0, 0.0], "from": 0.0, "to": 4.5, "count": COUNT}
-MOST_PCT = {0.0: 0.5, 0.3: 1.5}  # % of the diameter, of 8-bit photographs; noise adds its share
+ORBIT = {"centre": [0, 0, 0], "radius": 0.9, "height": 0.5, "from": -1.9, "to": 0.7, "count": COUNT}
+TURN = {"axis": [0.1, 0.0, 1.0], "through": [0.0, 0.0, 0.0], "from": 0.0, "to": 2.6, "count": COUNT}
+MOST_PCT = {0.0: 1, 0.3: 1.5}  # % of the diameter: limit-angle leaves 0.7 % of GGX at grazing incidence, and noise adds its share
 
 
 def specification(kind):
@@ -35,8 +35,8 @@ def specification(kind):
             "camera": {"width": SIZE[0], "height": SIZE[1], "fx": FOCAL, "fy": FOCAL, "cx": (SIZE[0] - 1) / 2, "cy": (SIZE[1] - 1) / 2},
             "surfaces": {"body": {"analytic": {"type": "ellipsoid", "semi_axes": list(AXES)}}},
             "lights": [{"id": "lamp", "position": FLASH, "frame": "camera"} if kind == "flash" else {"id": "lamp", "position": LAMP}],
-            "path": {"orbit": dict(ORBIT, **({"count": 1} if kind == "turntable" else {}))},
-            "render": {"reflectance": "ggx", "roughness": 0.12, "diffuse": 0.02, "exposure": 0.8, "samples": 3, "bits": 8}}
+            "path": {"orbit": dict(ORBIT, **({"count": 1, "from": -0.9, "to": -0.9} if kind == "turntable" else {}))},
+            "render": {"reflectance": "ggx", "roughness": 0.07, "diffuse": 0.02, "exposure": 0.8, "samples": 3, "bits": 8}}
     if kind in ("turntable", "moving"):
         spec["object"] = {"turn": TURN}
     return spec

@@ -107,6 +107,7 @@ const std::map<std::string, const char*>& changeNothing() {
   static const std::map<std::string, const char*> some{
       {"detect.motion", "nothing is painted on the surfaces here; tests of core paint them"},
       {"detect.texture", "the surfaces here are plain; tests of core print on them"},
+      {"light.frame", "the lamps here stand still, which is found; tests of core let them move"},
       {"light.smooth_mesh", "the meshes here have no noise; tests of core give them some"},
       {"predict.filter_brightness", "one highlight is predicted here; tests of core predict fainter ones"},
       {"predict.filter_shadow", "nothing shadows itself here; tests of core put a ball in the way"},
