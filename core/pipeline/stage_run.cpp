@@ -21,6 +21,7 @@
 #include "core/pipeline/live_prediction.h"
 #include "core/pipeline/lobe_stage.h"
 #include "core/pipeline/training.h"
+#include "core/pipeline/width_check.h"
 #include "core/surface/mesh_policy.h"
 
 namespace glint {
@@ -361,9 +362,13 @@ ModelResult::Fit StageRun::fitOf(const HighlightModel& model, const FitKey& key,
   entry.surface = key.surface;
   FitInput input = fitInputOf(r_, model, key);
   input.progress = goesOn;
+  const std::string widths = widthDoubt(input.views, input.light ? std::optional(input.light->light) : std::nullopt);
   const auto start = std::chrono::steady_clock::now();
   entry.fit = model.fit(input, r_.request.settings);
-  if (!entry.fit) return entry;
+  if (!entry.fit) {
+    if (!widths.empty()) entry.fit = Failure{entry.fit.failure().reason, entry.fit.failure().detail + "; " + widths};
+    return entry;
+  }
   ModelFit& fit = *entry.fit;
   fit.model = model.id();
   fit.light = key.light;
@@ -376,6 +381,7 @@ ModelResult::Fit StageRun::fitOf(const HighlightModel& model, const FitKey& key,
   add(byHandRemark(r_, fit));
   add(textureRemark(r_));
   add(takenOffRemark(r_));
+  add(widths);
   if (const auto doubt = r_.responseDoubts.find(key); doubt != r_.responseDoubts.end()) add(doubt->second);
   if (r_.surfaces) add(r_.surfaces->fusionRemark(fit.frames));
   if (const auto found = r_.corrections.find(key); found != r_.corrections.end() && model.needsLight()) {
