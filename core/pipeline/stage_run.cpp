@@ -20,6 +20,7 @@
 #include "core/pipeline/highlight_motion.h"
 #include "core/pipeline/live_prediction.h"
 #include "core/pipeline/lobe_stage.h"
+#include "core/pipeline/merged_peaks.h"
 #include "core/pipeline/training.h"
 #include "core/pipeline/width_check.h"
 #include "core/surface/mesh_policy.h"
@@ -362,11 +363,19 @@ ModelResult::Fit StageRun::fitOf(const HighlightModel& model, const FitKey& key,
   entry.surface = key.surface;
   FitInput input = fitInputOf(r_, model, key);
   input.progress = goesOn;
-  const std::string widths = widthDoubt(input.views, input.light ? std::optional(input.light->light) : std::nullopt);
+  const std::optional<Light> light = input.light ? std::optional(input.light->light) : std::nullopt;
+  const std::string widths = widthDoubt(input.views, light);
+  const std::optional<MergedPeaks> merged = mergedPeaks(input.views, light, r_.request.settings);
   const auto start = std::chrono::steady_clock::now();
   entry.fit = model.fit(input, r_.request.settings);
+  if (entry.fit && merged && merged->certain) entry.fit = Failure{Reason::NotConverged, merged->text};
   if (!entry.fit) {
-    if (!widths.empty()) entry.fit = Failure{entry.fit.failure().reason, entry.fit.failure().detail + "; " + widths};
+    Failure why = entry.fit.failure();
+    if (together_ && input.views.empty())
+      why.detail += "; no training frame shows this light: lamps may be switched between frames";
+    if (merged && why.detail != merged->text) why.detail += "; " + merged->text;
+    if (!widths.empty()) why.detail += "; " + widths;
+    entry.fit = std::move(why);
     return entry;
   }
   ModelFit& fit = *entry.fit;
@@ -381,7 +390,9 @@ ModelResult::Fit StageRun::fitOf(const HighlightModel& model, const FitKey& key,
   add(byHandRemark(r_, fit));
   add(textureRemark(r_));
   add(takenOffRemark(r_));
+  add(switchedRemark(r_, fit, [this](int frame) { return surfaceOf(frame); }));
   add(widths);
+  if (merged) add(merged->text);
   if (const auto doubt = r_.responseDoubts.find(key); doubt != r_.responseDoubts.end()) add(doubt->second);
   if (r_.surfaces) add(r_.surfaces->fusionRemark(fit.frames));
   if (const auto found = r_.corrections.find(key); found != r_.corrections.end() && model.needsLight()) {

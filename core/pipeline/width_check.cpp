@@ -69,6 +69,13 @@ WidthGroups::Group groupOf(std::span<const WidthAtPlace> items, const OwnWidths&
   return g;
 }
 
+/// All contours of a frame lie at a share of its strongest peak: those of weaker highlights are narrower.
+bool isStrongest(const TrainingView& view, const std::vector<TrainingView>& views) {
+  return std::none_of(views.begin(), views.end(), [&](const TrainingView& o) {
+    return o.frame == view.frame && o.highlight.peakValue > view.highlight.peakValue;
+  });
+}
+
 }  // namespace
 
 std::optional<WidthGroups> groupedByPlace(const OwnWidths& widths) {
@@ -105,7 +112,7 @@ std::string widthDoubt(const std::vector<TrainingView>& views, const std::option
   std::vector<std::string> names;
   double level = 0;
   for (const TrainingView& v : views) {
-    if (!v.seen || v.highlight.touchesBorder) continue;
+    if (!v.seen || v.highlight.touchesBorder || !isStrongest(v, views)) continue;
     contours.push_back({v.camera, v.surface.get(), v.highlight.contour.points, v.seen->brightest});
     names.push_back(frameNameOf(v));
     level = v.highlight.level;
