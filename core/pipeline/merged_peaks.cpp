@@ -12,6 +12,7 @@ namespace glint {
 namespace {
 
 constexpr double kValleyShare = 0.2;   // of a peak's height above the contour: grain and JPEG blocks make shallower valleys
+constexpr double kLeastRise = 0.1;     // of the highest peak's height: what noise makes at the contour stays below
 constexpr double kMostShow = 2.0 / 3;  // of the views: a spot of paint shows in a few
 constexpr std::size_t kLeastShow = 2;  // views
 constexpr int kCertainPeaks = 2;       // more than one lamp makes: two may be a long lamp's ends or one bump
@@ -42,7 +43,7 @@ int peaksInside(const PixelPatch& patch, const Polyline& contour) {
     if (value[i] >= 0) order.push_back(i);
   if (order.empty()) return 0;
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return value[a] > value[b]; });
-  const double foot = value[order.back()];
+  const double foot = value[order.back()], height = value[order.front()] - foot;
   // Cells join in falling order. Where two hills meet, the lower one counts if the way down from its top is long enough.
   std::vector<std::size_t> hill(value.size(), value.size());
   const auto topOf = [&](std::size_t cell) {
@@ -60,7 +61,7 @@ int peaksInside(const PixelPatch& patch, const Polyline& contour) {
         std::size_t a = topOf(cell), b = topOf(other);
         if (a == b) continue;
         if (value[a] < value[b]) std::swap(a, b);
-        if (value[b] - value[cell] > kValleyShare * (value[b] - foot)) ++peaks;
+        if (value[b] - value[cell] > std::max(kValleyShare * (value[b] - foot), kLeastRise * height)) ++peaks;
         hill[b] = a;
       }
   }
