@@ -265,32 +265,35 @@ Members unexplained(const std::vector<Item>& items, const std::vector<TrackedFra
   return result;
 }
 
-/// Forms as many groups as there are lights; with `lights` 0 as many as the highlights prove.
+/// Whether lights that nobody has stated are: each has enough frames, and those after the first `known` appear beside others.
+bool proven(const std::vector<Item>& items, const std::vector<Group>& groups, std::size_t known) {
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    if (framesOf(items, groups[g].members) < kLeastFrames) return false;
+    std::vector<Group> others = groups;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(g));
+    if (g >= known && !provenBySight(items, groups[g], others)) return false;
+  }
+  return true;
+}
+
+/// Forms as many groups as there are lights; with `lights` 0 as many as the highlights prove. Lamps that are switched prove each
+/// other: up to three are taken together.
 std::vector<Group> findGroups(const std::vector<Item>& items, const std::vector<TrackedFrame>& frames, std::size_t lights,
                               const TrackOptions& options) {
-  std::vector<Group> groups;
-  Members all(items.size());
-  std::iota(all.begin(), all.end(), std::size_t{0});
+  constexpr std::size_t kMostWaiting = 2;  // groups that wait for another one to prove them
+  std::vector<Group> groups, all;          // all: with those that wait
   while (lights == 0 || groups.size() < lights) {
-    const Members free = unexplained(items, frames, groups);
+    const Members free = unexplained(items, frames, all);
     std::size_t least = std::max<std::size_t>(2, std::min(kLeastFrames, frames.size()));
     if (lights == 0 && !groups.empty()) least = std::max(kLeastFrames, (framesOf(items, free) + 1) / 2);
     const std::optional<Group> group = bestGroup(items, free, least, options);
     if (!group) break;
-    std::vector<Group> next = groups;
-    next.push_back(*group);
-    settle(items, frames, next);
-    if (lights == 0 && !groups.empty()) {
-      bool proven = true;
-      for (std::size_t g = 0; g < next.size() && proven; ++g) {
-        std::vector<Group> others = next;
-        others.erase(others.begin() + static_cast<std::ptrdiff_t>(g));
-        proven =
-            framesOf(items, next[g].members) >= kLeastFrames && (g + 1 < next.size() || provenBySight(items, next[g], others));
-      }
-      if (!proven) break;
-    }
-    groups = std::move(next);
+    all.push_back(*group);
+    settle(items, frames, all);
+    if (lights > 0 || groups.empty() || proven(items, all, groups.size()))
+      groups = all;
+    else if (all.size() - groups.size() > kMostWaiting)
+      break;
   }
   return groups;
 }

@@ -40,7 +40,7 @@ struct TrackOptions {
 /// with highlights that are named already; lights that are on in the same frames cannot be told apart, and their names are then
 /// arbitrary. Where no frame states anything, all highlights are of one "light" unless they prove that there are more: another
 /// light counts (named "light-2" ...) when at least 3 frames and half of those with unexplained highlights confirm it, most of
-/// which show another light too. Highlights of no group keep "".
+/// which show another light too; up to three may prove each other, since lamps are switched. Highlights of no group keep "".
 /// @param surfaceOf  the surface that a frame sees, asked once per frame that has highlights and only where something has to be
 ///                   grouped; null: the frame's highlights keep no light unless only one is on.
 /// @return number of groups found (0 when nothing had to be grouped).

@@ -5,11 +5,13 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "core/base/number_text.h"
 #include "core/base/numeric.h"
 #include "core/base/words.h"
+#include "core/model/models.h"
 #include "core/model/pixel_evidence.h"
 #include "core/pipeline/fit_engine.h"
 #include "core/pipeline/lobe_stage.h"
@@ -83,6 +85,37 @@ std::string byHandRemark(const Inspection& r, const ModelFit& fit) {
     names += (names.empty() ? "" : "; ") + ("frame " + r.scene->frames[std::size_t(v.frame)].id + ": " + v.highlight.byHand);
   }
   return names;
+}
+
+std::string switchedRemark(const Inspection& r, const ModelFit& fit,
+                           const std::function<std::shared_ptr<const Surface>(int frame)>& surfaceOf) {
+  constexpr int kLeastOff = 2;  // frames: one highlight may be missed for another reason
+  const std::vector<Frame>& frames = r.scene->frames;
+  if (r.train.perSurface || !fit.lightEstimate ||
+      std::any_of(frames.begin(), frames.end(), [](const Frame& f) { return !f.lightsOn.empty(); }))
+    return "";
+  std::set<std::string> trained, untrained;
+  for (const TrainingView& v : r.views) trained.insert(v.highlight.light);
+  int off = 0, on = 0;
+  for (const FrameEvidence& e : r.evidence) {
+    std::set<std::string> shown;
+    for (const Highlight& h : e.highlights) shown.insert(h.light);
+    for (const std::string& light : shown)
+      if (!light.empty() && !trained.count(light)) untrained.insert(light);
+    if (e.frame < 0 || shown.empty() || shown.count("")) continue;
+    if (shown.count(fit.light)) {
+      ++on;
+      continue;
+    }
+    const std::shared_ptr<const Surface> surface = surfaceOf(e.frame);
+    off += surface && brightestPointsFor(*surface, frames[std::size_t(e.frame)].camera, *fit.lightEstimate, r.request.settings);
+  }
+  std::string text;
+  for (const std::string& light : untrained) text += (text.empty() ? "" : ", ") + light;
+  if (!text.empty()) text = "lamps are switched: no training frame shows " + text + ", which other frames show";
+  if (off < kLeastOff) return text;
+  return text + (text.empty() ? "" : "; ") + "no highlight of this light is in " + std::to_string(off) + " of " +
+         std::to_string(off + on) + " frames where it would be seen: its lamp may be off there (state which lights are on)";
 }
 
 namespace {

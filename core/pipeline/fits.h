@@ -2,6 +2,7 @@
 #pragma once
 
 // What is known and said of the fits of an inspection.
+#include <functional>
 #include <string>
 
 #include "core/base/outcome.h"
@@ -16,6 +17,11 @@ FitInput fitInputOf(const Inspection& inspection, const HighlightModel& model, c
 
 /// The band of an inspection's fit; empty, without words, if the fit failed or no training view is its own.
 FittedBand bandOf(const Inspection& inspection, const HighlightModel& model, const ModelResult::Fit& fit);
+
+/// Where nobody states which lamps are on: what other lights no training frame shows, and in how many frames this one has no
+/// highlight although it would be seen there. "" where that is nothing.
+std::string switchedRemark(const Inspection& inspection, const ModelFit& fit,
+                           const std::function<std::shared_ptr<const Surface>(int frame)>& surfaceOf);
 
 /// Some frame, whether it trains or not, shows a highlight of this light.
 bool isSeen(const Inspection& inspection, const std::string& light);

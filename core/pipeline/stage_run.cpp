@@ -20,7 +20,9 @@
 #include "core/pipeline/highlight_motion.h"
 #include "core/pipeline/live_prediction.h"
 #include "core/pipeline/lobe_stage.h"
+#include "core/pipeline/merged_peaks.h"
 #include "core/pipeline/training.h"
+#include "core/pipeline/width_check.h"
 #include "core/surface/mesh_policy.h"
 
 namespace glint {
@@ -387,13 +389,23 @@ ModelResult::Fit StageRun::fitOf(const HighlightModel& model, const FitKey& key,
   entry.surface = key.surface;
   FitInput input = fitInputOf(r_, model, key);
   input.progress = goesOn;
+  const std::optional<Light> light = input.light ? std::optional(input.light->light) : std::nullopt;
+  const std::string widths = widthDoubt(input.views, light);
+  const std::optional<MergedPeaks> merged = mergedPeaks(input.views, light, r_.request.settings);
   const auto start = std::chrono::steady_clock::now();
   entry.fit = model.fit(input, r_.request.settings);
-  if (!entry.fit && entry.fit.failure().reason == Reason::RankDeficient && r_.lightFrame.frame == LightFrame::Camera)
-    entry.fit =
-        Failure{Reason::RankDeficient, entry.fit.failure().detail +
-                                           "; the lamp moves with the camera, and in the lamp's coordinates all cameras are one"};
-  if (!entry.fit) return entry;
+  if (entry.fit && merged && merged->certain) entry.fit = Failure{Reason::NotConverged, merged->text};
+  if (!entry.fit) {
+    Failure why = entry.fit.failure();
+    if (why.reason == Reason::RankDeficient && r_.lightFrame.frame == LightFrame::Camera)
+      why.detail += "; the lamp moves with the camera, and in the lamp's coordinates all cameras are one";
+    if (together_ && input.views.empty())
+      why.detail += "; no training frame shows this light: lamps may be switched between frames";
+    if (merged && why.detail != merged->text) why.detail += "; " + merged->text;
+    if (!widths.empty()) why.detail += "; " + widths;
+    entry.fit = std::move(why);
+    return entry;
+  }
   ModelFit& fit = *entry.fit;
   fit.model = model.id();
   fit.light = key.light;
@@ -407,6 +419,9 @@ ModelResult::Fit StageRun::fitOf(const HighlightModel& model, const FitKey& key,
   add(byHandRemark(r_, fit));
   add(textureRemark(r_));
   add(takenOffRemark(r_));
+  add(switchedRemark(r_, fit, [this](int frame) { return surfaceOf(frame); }));
+  add(widths);
+  if (merged) add(merged->text);
   if (const auto doubt = r_.responseDoubts.find(key); doubt != r_.responseDoubts.end()) add(doubt->second);
   if (r_.surfaces) add(r_.surfaces->fusionRemark(fit.frames));
   if (const auto found = r_.corrections.find(key); found != r_.corrections.end() && model.needsLight()) {

@@ -188,6 +188,47 @@ TEST(AssignLights, OneLightTakesAll) {
   EXPECT_EQ(scene.frames.front().highlights.front().light, "light");
 }
 
+/// Half of ten frames under two lamps, half under two others; nobody states which.
+std::vector<TrackedFrame> switchedLamps(double noisePx, bool alone) {
+  const TwoLights scene(0);
+  const Light lights[] = {Light::at({1.2, 0.8, 1.5}), Light::at({-0.3, 1.5, 1.1}), Light::at({1.4, 1.6, 0.4}),
+                          Light::at({0.2, 0.4, 2})};
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal(0, 1);
+  std::vector<TrackedFrame> frames = scene.frames;
+  for (std::size_t f = 0; f < frames.size(); ++f) {
+    frames[f].lightsOn.clear();
+    frames[f].highlights.clear();
+    const std::size_t first = f % 2 ? 2 : 0;
+    for (std::size_t l = first; l < first + (alone && f % 2 ? 1 : 2); ++l) {
+      Highlight h;
+      h.peak = predictedBrightestPoints(*scene.surface, frames[f].camera, lights[l])->front().pixel +
+               noisePx * Pixel(normal(random), normal(random));
+      frames[f].highlights.push_back(h);
+    }
+  }
+  const auto surface = scene.surface;
+  assignLights(frames, [&](std::size_t) { return surface; });
+  return frames;
+}
+
+TEST(AssignLights, LampsThatAreSwitchedProveEachOther) {
+  for (const double noise : {0.0, 0.5}) {
+    const std::vector<TrackedFrame> frames = switchedLamps(noise, false);
+    std::set<std::string> names;
+    for (std::size_t f = 0; f < frames.size(); ++f)
+      for (std::size_t l = 0; l < 2; ++l) {
+        const std::string& given = frames[f].highlights[l].light;
+        EXPECT_EQ(given, frames[f % 2].highlights[l].light) << noise << ", frame " << f;
+        names.insert(given);
+      }
+    EXPECT_EQ(names, std::set<std::string>({"light", "light-2", "light-3", "light-4"})) << noise;
+  }
+  // A lamp that is alone wherever it is on may be a badly placed camera's view of another.
+  const std::vector<TrackedFrame> frames = switchedLamps(0, true);
+  for (std::size_t f = 1; f < frames.size(); f += 2) EXPECT_EQ(frames[f].highlights[0].light, "") << f;
+}
+
 TEST(AssignLights, DegenerateInputs) {
   std::vector<TrackedFrame> none;
   EXPECT_EQ(assignLights(none, [](std::size_t) { return nullptr; }), 0);
