@@ -28,6 +28,21 @@ FitInput fitInputOf(const Inspection& in, const HighlightModel& model, const Fit
                   in.request.settings, known ? knownPixelsOf(in, key) : KnownPixels{});
 }
 
+std::optional<ModelResult::Fit> fitAtObservedLevel(const ModelResult::Fit& fit, const HighlightModel& model,
+                                                   const FrameEvidence& evidence, const Camera& camera, const Surface* surface,
+                                                   const Settings& settings) {
+  if (!fit.fit || !surface) return std::nullopt;
+  for (const Highlight& h : evidence.scored()) {
+    if (h.light != fit.light || !h.peakCut || h.clipped) continue;
+    std::optional<ModelFit> there = model.atLevelOf(*fit.fit, h.peak, camera, *surface, settings);
+    if (!there) return std::nullopt;
+    ModelResult::Fit other = fit;
+    other.fit = *std::move(there);
+    return other;
+  }
+  return std::nullopt;
+}
+
 FittedBand bandOf(const Inspection& in, const HighlightModel& model, const ModelResult::Fit& fit) {
   if (!fit.fit) return {};
   return bandOf(model, *fit.fit, fitInputOf(in, model, fit.key()), in.request.settings,

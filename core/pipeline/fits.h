@@ -14,6 +14,12 @@ namespace glint {
 /// lobe of its pixels where it is of all of these views.
 FitInput fitInputOf(const Inspection& inspection, const HighlightModel& model, const FitKey& key);
 
+/// A fit for the level at which a frame shows its light's contour: that of a highlight whose peak the image's border cuts off is
+/// a fraction of the brightest place that was seen. Empty where the fit itself serves, or where the model does not tell.
+std::optional<ModelResult::Fit> fitAtObservedLevel(const ModelResult::Fit& fit, const HighlightModel& model,
+                                                   const FrameEvidence& evidence, const Camera& camera, const Surface* surface,
+                                                   const Settings& settings);
+
 /// The band of an inspection's fit; empty, without words, if the fit failed or no training view is its own.
 FittedBand bandOf(const Inspection& inspection, const HighlightModel& model, const ModelResult::Fit& fit);
 
