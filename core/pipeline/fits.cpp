@@ -90,6 +90,18 @@ std::string repeatedRemark(const Inspection& r, const ModelFit& fit) {
          " another one exactly and count once: " + names;
 }
 
+std::string cutRemark(const Inspection& r, const ModelFit& fit) {
+  int cut = 0, all = 0;
+  for (const TrainingView& v : r.views) {
+    if (!v.seen || v.highlight.light != fit.light) continue;
+    if (std::find(fit.frames.begin(), fit.frames.end(), v.frame) == fit.frames.end()) continue;
+    ++all;
+    cut += v.highlight.touchesBorder;
+  }
+  return cut == 0 ? ""
+                  : formatted("the image's border cuts %d of %d training highlights: only the part that is seen is evidence", cut, all);
+}
+
 std::string byHandRemark(const Inspection& r, const ModelFit& fit) {
   std::string names;
   for (const TrainingView& v : r.views) {

@@ -29,6 +29,8 @@ bool isSeen(const Inspection& inspection, const std::string& light);
 std::string mergedRemark(const Inspection& inspection, const ModelFit& fit);
 /// Training frames that show the fit's light and have no view because they repeat another one. "" without such frames.
 std::string repeatedRemark(const Inspection& inspection, const ModelFit& fit);
+/// How many training highlights of the fit's light serve although the image's border cuts them. "" without such highlights.
+std::string cutRemark(const Inspection& inspection, const ModelFit& fit);
 /// Training highlights of the fit's light shaped by hand, each with what that leaves in doubt. "" without such highlights.
 std::string byHandRemark(const Inspection& inspection, const ModelFit& fit);
 

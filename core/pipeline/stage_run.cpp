@@ -375,6 +375,7 @@ ModelResult::Fit StageRun::fitOf(const HighlightModel& model, const FitKey& key,
   };
   add(mergedRemark(r_, fit));
   add(repeatedRemark(r_, fit));
+  add(cutRemark(r_, fit));
   add(byHandRemark(r_, fit));
   add(textureRemark(r_));
   add(takenOffRemark(r_));

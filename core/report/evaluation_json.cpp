@@ -170,6 +170,7 @@ void metricsJson(const FrameComparison::Row* row, const FrameComparison& c, Json
   // Only where walks were made on second-order patches: says whether they were good enough.
   if (row && row->predicted >= 0 && c.prediction.highlights()[row->predicted].curvatureVariation)
     j["curvature_variation"] = numberOrNull(*c.prediction.highlights()[row->predicted].curvatureVariation);
+  if (row && row->observed >= 0 && scored[static_cast<std::size_t>(row->observed)].touchesBorder) j["cut"] = true;
   if (row && row->band)
     j["band"] = {{"sigma_px", numberOrNull(row->band->sigmaPx)}, {"coverage_95", numberOrNull(row->band->coverage)}};
   j["time_us"] = numberOrNull(c.prediction.timeUs);
