@@ -99,7 +99,8 @@ std::string cutRemark(const Inspection& r, const ModelFit& fit) {
     cut += v.highlight.touchesBorder;
   }
   return cut == 0 ? ""
-                  : formatted("the image's border cuts %d of %d training highlights: only the part that is seen is evidence", cut, all);
+                  : formatted("the image's border cuts %d of %d training highlights: only the part that is seen is evidence", cut,
+                              all);
 }
 
 std::string byHandRemark(const Inspection& r, const ModelFit& fit) {

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <opencv2/imgcodecs.hpp>
 
 #include "core/pipeline/inspection.h"
@@ -137,6 +138,43 @@ TEST(CutHighlights, WholeOnesServeAloneWhereThreeOfThemTrain) {
   const Inspection r = inspected(cut, {"limit-angle"});
   for (const TrainingView& v : r.views) EXPECT_EQ(bool(v.seen), !v.highlight.touchesBorder) << v.frame;
   EXPECT_LT(heldOutPct(cut, r, "limit-angle"), 0.3);
+}
+
+TEST(CutHighlights, TruthMayReferToThePlaceThatItsFileNames) {
+  // Whoever made this truth saw four rows more than the photograph shows, and took half of the brightest place there.
+  const TemporaryFolder folder, truthFolder;
+  const CutScene cut = cutScene(folder, [](int) { return 0.3; });
+  const std::shared_ptr<const Surface> surface = makeAnalytic(*cut.scene->surfaces["body"].analytic());
+  TrueLight lamp;
+  lamp.id = "lamp";
+  lamp.lamp = lampAt(Eigen::Vector3d(0.3, 0.4, 2.0));
+  Material material;
+  CutScene there = cut;
+  for (std::size_t f = 0; f < cut.truth.size(); ++f) {
+    Camera camera = cut.scene->frames[f].camera;
+    const int row = camera.height + 3;
+    camera.height = 240;
+    const Image whole = renderRadiance(*surface, camera, {lamp}, material).specular;
+    int column = 0;
+    for (int x = 1; x < whole.width; ++x)
+      if (whole.at(x, row) > whole.at(column, row)) column = x;
+    ExactOptions options;
+    options.level = 0.5 * whole.at(column, row) / *std::max_element(whole.data.begin(), whole.data.end());
+    there.truth[f] = exactHighlights(*surface, camera, lamp, material, options)->front().contour;
+    std::ofstream file(truthFolder / (cut.scene->frames[f].id + ".json"));
+    file << R"({"peak_subpixel": [)" << column << "," << row << R"(], "levels": {"0.50": [{"edge_fraction": 0.1, "points": [)";
+    for (std::size_t i = 0; i < there.truth[f].points.size(); ++i)
+      file << (i ? "," : "") << "[" << there.truth[f].points[i].x() << "," << there.truth[f].points[i].y() << "]";
+    file << "]}]}}";
+  }
+  InspectionRequest request;
+  request.models = {"reflectance"};
+  request.train = "spread:6";
+  request.truthFolder = truthFolder.path().string();
+  const Inspection r = inspect(there.scene, request);
+  EXPECT_LT(scoredPct(r, "reflectance"), 0.1);
+  EXPECT_LT(heldOutPct(there, r, "reflectance"), 0.1);
+  EXPECT_GT(heldOutPct(cut, r, "reflectance"), 1) << "half of the peak is elsewhere";
 }
 
 TEST(CutHighlights, ASliverIsRefusedByName) {
