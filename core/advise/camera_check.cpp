@@ -123,8 +123,7 @@ class Check {
       FrameEvidence evidence = gatherEvidence(scene_, frame, FrameSource::Radiance, settings_);
       searched_.push_back(frame);
       dark_ += evidence.failure && evidence.failure->reason == Reason::NoHighlight;
-      std::erase_if(evidence.highlights,
-                    [](const Highlight& h) { return h.clipped || (h.touchesBorder && !h.fromScene) || !(h.areaPx2 > 0); });
+      std::erase_if(evidence.highlights, [](const Highlight& h) { return h.clipped || h.touchesBorder || !(h.areaPx2 > 0); });
       if (evidence.failure || evidence.highlights.empty()) continue;
       const Outcome<std::shared_ptr<const Surface>> surface = surfaces.surfaceOf(frame, meshPolicy(settings_));
       if (!surface) continue;

@@ -72,8 +72,7 @@ Answer predictLeft(const Fold& fold, const HighlightModel& model, const ModelFit
   }
   const PredictedHighlight& h = p.highlights()[pairs[0].second];
   answer.coverage = h.coverage;
-  const ContourMetrics m =
-      compareContours(left.highlight.contour, h.contour, h.gaps, h.ellipse, left.highlight.peak, h.brightest.pixel);
+  const ContourMetrics m = comparedHighlights(left.highlight, h, left.camera, left.highlight.touchesBorder);
   if (!std::isfinite(m.contourErrorPct))
     answer.failure = Failure{Reason::NotFinite, "contour error"};
   else if (m.contourErrorPct > kNoPredictionPct)

@@ -116,6 +116,7 @@ class FrameLayers {
     });
     line.unmatched = !missing.empty();
     line.label = "observed" + (h.light.empty() ? std::string{} : " " + h.light);
+    if (h.touchesBorder) line.label += ", cut by the image's border";
     for (const std::string& model : missing) line.label += (model == missing.front() ? ", missed by " : ", ") + model;
     if (line.unmatched) addUnmatched(h.peak, MarkShape::Square, 7, line);
     if (shown_(OverlayRole::ObservedContour) && h.contour.points.size() > 1) {

@@ -83,6 +83,26 @@ Eigen::AlignedBox2d seenWindow(const Camera& camera) {
   return seen.isEmpty() || !((seen.max() - seen.min()).minCoeff() > 0) ? measured : seen;
 }
 
+bool onImageBorder(const Camera& camera, const Pixel& ideal) {
+  constexpr double kWidthPx = 0.5 + 1e-6;  // the image ends half a pixel beyond the outermost centres; the rest is round-off
+  const auto near = [](double v, double last) { return std::abs(v) <= kWidthPx || std::abs(v - last) <= kWidthPx; };
+  const Pixel p = camera.hasDistortion() ? camera.distorted(ideal) : ideal;
+  return near(p.x(), camera.width - 1) || near(p.y(), camera.height - 1);
+}
+
+bool alongImageBorder(const Camera& camera, const Pixel& from, const Pixel& to) {
+  constexpr double kSamePx =
+      1e-3;  // far above what tracing a border and removing distortion leave; a level set leaves it at once
+  const Pixel a = camera.distorted(from), b = camera.distorted(to);
+  const auto along = [&](int axis, double border) {
+    return std::abs(a(axis) - border) < kSamePx && std::abs(b(axis) - border) < kSamePx;
+  };
+  for (const double beyond : {0.0, 0.5})  // detected contours end at the outermost centres, others at the image's edge
+    if (along(0, -beyond) || along(1, -beyond) || along(0, camera.width - 1 + beyond) || along(1, camera.height - 1 + beyond))
+      return true;
+  return false;
+}
+
 bool isInPhotograph(const Camera& camera, const Pixel& ideal, double marginPx) {
   const Pixel p = camera.hasDistortion() ? camera.distorted(ideal) : ideal;
   return p.x() >= -marginPx && p.y() >= -marginPx && p.x() <= camera.width - 1 + marginPx &&

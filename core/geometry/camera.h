@@ -73,6 +73,12 @@ Eigen::AlignedBox2d seenWindow(const Camera& camera);
 /// `marginPx` beyond them; measured pixels. False if the lens shows none.
 bool isInPhotograph(const Camera& camera, const Pixel& ideal, double marginPx = 0);
 
+/// Whether an ideal pixel is measured on the border of the photograph, where contours that it cuts run: between the centres of the
+/// outermost pixels and their outer edges, or as far inside.
+bool onImageBorder(const Camera& camera, const Pixel& ideal);
+/// Whether a piece of a contour runs along that border: it closes a contour that is cut there, and is no level set.
+bool alongImageBorder(const Camera& camera, const Pixel& from, const Pixel& to);
+
 /// A camera from a photograph's focal length on 35 mm film: the same angle of view across the diagonal (CIPA DC-008, tag 0xA405),
 /// square pixels, central principal point, no distortion. Good to a few percent: EXIF rounds to millimetres, and lenses distort.
 /// @param mm  above 0

@@ -166,6 +166,17 @@ std::vector<Pixel> cutAt(const std::vector<Pixel>& points, int axis, double boun
 
 }  // namespace
 
+bool runsAlongImageBorder(const Camera& camera, const Polyline& line) {
+  constexpr double kLeastPx = 2;  // a shorter piece may be one chord of a level set
+  double along = 0;
+  const std::vector<Pixel>& p = line.points;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    const Pixel &a = p[i], &b = p[(i + 1) % p.size()];
+    if (alongImageBorder(camera, a, b)) along += (b - a).norm();
+  }
+  return along > kLeastPx;
+}
+
 Polyline clippedTo(const Eigen::AlignedBox2d& box, const Polyline& closed) {
   std::vector<Pixel> points = closed.points;
   for (const int axis : {0, 1})

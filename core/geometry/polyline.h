@@ -30,6 +30,9 @@ std::vector<Pixel> thinned(const Polyline& line, int n);
 /// Consecutive repeated points (closer than `tolerancePx`) removed.
 Polyline withoutRepeats(const Polyline& line, double tolerancePx = 1e-9);
 
+/// Whether a contour runs along the border of the photograph over more than two pixels: the border cuts it (alongImageBorder()).
+bool runsAlongImageBorder(const Camera& camera, const Polyline& line);
+
 /// The part of a closed polyline inside a box; empty if none is (Sutherland, Hodgman, Reentrant polygon clipping, CACM 1974).
 /// One that leaves the box and comes back stays one: its parts are joined along the border by segments that enclose nothing, so
 /// that the signed area and the even-odd interior are those of the intersection. Points inside stay as they are.

@@ -35,6 +35,8 @@ constexpr double kBackgroundShare = 0.01;   // of the clip height: by that much 
 constexpr int kBackgroundRounds = 3;        // with the tail that the slope shows: it settles in two
 constexpr double kSettledBackground = 0.1;  // of its standard deviation
 constexpr double kWorseBackground = 1.1;    // of the spread around it: that much more is another background, no better one
+constexpr double kOnBorderPx = 0.01;        // contours run along it to 1e-7 px
+constexpr double kPeakAtBorderPx = 0.5;     // a quadratic that one side alone holds finds a peak to no better
 constexpr double kBadReachPx = 1.5;         // an unusable pixel this near to a contour decides on its course
 
 /// One channel, with what may and may not be used of it.
@@ -477,7 +479,7 @@ class Detector {
     h.level = options_.level;
     const Pixel origin(box.x, box.y);
     h.contour = moved(contour.line, box);
-    h.touchesBorder = onImageBorder(h.contour);
+    h.touchesBorder = onImageBorder(h.contour.points, kOnBorderPx);
     h.clipped = saturatedNear(box, region);
     if (h.clipped) {
       StreakCut cut = withoutStreaks(h.contour);
@@ -501,10 +503,11 @@ class Detector {
       h.peak = peak->at + origin;
       h.peakValue = peak->value;
     } else {
-      // A plateau or a ridge on the border: the pixel is the best that can be said.
+      // A plateau or a ridge on the border: the pixel is the best.
       h.peak = Pixel(at.x, at.y) + origin;
       h.peakValue = roi.at(at.x, at.y);
     }
+    h.peakCut = h.touchesBorder && (h.clipped || !peak || onImageBorder({h.peak}, kPeakAtBorderPx));
     const double spread = std::max(noise_, options_.removeBackground ? candidate.background.spread : 0.0);
     if (!h.clipped && h.peakValue < options_.minContrast * spread)
       return reject(h.contour, "stands out of the background's noise or texture by too little");
@@ -541,9 +544,9 @@ class Detector {
     found_ = std::move(kept);
   }
 
-  bool onImageBorder(const Polyline& line) const {
-    return std::any_of(line.points.begin(), line.points.end(), [&](const Pixel& q) {
-      return q.x() < 0.01 || q.y() < 0.01 || q.x() > p_.value.width - 1.01 || q.y() > p_.value.height - 1.01;
+  bool onImageBorder(const std::vector<Pixel>& points, double px) const {
+    return std::any_of(points.begin(), points.end(), [&](const Pixel& q) {
+      return q.x() < px || q.y() < px || q.x() > p_.value.width - 1 - px || q.y() > p_.value.height - 1 - px;
     });
   }
 

@@ -36,7 +36,9 @@ struct Highlight {
   std::shared_ptr<const ClippedFlank> flank;
   /// Where a known lobe says that the contour lies at another fraction of the true peak than `level`: clipped above the level.
   std::optional<double> trueLevel;
-  bool touchesBorder = false;             ///< cut by the image border
+  bool touchesBorder = false;  ///< cut by the image border: the contour is closed along it, and only the rest is a level set
+  /// Cut, and brightest at the border: the level is a fraction of the radiance at `peak`, which is no maximum.
+  bool peakCut = false;
   double cutPx2 = 0;                      ///< area of streaks that were cut off; clipped highlights only
   bool fromScene = false;                 ///< given in the scene file, not detected
   std::string byHand{};                   ///< what a person did to its shape, and what that leaves in doubt; "" = nothing

@@ -91,6 +91,7 @@ Json toJson(const Highlight& h, double uncertaintyPct, const HighlightQuality* q
   j["area_px2"] = h.areaPx2;
   j["clipped"] = h.clipped;
   j["touches_border"] = h.touchesBorder;
+  j["peak_cut"] = h.peakCut;
   j["background_uncertainty_pct"] = uncertaintyPct;
   j["cut_px2"] = h.cutPx2;
   if (quality) {

@@ -324,6 +324,7 @@ SpecularSeparation separateHighlights(const Image& linear, const Image* mask, co
   for (std::size_t i = 0; i < highlights.size(); ++i) {
     (*traced)[i].light = highlights[i].light;
     (*traced)[i].touchesBorder = highlights[i].touchesBorder;
+    (*traced)[i].peakCut = highlights[i].peakCut;
   }
   highlights = *std::move(traced);
   separation.separated = true;

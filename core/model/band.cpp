@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/base/uncertainty.h"
+#include "core/model/models.h"
 #include "core/model/uncertainty.h"
 
 namespace glint {
@@ -25,11 +26,13 @@ const PredictedHighlight* nearest(const Prediction& p, const Pixel& to) {
 }
 
 /// A measured contour against the predicted one: every point's distance from its foot, and the shifts there.
-std::optional<ViewResiduals> residualsOf(const Polyline& measured, const Polyline& predicted, const Eigen::MatrixXd& shifts,
+std::optional<ViewResiduals> residualsOf(const TrainingView& view, const Polyline& predicted, const Eigen::MatrixXd& shifts,
                                          int points) {
   const std::size_t n = predicted.points.size();
   if (n < 3 || shifts.cols() == 0 || shifts.rows() != Eigen::Index(n)) return std::nullopt;
-  const std::vector<Pixel> observed = measured.points.size() > std::size_t(points) ? resample(measured, points) : measured.points;
+  const std::vector<Pixel>& all = view.highlight.contour.points;
+  const std::vector<Pixel> observed =
+      view.highlight.touchesBorder || all.size() > std::size_t(points) ? levelSetPoints(view, points) : all;
   std::vector<double> residual, arcs;
   std::vector<Pixel> directions;
   std::vector<Eigen::RowVectorXd> rows;
@@ -78,8 +81,7 @@ std::shared_ptr<Band> Band::of(const HighlightModel& model, const ModelFit& fit,
     if (!h) continue;
     const Eigen::MatrixXd shifts = model.bandShiftsPx(fit, *h, v.camera, v.surface.get(), settings);
     if (!residuals.empty() && shifts.cols() != residuals.front().byParameter.cols()) continue;
-    if (std::optional<ViewResiduals> r =
-            residualsOf(v.highlight.contour, h->contour, shifts, settings.integer("light.bundle_points"))) {
+    if (std::optional<ViewResiduals> r = residualsOf(v, h->contour, shifts, settings.integer("light.bundle_points"))) {
       if (!(unit > 0)) unit = (v.camera.centreInWorld() - h->brightest.point.position).norm();
       r->where = placeOf(*h, v.camera, unit);
       residuals.push_back(std::move(*r));

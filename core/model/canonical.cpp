@@ -90,6 +90,7 @@ class Canonical final : public EllipsoidModel {
  private:
   std::optional<Failure> unused(const TrainingView& v) const override {
     if (!v.seen) return v.seen.failure();
+    if (v.highlight.touchesBorder) return notWhole(v);
     if (!v.canonical) return Failure{Reason::NoBrightestPoint, ""};
     if (v.canonical->ellipse) return std::nullopt;
     // The directions know why there are too few points on the tangent plane for an ellipse.

@@ -7,12 +7,18 @@
 
 namespace glint {
 
+std::vector<Pixel> levelSetPoints(const TrainingView& view, int n) {
+  std::vector<Pixel> points = resample(view.highlight.contour, n);
+  if (view.highlight.touchesBorder) std::erase_if(points, [&](const Pixel& p) { return onImageBorder(view.camera, p); });
+  return points;
+}
+
 double medianContourAngle(const std::vector<TrainingView>& views, const Light& light, int pointsPerView) {
   std::vector<double> alphas;
   for (const TrainingView& v : views) {
     if (!v.seen || v.highlight.contour.points.size() < 3) continue;
     const Eigen::Vector3d eye = v.camera.centreInWorld();
-    for (const Pixel& p : resample(v.highlight.contour, pointsPerView)) {
+    for (const Pixel& p : levelSetPoints(v, pointsPerView)) {
       const Outcome<SurfacePoint> hit = v.surface->firstHit(v.camera.ray(p));
       if (!hit) continue;
       const SurfacePoint s = facing(*hit, eye);

@@ -18,7 +18,7 @@ class Dual final : public EllipsoidModel {
   bool needsCanonicalContours() const override { return false; }
   ModelTraits traits() const override { return {{86, 180, 233}, true, true, ModelTraits::Assumes::ConstantCurvature}; }
   std::optional<ConicView> outlineIn(const TrainingView& v) const override {
-    if (!v.seen || !v.highlight.ellipse) return std::nullopt;
+    if (!v.seen || !hasWholeEllipse(v)) return std::nullopt;
     return conicViewOf(v, v.seen->virtualCamera);
   }
 
@@ -49,7 +49,7 @@ class Dual final : public EllipsoidModel {
  private:
   std::optional<Failure> unused(const TrainingView& v) const override {
     if (!v.seen) return v.seen.failure();
-    return v.highlight.ellipse ? std::optional<Failure>() : Failure{Reason::NotAnEllipse, "the contour"};
+    return notWhole(v);
   }
   void complete(const FitInput& input, ModelFit& fit) const override { fit.hints = hintsOf(input); }
 };

@@ -164,7 +164,12 @@ std::optional<CentreAnchor> anchorAtLight(const FitInput& input) {
 
 bool hasWholeEllipse(const TrainingView& view) {
   if (!view.seen && view.seen.failure().reason == Reason::OutsideImage) return false;
-  return view.highlight.ellipse && !tooSmall(view.highlight.contour);
+  return !notWhole(view) && !tooSmall(view.highlight.contour);
+}
+
+std::optional<Failure> notWhole(const TrainingView& view) {
+  if (view.highlight.touchesBorder) return Failure{Reason::OutsideImage, "the image border cuts the highlight"};
+  return view.highlight.ellipse ? std::optional<Failure>() : Failure{Reason::NotAnEllipse, "the contour"};
 }
 
 std::optional<CentreAnchor> anchorFromCentres(const std::vector<TrainingView>& views) {

@@ -35,6 +35,8 @@ Outcome<Reconstruction> fitEllipsoid(const std::vector<ConicView>& views, const 
 /// True when a view's ellipse is the outline of a whole highlight, which is all that `primal` needs: a view whose surface or
 /// brightest point is missing still counts, one that the image border cuts does not.
 bool hasWholeEllipse(const TrainingView& view);
+/// Why a view that was seen has none: the image's border cuts its highlight, or no ellipse fits the contour. Empty if it has one.
+std::optional<Failure> notWhole(const TrainingView& view);
 
 /// Closest point to the viewing rays through the centres of the ellipses: the anchor of `primal`, which has no light.
 /// Empty when the rays are parallel.

@@ -70,11 +70,16 @@ Prediction predictLevelSet(const SurfaceField& field, const Camera& camera, cons
   };
   const Eigen::AlignedBox2d window = seenWindow(camera);
   std::vector<LevelSetComponent> components = traceLevelSets(exact, batch, field.level, window, options);
+  const bool none = components.empty();
+  const auto beyond = [&](const FieldPeak& p) { return !window.contains(p.point.pixel); };
   if (std::any_of(components.begin(), components.end(),
-                  [&](const LevelSetComponent& c) { return coverageOf(c, window, 0) < 1; })) {
-    // The image cuts the highlight: it is followed beyond the border, so that all of it is known.
+                  [&](const LevelSetComponent& c) { return coverageOf(c, window, 0) < 1; }) ||
+      (none && std::any_of(field.peaks.begin(), field.peaks.end(), beyond))) {
+    // The image cuts the highlight: it is followed beyond the border, so that all of it is known. What the image shows of one
+    // whose peak lies beyond may be smaller than the scan's cells.
     options.marginPx = kMarginFraction * window.sizes().maxCoeff();
     components = traceLevelSets(exact, batch, field.level, window, options);
+    if (none) std::erase_if(components, [&](const LevelSetComponent& c) { return clippedTo(window, c.outline).points.empty(); });
   }
   std::vector<PredictedHighlight> found;
   for (const LevelSetComponent& c : components) {

@@ -137,6 +137,20 @@ class LimitAngle final : public HighlightModel {
     return levelSetShiftsPx(highlight.contour.points, field, camera, *surface, slopes);
   }
 
+  /// By the lobe that a limit angle stands for: log I falls with tan^2 alpha, whatever the level.
+  std::optional<ModelFit> atLevelOf(const ModelFit& fit, const Pixel& place, const Camera& camera, const Surface& surface,
+                                    const Settings&) const override {
+    const LimitAngleFit* const fitted = fit.as<LimitAngleFit>();
+    const Outcome<SurfacePoint> hit = surface.firstHit(camera.ray(place));
+    if (!hit || !fit.lightEstimate || !fitted) return std::nullopt;
+    const Eigen::Vector3d eye = camera.centreInWorld();
+    const std::optional<double> there = alphaAt(facing(*hit, eye), eye, *fit.lightEstimate);
+    if (!there) return std::nullopt;
+    ModelFit other = fit;
+    std::get<LimitAngleFit>(other.family).limitAngle = std::atan(std::hypot(std::tan(fitted->limitAngle), std::tan(*there)));
+    return other;
+  }
+
   Prediction predict(const ModelFit& fit, const Camera& camera, const Surface* surface, const Settings& settings) const override {
     const LimitAngleFit* const fitted = fit.as<LimitAngleFit>();
     if (!surface || !fit.lightEstimate || !fitted) return Failure{surface ? Reason::NoLight : Reason::NoSurface, ""};

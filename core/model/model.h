@@ -55,6 +55,14 @@ struct SeenOnSurface {
   Projection virtualCamera;  ///< P M
 };
 
+/// What serves as evidence of a highlight that the image's border cuts. Whole ones say more, and a peak that one side alone shows
+/// is less certain, so cut ones serve only where whole ones are few.
+enum class CutUse {
+  None,
+  Arc,    ///< the part of the contour that is a level set, where the peak is known
+  Pixels  ///< the pixels that are seen, wherever the peak is
+};
+
 /// One observation used for training: one highlight of one light in one frame, with what was derived from it.
 struct TrainingView {
   int frame = -1;
@@ -62,7 +70,8 @@ struct TrainingView {
   Camera camera;
   std::shared_ptr<const Surface> surface;  ///< may be null only for `primal`
   Highlight highlight;
-  std::vector<LevelContour> levels;          ///< contours at other levels than highlight.level; they share the frame's maximum
+  std::vector<LevelContour> levels;  ///< contours at other levels than highlight.level; they share the frame's maximum
+  CutUse cut = CutUse::None;
   std::shared_ptr<const PixelPatch> pixels;  ///< around the highlight, where pixels are evidence (core/reflectance/pixel_patch.h)
   /// What was seen, or why this view cannot be used; only `primal`, which needs no surface, looks at the reason.
   Outcome<SeenOnSurface> seen = Failure{Reason::NotReached, "nothing was observed"};
@@ -264,6 +273,12 @@ class HighlightModel {
   /// @param surface  may be null for `primal`.
   virtual Prediction predict(const ModelFit& fit, const Camera& camera, const Surface* surface,
                              const Settings& settings) const = 0;
+  /// The same fit for a contour at its level of the radiance at `place`, an ideal pixel of this view, and not of the maximum: that
+  /// of a highlight whose peak the image's border cuts off (Highlight::peakCut). Empty where the model does not tell.
+  virtual std::optional<ModelFit> atLevelOf(const ModelFit&, const Pixel& /*place*/, const Camera&, const Surface&,
+                                            const Settings&) const {
+    return std::nullopt;
+  }
   /// Shifts of a prediction's contour along its normals, px and positive outwards: one row per vertex, one column per column of
   /// the fit's ParameterUncertainty::root, each for one standard deviation. A row of zeros along the surface's own edge. Empty
   /// where the fit has no uncertainty.

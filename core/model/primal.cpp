@@ -38,7 +38,8 @@ class Primal final : public EllipsoidModel {
   std::optional<Failure> unused(const TrainingView& v) const override {
     if (hasWholeEllipse(v)) return std::nullopt;
     if (std::optional<Failure> small = tooSmall(v.highlight.contour)) return small;
-    return v.failure().value_or(Failure{Reason::NotAnEllipse, "the contour"});
+    if (std::optional<Failure> cut = notWhole(v)) return v.failure().value_or(*cut);
+    return v.failure();
   }
 };
 

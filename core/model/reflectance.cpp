@@ -209,6 +209,22 @@ class Reflectance final : public HighlightModel {
     return levelSetShiftsPx(highlight.contour.points, field, camera, *surface, slopes);
   }
 
+  std::optional<ModelFit> atLevelOf(const ModelFit& fit, const Pixel& place, const Camera& camera, const Surface& surface,
+                                    const Settings& settings) const override {
+    const ReflectanceFit* const fitted = fit.as<ReflectanceFit>();
+    if (!fit.lightEstimate || !fitted) return std::nullopt;
+    const RadianceField radiance(surface, camera, fitted->lobe, fitted->roughness, *fit.lamp());
+    std::vector<Pixel> starts{place};
+    if (const auto mirrorPoints = brightestPointsFor(surface, camera, *fit.lightEstimate, settings))
+      for (const BrightestPoint& b : *mirrorPoints) starts.push_back(b.pixel);
+    const std::vector<RadiancePeak> peaks = radiance.peaks(starts, kScanStepPx);
+    const std::optional<double> there = radiance.at(place);
+    if (!there || peaks.empty() || peaks.front().cut) return std::nullopt;
+    ModelFit other = fit;
+    std::get<ReflectanceFit>(other.family).level *= std::exp(std::min(0.0, *there - peaks.front().logRadiance));
+    return other;
+  }
+
   Prediction predict(const ModelFit& fit, const Camera& camera, const Surface* surface, const Settings& settings) const override {
     const ReflectanceFit* const fitted = fit.as<ReflectanceFit>();
     if (!surface || !fit.lightEstimate || !fitted) return Failure{surface ? Reason::NoLight : Reason::NoSurface, ""};

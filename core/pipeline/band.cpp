@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "core/base/number_text.h"
+#include "core/model/models.h"
 #include "core/model/plausible.h"
 #include "core/model/reflectance_settings.h"
 #include "core/pipeline/fit_engine.h"
@@ -57,7 +58,7 @@ double meanSquare(const HighlightModel& model, const ModelFit& fit, const FitInp
   for (const TrainingView& v : input.views) {
     if (!v.seen) continue;
     const Prediction p = model.predict(fit, v.camera, v.surface.get(), settings);
-    const std::vector<Pixel> points = resample(v.highlight.contour, settings.integer("light.bundle_points"));
+    const std::vector<Pixel> points = levelSetPoints(v, settings.integer("light.bundle_points"));
     double best = std::numeric_limits<double>::infinity();
     for (const PredictedHighlight& h : p.highlights()) {
       double squares = 0;

@@ -11,39 +11,16 @@
 namespace glint {
 namespace {
 
-/// A line as the photograph measures it, without places that the lens shows nowhere.
-Polyline measured(const Polyline& ideal, const Camera& camera) {
-  Polyline line{{}, ideal.closed};
-  for (const Pixel& p : ideal.points)
-    if (const Pixel q = camera.distorted(p); q.allFinite()) line.points.push_back(q);
-  return line;
-}
-
-/// Sutherland-Hodgman against the rectangle of measured pixel centres [0, w-1] x [0, h-1], where detection's contours end.
-Polyline clippedToImage(const Polyline& line, const Camera& camera) {
-  Polyline result = camera.hasDistortion() ? measured(line, camera) : line;
-  const double edges[4] = {0, -(camera.width - 1.0), 0, -(camera.height - 1.0)};
-  for (int side = 0; side < 4; ++side) {
-    const int axis = side / 2;
-    const double sign = side % 2 == 0 ? 1 : -1;
-    const auto value = [&](const Pixel& p) { return sign * p[axis] - edges[side]; };
-    Polyline next{{}, true};
-    const auto& p = result.points;
-    for (std::size_t i = 0; i < p.size(); ++i) {
-      const Pixel &a = p[i], &b = p[(i + 1) % p.size()];
-      const double fa = value(a), fb = value(b);
-      if (fa >= 0) next.points.push_back(a);
-      if ((fa >= 0) != (fb >= 0)) next.points.push_back(a + fa / (fa - fb) * (b - a));
-    }
-    result = std::move(next);
-  }
-  if (camera.hasDistortion())
-    for (Pixel& p : result.points) p = camera.undistorted(p);
-  return result;
-}
-
 bool leavesImage(const Polyline& line, const Camera& camera) {
   return std::any_of(line.points.begin(), line.points.end(), [&](const Pixel& p) { return !isInPhotograph(camera, p); });
+}
+
+/// Points of an observed contour that are its own, and not the image's border.
+std::vector<Pixel> seenPoints(const Highlight& h, const Camera& camera) {
+  std::vector<Pixel> points = h.contour.points;
+  if (h.touchesBorder)
+    std::erase_if(points, [&](const Pixel& p) { return onImageBorder(camera, p) || !isInPhotograph(camera, p); });
+  return points;
 }
 
 /// Standard deviation of what an observed contour has of its own, px: what remains of its distances from the predicted one once
@@ -62,7 +39,7 @@ double noiseOf(const std::vector<ContourFoot>& feet) {
   return freedom > 0 ? std::sqrt((d - shapes * (shapes.transpose() * d)).squaredNorm() / freedom) : 0;
 }
 
-std::optional<BandScore> bandScore(const Polyline& observed, const PredictedHighlight& h) {
+std::optional<BandScore> bandScore(const std::vector<Pixel>& observed, const PredictedHighlight& h) {
   constexpr double kNormal95 = 1.959964;
   BandScore score;
   double count = 0;
@@ -71,7 +48,7 @@ std::optional<BandScore> bandScore(const Polyline& observed, const PredictedHigh
   if (!(count > 0)) return std::nullopt;
   score.sigmaPx /= count;
   std::vector<ContourFoot> feet;
-  for (const ContourFoot& foot : feetOn(h.contour, observed.points))
+  for (const ContourFoot& foot : feetOn(h.contour, observed))
     if (h.sigmaPx[foot.from] > 0 && h.sigmaPx[foot.to] > 0 && foot.normal.allFinite()) feet.push_back(foot);
   if (feet.empty()) return std::nullopt;
   const double noise = noiseOf(feet);
@@ -97,7 +74,8 @@ std::vector<Polyline> addSpurious(const FrameEvidence& evidence, const Camera& c
   for (std::size_t p = 0; p < predicted.size(); ++p) {
     if (!used[p] && isIgnored(evidence, c.light, predicted[p])) continue;
     compared.push_back(predicted[p]);
-    if (used[p] || clippedToImage(c.prediction.highlights()[p].contour, camera).points.empty()) continue;  // it could not be seen
+    const PredictedHighlight& h = c.prediction.highlights()[p];
+    if (used[p] || partInImage(h.contour, {}, camera).region.points.empty()) continue;  // it could not be seen
     FrameComparison::Row row;
     row.predicted = static_cast<int>(p);
     c.rows.push_back(row);
@@ -106,6 +84,15 @@ std::vector<Polyline> addSpurious(const FrameEvidence& evidence, const Camera& c
 }
 
 }  // namespace
+
+ContourMetrics comparedHighlights(const Highlight& observed, const PredictedHighlight& predicted, const Camera& camera, bool cut,
+                                  std::optional<double> iou) {
+  if (cut)
+    return compareContours(partInImage(observed.contour, {}, camera), partInImage(predicted.contour, predicted.gaps, camera),
+                           observed.peak, predicted.brightest.pixel, iou);
+  return compareContours(observed.contour, predicted.contour, predicted.gaps, predicted.ellipse, observed.peak,
+                         predicted.brightest.pixel, iou);
+}
 
 FrameComparison compareFrame(const FrameEvidence& evidence, const std::string& light, const Camera& camera,
                              Prediction prediction) {
@@ -122,19 +109,21 @@ FrameComparison compareFrame(const FrameEvidence& evidence, const std::string& l
   }
   std::vector<int> observedIndex;
   std::vector<Polyline> observed, predicted;
+  std::vector<std::optional<ContourPart>> parts, predictedParts;  // of those that the image's border cuts
   for (int i = 0; i < static_cast<int>(evidence.scored().size()); ++i) {
     const Highlight& h = evidence.scored()[i];
     if (h.light != light || h.contour.points.size() < 3) continue;
+    std::optional<ContourPart> part = h.touchesBorder ? std::optional(partInImage(h.contour, {}, camera)) : std::nullopt;
+    if (part && part->region.points.empty()) continue;  // the image shows nothing of it
     observedIndex.push_back(i);
-    observed.push_back(h.contour);
+    observed.push_back(part ? part->region : h.contour);
+    parts.push_back(std::move(part));
   }
-  const bool cut = std::any_of(observedIndex.begin(), observedIndex.end(),
-                               [&](int i) { return evidence.scored()[i].touchesBorder && !evidence.scored()[i].fromScene; });
-  std::vector<char> clipped(c.prediction.highlights().size(), 0);
-  for (std::size_t i = 0; i < c.prediction.highlights().size(); ++i) {
-    const PredictedHighlight& h = c.prediction.highlights()[i];
-    clipped[i] = cut && leavesImage(h.contour, camera);
-    predicted.push_back(clipped[i] ? clippedToImage(h.contour, camera) : h.contour);
+  const bool cut = std::any_of(parts.begin(), parts.end(), [](const auto& part) { return part.has_value(); });
+  for (const PredictedHighlight& h : c.prediction.highlights()) {
+    predictedParts.push_back(cut && leavesImage(h.contour, camera) ? std::optional(partInImage(h.contour, h.gaps, camera))
+                                                                   : std::nullopt);
+    predicted.push_back(predictedParts.back() ? predictedParts.back()->region : h.contour);
   }
   std::vector<double> ious;
   const std::vector<std::pair<int, int>> pairs = matchByOverlap(observed, predicted, &ious);
@@ -150,10 +139,9 @@ FrameComparison compareFrame(const FrameEvidence& evidence, const std::string& l
       row.predicted = pair->second;
       used[pair->second] = 1;
       const PredictedHighlight& h = c.prediction.highlights()[row.predicted];
-      row.metrics = compareContours(observed[o], predicted[row.predicted],
-                                    clipped[row.predicted] ? std::vector<std::pair<int, int>>{} : h.gaps, h.ellipse,
-                                    evidence.scored()[row.observed].peak, h.brightest.pixel, ious[pair - pairs.begin()]);
-      row.band = bandScore(observed[o], h);
+      const Highlight& seen = evidence.scored()[row.observed];
+      row.metrics = comparedHighlights(seen, h, camera, parts[o] || predictedParts[row.predicted], ious[pair - pairs.begin()]);
+      row.band = bandScore(seenPoints(seen, camera), h);
     }
     c.rows.push_back(std::move(row));
   }

@@ -37,9 +37,13 @@ struct FrameComparison {
   double iou = 0;  ///< over the union of all regions of this light
 };
 
+/// @param cut  the image's border cuts one of them: the parts that both show are compared
+ContourMetrics comparedHighlights(const Highlight& observed, const PredictedHighlight& predicted, const Camera& camera, bool cut,
+                                  std::optional<double> iou = {});
+
 /// Matches a prediction with the frame's scored highlights of one light by overlap and measures each pair (method.md
-/// section 10); what has no partner becomes a row of its own. Predictions are clipped to the image when the observed
-/// contour was cut by its border.
+/// section 10); what has no partner becomes a row of its own. Where the image's border cuts an observed contour, predictions are
+/// clipped, too, and the parts that both show are compared. What lies outside of the image is neither missed nor spurious.
 FrameComparison compareFrame(const FrameEvidence& evidence, const std::string& light, const Camera& camera,
                              Prediction prediction);
 

@@ -19,6 +19,7 @@ namespace {
 
 constexpr int kNoisePoints = 72;     // docs/formats.md, "Noise"
 constexpr double kSameLevel = 1e-6;  // levels are typed with a few digits
+constexpr double kHalfPx = 0.5;        // px: the image ends at the outer edges of its pixels
 
 /// The reason when a part of the highlight lies where the lens distortion has no inverse.
 std::optional<Failure> toIdealPixels(Highlight& h, const Camera& camera) {
@@ -234,22 +235,29 @@ Outcome<std::vector<Highlight>> readTruth(const std::string& folder, const Scene
     h.level = level;
     const JsonNode points = c.at("points");
     for (std::size_t k = 0; k < points.size(); ++k) h.contour.points.push_back(pixel(points.at(k)));
+    const std::optional<JsonNode> closed = c.find("closed"), atEdge = c.find("edge_fraction");
+    h.contour.closed = !closed || closed->boolean();
     h.contour = withoutRepeats(h.contour);
     h.areaPx2 = std::abs(signedArea(h.contour));
     if (!(h.areaPx2 > 0)) points.fail("the contour encloses no area");
-    const std::optional<JsonNode> closed = c.find("closed"), atEdge = c.find("edge_fraction");
-    h.touchesBorder = (closed && !closed->boolean()) || (atEdge && atEdge->number() > 0);
+    h.touchesBorder = !h.contour.closed || (atEdge && atEdge->number() > 0);
     h.peak = centroid(h.contour);
     truth.push_back(std::move(h));
   }
   // The stored sub-pixel peak belongs to the highlight that contains it; the others keep their centroid.
   if (const std::optional<JsonNode> n = root.find("peak_subpixel"); n && !n->isNull()) {
     const Pixel peak = pixel(*n);
-    for (Highlight& h : truth)
-      if (contains(h.contour, peak)) h.peak = peak;
+    const bool beyond =
+        peak.minCoeff() < -kHalfPx || peak.x() > frame.camera.width - kHalfPx || peak.y() > frame.camera.height - kHalfPx;
+    for (Highlight& h : truth) {
+      if (!contains(h.contour, peak) && !(beyond && truth.size() == 1)) continue;
+      h.peak = peak;
+      h.peakCut = h.touchesBorder && beyond;  // whoever made the file saw no more than that
+    }
   }
   for (Highlight& h : truth) {
     if (const std::optional<Failure> failure = toIdealPixels(h, frame.camera)) return *failure;
+    h.touchesBorder = h.touchesBorder || runsAlongImageBorder(frame.camera, h.contour);
     fitMissingEllipse(h);
   }
   return truth;

@@ -30,6 +30,21 @@ FitInput fitInputOf(const Inspection& in, const HighlightModel& model, const Fit
                   in.request.settings, known ? knownPixelsOf(in, key) : KnownPixels{});
 }
 
+std::optional<ModelResult::Fit> fitAtObservedLevel(const ModelResult::Fit& fit, const HighlightModel& model,
+                                                   const FrameEvidence& evidence, const Camera& camera, const Surface* surface,
+                                                   const Settings& settings) {
+  if (!fit.fit || !surface) return std::nullopt;
+  for (const Highlight& h : evidence.scored()) {
+    if (h.light != fit.light || !h.peakCut || h.clipped) continue;
+    std::optional<ModelFit> there = model.atLevelOf(*fit.fit, h.peak, camera, *surface, settings);
+    if (!there) return std::nullopt;
+    ModelResult::Fit other = fit;
+    other.fit = *std::move(there);
+    return other;
+  }
+  return std::nullopt;
+}
+
 FittedBand bandOf(const Inspection& in, const HighlightModel& model, const ModelResult::Fit& fit) {
   if (!fit.fit) return {};
   return bandOf(model, *fit.fit, fitInputOf(in, model, fit.key()), in.request.settings,
@@ -75,6 +90,19 @@ std::string repeatedRemark(const Inspection& r, const ModelFit& fit) {
   if (count == 0) return "";
   return std::to_string(count) + (count == 1 ? " training frame repeats" : " training frames repeat") +
          " another one exactly and count once: " + names;
+}
+
+std::string cutRemark(const Inspection& r, const ModelFit& fit) {
+  int cut = 0, all = 0;
+  for (const TrainingView& v : r.views) {
+    if (!v.seen || v.highlight.light != fit.light) continue;
+    if (std::find(fit.frames.begin(), fit.frames.end(), v.frame) == fit.frames.end()) continue;
+    ++all;
+    cut += v.highlight.touchesBorder;
+  }
+  return cut == 0 ? ""
+                  : formatted("the image's border cuts %d of %d training highlights: only the part that is seen is evidence", cut,
+                              all);
 }
 
 std::string byHandRemark(const Inspection& r, const ModelFit& fit) {

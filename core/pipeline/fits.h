@@ -15,6 +15,12 @@ namespace glint {
 /// lobe of its pixels where it is of all of these views.
 FitInput fitInputOf(const Inspection& inspection, const HighlightModel& model, const FitKey& key);
 
+/// A fit for the level at which a frame shows its light's contour: that of a highlight whose peak the image's border cuts off is
+/// a fraction of the brightest place that was seen. Empty where the fit itself serves, or where the model does not tell.
+std::optional<ModelResult::Fit> fitAtObservedLevel(const ModelResult::Fit& fit, const HighlightModel& model,
+                                                   const FrameEvidence& evidence, const Camera& camera, const Surface* surface,
+                                                   const Settings& settings);
+
 /// The band of an inspection's fit; empty, without words, if the fit failed or no training view is its own.
 FittedBand bandOf(const Inspection& inspection, const HighlightModel& model, const ModelResult::Fit& fit);
 
@@ -29,6 +35,8 @@ bool isSeen(const Inspection& inspection, const std::string& light);
 std::string mergedRemark(const Inspection& inspection, const ModelFit& fit);
 /// Training frames that show the fit's light and have no view because they repeat another one. "" without such frames.
 std::string repeatedRemark(const Inspection& inspection, const ModelFit& fit);
+/// How many training highlights of the fit's light serve although the image's border cuts them. "" without such highlights.
+std::string cutRemark(const Inspection& inspection, const ModelFit& fit);
 /// Training highlights of the fit's light shaped by hand, each with what that leaves in doubt. "" without such highlights.
 std::string byHandRemark(const Inspection& inspection, const ModelFit& fit);
 

@@ -106,6 +106,7 @@ Highlight merged(const Highlight& a, const Highlight& b) {
   }
   h.clipped = a.clipped || b.clipped;
   h.touchesBorder = a.touchesBorder || b.touchesBorder;
+  h.peakCut = a.peakCut || b.peakCut;
   describe(h);
   h.byHand = formatted("merged by hand: %.0f %% of its contour joins two highlights and was not seen",
                        100 * joining / std::max(length(h.contour), kJoinStepPx));

@@ -125,7 +125,8 @@ std::vector<HighlightQuality> highlightQualities(const Frame& frame, const Linea
     if (h.contour.points.size() < 3) continue;
     if (h.clipped) q.flags.push_back(h.flank ? "clipped core: " + inWords(*h.flank) : "clipped core");
     if (h.cutPx2 > kWorthCutPx2) q.flags.push_back(formatted("streaks cut off: %.0f px2", h.cutPx2));
-    if (h.touchesBorder) q.flags.emplace_back("cut by the image's edge");
+    if (h.touchesBorder)
+      q.flags.emplace_back(h.peakCut ? "cut by the image's edge, and its peak lies beyond" : "cut by the image's edge");
     measureContour(h, frame, pixels, noise, q);
     if (surface) lookAtSilhouette(h, frame.camera, *surface, q);
     if (!blur || !h.ellipse) continue;

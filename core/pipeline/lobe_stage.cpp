@@ -25,6 +25,8 @@ namespace glint {
 
 namespace {
 
+constexpr int kEnoughWhole = 3;  // training highlights that determine every model's light; a cut one adds little to them
+
 bool trains(const Inspection& r, int frame) {
   return std::binary_search(r.train.frames.begin(), r.train.frames.end(), frame) &&
          std::find(r.request.excluded.begin(), r.request.excluded.end(), frame) == r.request.excluded.end();
@@ -119,6 +121,7 @@ void fitLobes(Inspection& r, const SurfaceOfFrame& surfaceOf, bool together, con
     std::vector<std::pair<int, int>> ids;
   };
   std::vector<Seen> seen(frames.size());
+  const std::map<FitKey, CutUse> cut = useOfCut(r, CutUse::Pixels);
   const EvidenceInputs& asked = r.inputs.lobes->evidence;
   const bool sameLevel = together || r.inputs.evidence->detect.level == asked.detect.level;
   parallelFor(
@@ -138,7 +141,8 @@ void fitLobes(Inspection& r, const SurfaceOfFrame& surfaceOf, bool together, con
           if (highlight.light.empty() || isSwitchedOff(r.request.whatIf, f, highlight.light) ||
               isIgnored(r.request.whatIf, f, highlight))
             continue;
-          TrainingView view = trainingView(evidence, h, frame.camera, surface);
+          const auto use = cut.find(r.keyFor(f, highlight.light));
+          TrainingView view = trainingView(evidence, h, frame.camera, surface, use == cut.end() ? CutUse::None : use->second);
           if (!view.seen) continue;
           Outcome<PixelPatch> patch = pixelPatch(*pixels, frame.camera, *surface, f, atOwnLevel(highlight, evidence),
                                                  ofOthers(evidence, highlight.light));
@@ -162,6 +166,16 @@ void fitLobes(Inspection& r, const SurfaceOfFrame& surfaceOf, bool together, con
     fitLobe(r, key, views, goesOn);
     ++done;
   }
+}
+
+std::map<FitKey, CutUse> useOfCut(const Inspection& r, CutUse few) {
+  std::map<FitKey, int> whole;
+  for (const int f : r.train.frames)
+    for (const Highlight& h : r.evidence[static_cast<std::size_t>(f)].highlights)
+      whole[r.keyFor(f, h.light)] += trains(r, f) && !h.touchesBorder;
+  std::map<FitKey, CutUse> use;
+  for (const auto& [key, count] : whole) use[key] = count < kEnoughWhole ? few : CutUse::None;
+  return use;
 }
 
 KnownPixels knownPixelsOf(const Inspection& r, const FitKey& key) {
@@ -242,6 +256,14 @@ void addDetectedLevels(const Inspection& r, const SurfaceOfFrame& surfaceOf, Fra
     if (!h.byHand.empty()) h.otherLevels.clear();
 }
 
+namespace {
+/// A cut highlight may be brightest on its own contour.
+bool holdsPeak(const Highlight& h, const Pixel& peak) {
+  constexpr double kBesidePx = 1;  // the contour over the lobe's background lies elsewhere by less
+  return contains(h.contour, peak) || (h.touchesBorder && distance(h.contour, peak) < kBesidePx);
+}
+}  // namespace
+
 void attachPixels(Inspection& r) {
   if (r.request.noisePx > 0) return;
   std::map<int, int> next;  // views come in the order of their frame's highlights
@@ -250,7 +272,7 @@ void attachPixels(Inspection& r) {
     const int index = evidence.asFound(next[v.frame]++);
     if (r.request.whatIf.highlights.count({v.frame, index}) || !v.highlight.byHand.empty()) continue;
     for (auto p = r.patches.lower_bound({v.frame, 0}); p != r.patches.end() && p->first.first == v.frame && !v.pixels; ++p)
-      if (p->second->light == v.highlight.light && contains(v.highlight.contour, p->second->peak)) v.pixels = p->second;
+      if (p->second->light == v.highlight.light && holdsPeak(v.highlight, p->second->peak)) v.pixels = p->second;
   }
 }
 

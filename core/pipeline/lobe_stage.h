@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -27,6 +28,9 @@ using SurfaceOfFrame = std::function<std::shared_ptr<const Surface>(int frame)>;
 /// Fills patches and pixelFits from the training frames. Frames whose contours the scene gives have no pixels. Throws
 /// Stopped.
 void fitLobes(Inspection& inspection, const SurfaceOfFrame& surfaceOf, bool together, const ProgressFn& progress);
+
+/// What serves of the training frames' cut highlights: `few` for lights with fewer than three whole ones, else nothing.
+std::map<FitKey, CutUse> useOfCut(const Inspection& inspection, CutUse few);
 
 /// The stage's fit of a light for the reflectance model, or what failed. No fit where the request names the lobe or the lamp's
 /// shape: the stage does not look at these, so that contours are the same for all of them.

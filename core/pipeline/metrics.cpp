@@ -14,7 +14,7 @@ namespace glint {
 
 namespace {
 
-using Segment = std::pair<Pixel, Pixel>;
+using Segment = ContourPart::Segment;
 
 /// Segments of a polyline without its gaps and without repeated points' zero-length pieces.
 std::vector<Segment> segmentsOf(const Polyline& line, const std::vector<std::pair<int, int>>& gaps) {
@@ -290,37 +290,113 @@ std::vector<std::pair<int, int>> matchByOverlap(const std::vector<Polyline>& obs
   return pairs;
 }
 
-ContourMetrics compareContours(const Polyline& observed, const Polyline& predicted, const std::vector<std::pair<int, int>>& gaps,
-                               const std::optional<Ellipse>& predictedEllipse, const Pixel& observedPeak,
-                               const Pixel& predictedPeak, std::optional<double> iou) {
+namespace {
+
+/// Mean and largest distance of the contours' pieces from each other; of one contour alone where the other has no pieces.
+OneWay bothWays(const std::vector<Segment>& o, const std::vector<Segment>& p, const std::vector<Segment>& fromO,
+                const std::vector<Segment>& fromP) {
+  if (fromO.empty() || fromP.empty()) return fromO.empty() ? fromP.empty() ? OneWay{} : oneWay(fromP, o) : oneWay(fromO, p);
+  const OneWay forth = oneWay(fromO, p), back = oneWay(fromP, o);
+  return {0.5 * (forth.mean + back.mean), std::max(forth.max, back.max)};
+}
+
+ContourMetrics undefinedMetrics(const Pixel& observedPeak, const Pixel& predictedPeak) {
   ContourMetrics m;
-  const double nan = std::nan("");
-  m.contourErrorPx = m.contourErrorPct = m.ellipseErrorPct = m.hausdorffPx = m.centreOffsetPx = nan;
-  m.axisRatioError = m.angleErrorDeg = nan;
+  m.contourErrorPx = m.contourErrorPct = m.ellipseErrorPct = m.hausdorffPx = m.centreOffsetPx = std::nan("");
+  m.axisRatioError = m.angleErrorDeg = std::nan("");
   m.peakOffsetPx = (observedPeak - predictedPeak).norm();
-  const std::vector<Segment> o = segmentsOf(observed, {}), p = segmentsOf(predicted, gaps);
-  if (o.empty() || p.empty()) return m;
+  return m;
+}
+
+/// All that is not a distance of points on the contours.
+void compareRegions(const Polyline& observed, const Polyline& predicted, const std::optional<Ellipse>& predictedEllipse,
+                    std::optional<double> iou, ContourMetrics& m) {
   const double diameter = 2 * std::sqrt(std::abs(signedArea(observed)) / std::numbers::pi);
-  const OneWay forth = oneWay(o, p), back = oneWay(p, o);
-  m.contourErrorPx = 0.5 * (forth.mean + back.mean);
-  m.contourErrorPct = diameter > 0 ? 100 * m.contourErrorPx / diameter : nan;
-  m.hausdorffPx = std::max(forth.max, back.max);
+  m.contourErrorPct = diameter > 0 ? 100 * m.contourErrorPx / diameter : std::nan("");
   m.iou = iou ? *iou : regionIou({observed}, {predicted});
   m.centreOffsetPx = (centroid(observed) - centroid(predicted)).norm();
   const Outcome<Ellipse> eo = fitEllipse(observed.points);
   std::optional<Ellipse> ep = predictedEllipse;
   if (!ep)
     if (const Outcome<Ellipse> fitted = fitEllipse(predicted.points)) ep = *fitted;
-  if (eo && ep) {
-    const std::vector<Segment> so = segmentsOf(*eo), sp = segmentsOf(*ep);
-    if (!so.empty() && !sp.empty())
-      m.ellipseErrorPct = 50 * (oneWay(so, sp).mean + oneWay(sp, so).mean) / std::sqrt(4 * eo->area() / std::numbers::pi);
-    const double ro = eo->semiAxes.y() / eo->semiAxes.x(), rp = ep->semiAxes.y() / ep->semiAxes.x();
-    m.axisRatioError = std::abs(ro - rp);
-    double angle = std::abs(eo->angle - ep->angle) * 180 / std::numbers::pi;
-    angle = std::fmod(angle, 180);
-    m.angleErrorDeg = (ro > 0.99 || rp > 0.99) ? 0 : std::min(angle, 180 - angle);  // a circle has no axis
+  if (!eo || !ep) return;
+  const std::vector<Segment> so = segmentsOf(*eo), sp = segmentsOf(*ep);
+  if (!so.empty() && !sp.empty())
+    m.ellipseErrorPct = 50 * (oneWay(so, sp).mean + oneWay(sp, so).mean) / std::sqrt(4 * eo->area() / std::numbers::pi);
+  const double ro = eo->semiAxes.y() / eo->semiAxes.x(), rp = ep->semiAxes.y() / ep->semiAxes.x();
+  m.axisRatioError = std::abs(ro - rp);
+  const double angle = std::fmod(std::abs(eo->angle - ep->angle) * 180 / std::numbers::pi, 180);
+  m.angleErrorDeg = (ro > 0.99 || rp > 0.99) ? 0 : std::min(angle, 180 - angle);  // a circle has no axis
+}
+
+/// The part of a piece that the image shows, up to the centres of its outermost pixels.
+std::optional<Segment> seenOf(const Segment& piece, const Camera& camera) {
+  const Pixel a = camera.distorted(piece.first), d = camera.distorted(piece.second) - a;
+  if (!a.allFinite() || !d.allFinite()) return std::nullopt;
+  double from = 0, to = 1;
+  const double last[2] = {camera.width - 1.0, camera.height - 1.0};
+  for (int axis = 0; axis < 2; ++axis) {
+    if (d(axis) == 0) {
+      if (a(axis) < 0 || a(axis) > last[axis]) return std::nullopt;
+      continue;
+    }
+    const double t = -a(axis) / d(axis), u = (last[axis] - a(axis)) / d(axis);
+    from = std::max(from, std::min(t, u));
+    to = std::min(to, std::max(t, u));
   }
+  if (!(to > from)) return std::nullopt;
+  const Pixel along = piece.second - piece.first;
+  return Segment{piece.first + from * along, piece.first + to * along};
+}
+
+/// A line as the photograph measures it, without places that the lens shows nowhere.
+Polyline measured(const Polyline& ideal, const Camera& camera) {
+  if (!camera.hasDistortion()) return ideal;
+  Polyline line{{}, ideal.closed};
+  for (const Pixel& p : ideal.points)
+    if (const Pixel q = camera.distorted(p); q.allFinite()) line.points.push_back(q);
+  return line;
+}
+
+}  // namespace
+
+ContourPart partInImage(const Polyline& contour, const std::vector<std::pair<int, int>>& gaps, const Camera& camera) {
+  ContourPart part;
+  Polyline whole = measured(contour, camera);
+  whole.closed = true;
+  part.region = clippedTo(Eigen::AlignedBox2d(Pixel(0, 0), Pixel(camera.width - 1.0, camera.height - 1.0)), whole);
+  if (camera.hasDistortion())
+    for (Pixel& p : part.region.points) p = camera.undistorted(p);
+  for (const Segment& s : segmentsOf(contour, gaps)) {
+    if (alongImageBorder(camera, s.first, s.second)) continue;
+    part.line.push_back(s);
+    if (const std::optional<Segment> seen = seenOf(s, camera)) part.seen.push_back(*seen);
+  }
+  return part;
+}
+
+ContourMetrics compareContours(const ContourPart& observed, const ContourPart& predicted, const Pixel& observedPeak,
+                               const Pixel& predictedPeak, std::optional<double> iou) {
+  ContourMetrics m = undefinedMetrics(observedPeak, predictedPeak);
+  if (observed.region.points.empty() || predicted.region.points.empty()) return m;
+  if (observed.line.empty() != predicted.line.empty()) return m;
+  const OneWay distance = bothWays(observed.line, predicted.line, observed.seen, predicted.seen);
+  m.contourErrorPx = distance.mean;
+  m.hausdorffPx = distance.max;
+  compareRegions(observed.region, predicted.region, std::nullopt, iou, m);
+  return m;
+}
+
+ContourMetrics compareContours(const Polyline& observed, const Polyline& predicted, const std::vector<std::pair<int, int>>& gaps,
+                               const std::optional<Ellipse>& predictedEllipse, const Pixel& observedPeak,
+                               const Pixel& predictedPeak, std::optional<double> iou) {
+  ContourMetrics m = undefinedMetrics(observedPeak, predictedPeak);
+  const std::vector<Segment> o = segmentsOf(observed, {}), p = segmentsOf(predicted, gaps);
+  if (o.empty() || p.empty()) return m;
+  const OneWay distance = bothWays(o, p, o, p);
+  m.contourErrorPx = distance.mean;
+  m.hausdorffPx = distance.max;
+  compareRegions(observed, predicted, predictedEllipse, iou, m);
   return m;
 }
 

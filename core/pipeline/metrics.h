@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/geometry/camera.h"
 #include "core/geometry/conic.h"
 #include "core/geometry/polyline.h"
 
@@ -19,6 +20,16 @@ Statistic statisticOf(std::vector<double> values);
 
 /// By linear interpolation between order statistics; NaN of none. @param sorted  ascending. @param q  0 .. 1
 double quantileOf(const std::vector<double>& sorted, double q);
+
+/// A contour in an image whose border cuts it.
+struct ContourPart {
+  using Segment = std::pair<Pixel, Pixel>;
+  Polyline region;            ///< what the image shows of its inside, closed along the border
+  std::vector<Segment> line;  ///< the contour, seen or not; nothing that only runs along the border
+  std::vector<Segment> seen;  ///< what the image shows of it
+};
+/// @param gaps  segments (from vertex, to vertex) that are not part of the contour
+ContourPart partInImage(const Polyline& contour, const std::vector<std::pair<int, int>>& gaps, const Camera& camera);
 
 /// method.md section 10, predicted against observed.
 struct ContourMetrics {
@@ -39,6 +50,11 @@ struct ContourMetrics {
 /// @return values are finite, or NaN where the input does not define them (documented per field).
 ContourMetrics compareContours(const Polyline& observed, const Polyline& predicted, const std::vector<std::pair<int, int>>& gaps,
                                const std::optional<Ellipse>& predictedEllipse, const Pixel& observedPeak,
+                               const Pixel& predictedPeak, std::optional<double> iou = {});
+
+/// The same where the image's border cuts the contours: distances of what is seen of each from the other, all values of the
+/// regions that are seen. An error of 0 where nothing is seen of either, as inside of a highlight that fills the image.
+ContourMetrics compareContours(const ContourPart& observed, const ContourPart& predicted, const Pixel& observedPeak,
                                const Pixel& predictedPeak, std::optional<double> iou = {});
 
 /// IoU of two filled regions, each the union of closed polylines; exact up to a raster of `cellPx`.

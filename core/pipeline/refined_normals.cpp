@@ -26,10 +26,10 @@ double rms(const std::vector<double>& perView) {
   return perView.empty() ? std::nan("") : std::sqrt(sum / double(perView.size()));
 }
 
-std::vector<BundleView> bundleViewsOf(const std::vector<TrainingView>& views) {
+std::vector<BundleView> bundleViewsOf(const std::vector<TrainingView>& views, const Settings& settings) {
   std::vector<BundleView> result;
   for (const TrainingView& v : views)
-    if (v.seen) result.push_back({v.camera, v.surface.get(), v.highlight.contour.points, v.seen->brightest});
+    if (v.seen) result.push_back(bundleView(v, settings.integer("light.bundle_points")));
   return result;
 }
 
@@ -127,7 +127,7 @@ Outcome<std::optional<RefinedNormals>> refineNormals(const std::vector<TrainingV
   options.pointsPerView = settings.integer("light.bundle_points");
   options.robustPx = settings.number("light.robust_px");
   const double sigma = settings.number("light.normal_sigma");
-  const std::vector<BundleView> bundleViews = bundleViewsOf(views);
+  const std::vector<BundleView> bundleViews = bundleViewsOf(views, settings);
 
   // Bumps are what the better model leaves: a lobe that is no circle of one angle must not bend the normals.
   std::optional<ModelFit> lobe = reflectanceOf(views, light, settings);

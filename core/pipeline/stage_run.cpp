@@ -245,6 +245,7 @@ void StageRun::brightestPointsAndTangentPlanes() {
   }
   int done = 0;
   std::vector<int> used;
+  const std::map<FitKey, CutUse> cut = useOfCut(r_, CutUse::Arc);
   for (const int frame : r_.train.frames) {
     if (!report(progress_, {"surface", done++, static_cast<int>(r_.train.frames.size())})) throw Stopped{};
     if (std::find(q.excluded.begin(), q.excluded.end(), frame) != q.excluded.end()) continue;
@@ -258,7 +259,8 @@ void StageRun::brightestPointsAndTangentPlanes() {
     for (std::size_t h = 0; h < evidence.highlights.size(); ++h)
       evidence.highlights[h] = withNoise(evidence.highlights[h], q.noisePx, q.seed, frame, evidence.asFound(static_cast<int>(h)));
     for (int h = 0; h < static_cast<int>(evidence.highlights.size()); ++h) {
-      r_.views.push_back(trainingView(evidence, h, r_.scene->frames[frame].camera, surfaceOf(frame)));
+      const CutUse use = cut.at(r_.keyFor(frame, evidence.highlights[static_cast<std::size_t>(h)].light));
+      r_.views.push_back(trainingView(evidence, h, r_.scene->frames[frame].camera, surfaceOf(frame), use));
       if (TrainingView& view = r_.views.back(); !view.seen) view.seen = explained(frame, view.seen.failure());
     }
   }
@@ -416,6 +418,7 @@ ModelResult::Fit StageRun::fitOf(const HighlightModel& model, const FitKey& key,
   add(r_.lightFrame.doubt);
   add(mergedRemark(r_, fit));
   add(repeatedRemark(r_, fit));
+  add(cutRemark(r_, fit));
   add(byHandRemark(r_, fit));
   add(textureRemark(r_));
   add(takenOffRemark(r_));
@@ -488,7 +491,9 @@ void StageRun::predict(const HighlightModel& model, ModelResult& result) {
         const ModelResult::Fit& fit = result.fits[f];
         const Camera& camera = r_.scene->frames[frame].camera;
         const std::shared_ptr<const Surface> surface = fit.fit ? surfaceOfModel(r_, model, frame, fit.light) : nullptr;
-        Prediction prediction = predictionFor(r_, fit, model, frame, camera, surface.get());
+        const std::optional<ModelResult::Fit> there =
+            fitAtObservedLevel(fit, model, r_.evidence[frame], camera, surface.get(), r_.request.settings);
+        Prediction prediction = predictionFor(r_, there ? *there : fit, model, frame, camera, surface.get());
         if (fit.fit) ++predictions;
         if (fit.fit && model.needsLight()) ++surfacesAsked;
         if (const std::shared_ptr<const Band>& band =

@@ -17,9 +17,10 @@ namespace {
 Outcome<SeenOnSurface> seenOnSurface(const TrainingView& view) {
   if (std::optional<Failure> small = tooSmall(view.highlight.contour)) return *std::move(small);
   if (!view.surface) return Failure{Reason::NoSurface, ""};
-  // A contour that the scene gives is whole even where it leaves the image; a detected one is cut there.
-  if (view.highlight.touchesBorder && !view.highlight.fromScene)
-    return Failure{Reason::OutsideImage, "the image border cuts the highlight"};
+  if (view.highlight.touchesBorder && view.cut != CutUse::Pixels) {
+    if (view.cut == CutUse::None) return Failure{Reason::OutsideImage, "the image border cuts the highlight"};
+    if (view.highlight.peakCut) return Failure{Reason::OutsideImage, "the image border cuts off the highlight's peak"};
+  }
   const Outcome<BrightestPoint> brightest = observedBrightestPoint(*view.surface, view.camera, view.highlight.peak);
   if (!brightest) return brightest.failure();
   const Plane plane = Plane::through(brightest->point.position, brightest->point.normal);
@@ -27,9 +28,10 @@ Outcome<SeenOnSurface> seenOnSurface(const TrainingView& view) {
 }
 }  // namespace
 
-TrainingView trainingView(const FrameEvidence& evidence, int index, const Camera& camera,
-                          std::shared_ptr<const Surface> surface) {
+TrainingView trainingView(const FrameEvidence& evidence, int index, const Camera& camera, std::shared_ptr<const Surface> surface,
+                          CutUse cut) {
   TrainingView view;
+  view.cut = cut;
   view.frame = evidence.frame;
   view.frameId = evidence.id;
   view.camera = camera;
@@ -45,7 +47,7 @@ TrainingView seenAgain(const TrainingView& view, const Camera& camera, std::shar
   evidence.frame = view.frame;
   evidence.id = view.frameId;
   evidence.highlights = {view.highlight};
-  return trainingView(evidence, 0, camera, std::move(surface));
+  return trainingView(evidence, 0, camera, std::move(surface), view.cut);
 }
 
 namespace {
@@ -69,12 +71,12 @@ int limitOrders(const std::vector<ContourEvidence>& evidence, const std::vector<
 Outcome<LightEstimate> estimateAnyLight(const std::vector<TrainingView>& views, const Settings& settings) {
   std::vector<ReflectedRay> rays;
   std::vector<BundleView> bundleViews;
+  const int points = settings.integer("light.bundle_points");
   for (const TrainingView& v : views) {
     if (!v.seen) continue;
     rays.push_back(reflectedRay(v.seen->brightest, v.camera));
-    bundleViews.push_back({v.camera, v.surface.get(), v.highlight.contour.points, v.seen->brightest});
+    bundleViews.push_back(bundleView(v, points));
   }
-  const int points = settings.integer("light.bundle_points");
   const Outcome<Triangulation> t = triangulateLight(rays);
   if (!t && t.failure().reason == Reason::TooFewViews)
     return Failure{Reason::TooFewViews, t.failure().detail + unusedViews(views)};
@@ -141,17 +143,23 @@ Outcome<DepthRefinement> refineDepth(const std::vector<TrainingView>& views, con
     return Failure{Reason::NotSupported, "light.refine_depth needs light.solver=bundle"};
   if (settings.integer("surface.depth_fuse") > 0)
     return Failure{Reason::NotSupported, "light.refine_depth needs surface.depth_fuse=0: it corrects the frames' own maps"};
-  std::vector<BundleView> bundleViews;
-  for (const TrainingView& v : views)
-    if (v.seen) bundleViews.push_back({v.camera, v.surface.get(), v.highlight.contour.points, v.seen->brightest});
   BundleOptions options;
   options.pointsPerView = settings.integer("light.bundle_points");
+  std::vector<BundleView> bundleViews;
+  for (const TrainingView& v : views)
+    if (v.seen) bundleViews.push_back(bundleView(v, options.pointsPerView));
   options.robustPx = settings.number("light.robust_px");
   return refineDepth(bundleViews, start, settings.number("light.depth_sigma"), options);
 }
 
+BundleView bundleView(const TrainingView& view, int points) {
+  require(bool(view.seen), "bundleView: a view that can be used");
+  return {view.camera, view.surface.get(),
+          view.highlight.touchesBorder ? levelSetPoints(view, points) : view.highlight.contour.points, view.seen->brightest};
+}
+
 void addCanonicalContour(TrainingView& view, const Light& light, const Settings& settings) {
-  if (!view.seen) return;
+  if (!view.seen || view.highlight.touchesBorder) return;
   WalkOptions options;
   options.toleranceRad = settings.number("fit.walk_tolerance");
   const TangentWalk walk(*view.surface, view.camera, view.seen->brightest, light, options);

@@ -28,7 +28,7 @@ inline std::string textOf(const FitKey& key) { return key.surface ? key.light + 
 /// Evidence of one training highlight with what the geometry adds: observed brightest point, tangent plane, virtual
 /// camera (method.md sections 3 and 5). `failure` is set where the peak misses the surface or the frame has none.
 TrainingView trainingView(const FrameEvidence& evidence, int highlight, const Camera& camera,
-                          std::shared_ptr<const Surface> surface);
+                          std::shared_ptr<const Surface> surface, CutUse cut = CutUse::None);
 
 /// The highlight of a view as another camera or surface would have it. Pixels and contours at other levels are not carried over.
 TrainingView seenAgain(const TrainingView& view, const Camera& camera, std::shared_ptr<const Surface> surface);
@@ -37,11 +37,14 @@ TrainingView seenAgain(const TrainingView& view, const Camera& camera, std::shar
 /// TooFewViews; LightBehindSurface; what the bundle reports. A bundle that fails falls back to nothing: its reason is returned.
 Outcome<LightEstimate> estimateLight(const std::vector<TrainingView>& views, const Settings& settings);
 
+/// What the bundle takes of a view that was seen: its contour, or about that many points of what the image's border leaves of it.
+BundleView bundleView(const TrainingView& view, int points);
+
 /// Depth correction of some views of one light whose surfaces are their own frames' depth maps (light.refine_depth). The bundle's
 /// failures; NotSupported unless `light.solver` is bundle.
 Outcome<DepthRefinement> refineDepth(const std::vector<TrainingView>& views, const Light& start, const Settings& settings);
 
-/// Fills `canonical` of a view (method.md section 6). Views with `failure` stay as they are.
+/// Fills `canonical` of a view (method.md section 6). Views with `failure` stay as they are, and so do those of cut highlights.
 void addCanonicalContour(TrainingView& view, const Light& light, const Settings& settings);
 
 }  // namespace glint

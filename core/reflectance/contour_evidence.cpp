@@ -38,14 +38,6 @@ double curvatureAt(const Ellipse& e, const Pixel& p) {
   return a * b / std::pow(std::hypot(a * std::sin(t), b * std::cos(t)), 3);
 }
 
-/// Between the outermost pixel centres and the outermost pixels' outer edges, where cut contours run.
-bool onImageBorder(const Pixel& ideal, const Camera& camera) {
-  constexpr double kWidthPx = 0.5 + 1e-6;  // the image ends half a pixel beyond the outermost centres; the rest is round-off
-  const auto near = [](double v, double last) { return std::abs(v) <= kWidthPx || std::abs(v - last) <= kWidthPx; };
-  const Pixel p = camera.hasDistortion() ? camera.distorted(ideal) : ideal;
-  return near(p.x(), camera.width - 1) || near(p.y(), camera.height - 1);
-}
-
 /// Sides of the contour's box along which the contour runs straight: it was cut there, for example at the end of the image. A
 /// level set touches its box in points only. Order: left, right, top, bottom.
 std::array<bool, 4> cutSides(const std::vector<Pixel>& contour, const Eigen::AlignedBox2d& box) {
@@ -102,7 +94,7 @@ Outcome<ContourEvidence> gatherEvidence(const std::vector<RadianceView>& views, 
     const std::array<bool, 4> cut = cutSides(view.contour, box);
     for (const Pixel& p : pixels) {
       // Where the image or the surface ends, the contour is an edge and not a level set.
-      if (onImageBorder(p, view.camera) || onCutSide(p, box, cut)) continue;
+      if (onImageBorder(view.camera, p) || onCutSide(p, box, cut)) continue;
       const std::optional<Stencil> at = look(view, p, Eigen::Vector3d::Zero(), 1, stepPx);
       if (!at) continue;
       Evidence e;

@@ -158,6 +158,17 @@ bool anyClipped(const LinearPixels& pixels, const Polyline& measured) {
   return false;
 }
 
+/// A highlight whose peak the image's border cuts off has the lobe's, which the pixels that are seen determine.
+void placeBeyond(Highlight& h, const std::vector<RadiancePeak>& peaks, double value) {
+  const auto nearest = std::min_element(peaks.begin(), peaks.end(), [&](const RadiancePeak& a, const RadiancePeak& b) {
+    return (a.pixel - h.peak).norm() < (b.pixel - h.peak).norm();
+  });
+  if (nearest == peaks.end() || nearest->cut) return;
+  h.peakCut = false;
+  h.peak = nearest->pixel;
+  h.peakValue = value;
+}
+
 }  // namespace
 
 Outcome<std::vector<Highlight>> contourWithLobe(const LinearPixels& pixels, const Camera& camera, const Surface& surface,
@@ -187,7 +198,8 @@ Outcome<std::vector<Highlight>> contourWithLobe(const LinearPixels& pixels, cons
   const std::vector<RadiancePeak> peaks = field.peaks(starts, 0);
   const PatchSolution& strongest = solved->front();
   std::optional<double> reference;
-  if (!peaks.empty() && model.blurPx() < kSharpPx && worst < kTrusted) {
+  const bool beyond = std::any_of(found.begin(), found.end(), [](const Highlight& h) { return h.peakCut; });
+  if (!peaks.empty() && !peaks.front().cut && (beyond || model.blurPx() < kSharpPx) && worst < kTrusted) {
     const std::optional<double> top = field.at(strongest.topPoint, std::numeric_limits<double>::infinity());
     if (top) reference = strongest.strength * std::exp(peaks.front().logRadiance - *top);
   }
@@ -205,6 +217,7 @@ Outcome<std::vector<Highlight>> contourWithLobe(const LinearPixels& pixels, cons
     Outcome<std::vector<Highlight>> traced = detectHighlights(c.value, &c.mask, again);
     return traced ? sameHighlight(*std::move(traced), c.origin, found[k], camera) : std::nullopt;
   };
+  const bool byLobe = reference.has_value();
   if (!reference) {  // the strongest observed peak of all the light's highlights
     double top = 0;
     for (std::size_t k = 0; k < found.size(); ++k)
@@ -226,6 +239,7 @@ Outcome<std::vector<Highlight>> contourWithLobe(const LinearPixels& pixels, cons
       h.touchesBorder = found[k].touchesBorder;
       h.peakValue = traced->peakValue;
       h.peak = traced->peak;
+      if (h.peakCut && byLobe) placeBeyond(h, peaks, *reference);
       Polyline measured = h.contour;
       for (Pixel& p : measured.points) p = camera.distorted(p);
       h.clipped = anyClipped(pixels, measured);

@@ -165,7 +165,7 @@ Json fitJson(const Inspection& inspection, const ModelResult::Fit& entry) {
 }
 
 /// Every metric of a row, null if it has none: each row of `frames` has the same keys.
-void metricsJson(const FrameComparison::Row* row, const FrameComparison& c, Json& j) {
+void metricsJson(const FrameComparison::Row* row, const FrameComparison& c, bool cut, Json& j) {
   const bool measured = row && row->metrics;
   const ContourMetrics m = measured ? *row->metrics : ContourMetrics{};
   const auto add = [&](const char* key, double v) { j[key] = measured ? numberOrNull(v) : Json(nullptr); };
@@ -183,6 +183,7 @@ void metricsJson(const FrameComparison::Row* row, const FrameComparison& c, Json
   // Only where walks were made on second-order patches: says whether they were good enough.
   if (row && row->predicted >= 0 && c.prediction.highlights()[row->predicted].curvatureVariation)
     j["curvature_variation"] = numberOrNull(*c.prediction.highlights()[row->predicted].curvatureVariation);
+  if (cut) j["cut"] = true;
   if (row && row->band)
     j["band"] = {{"sigma_px", numberOrNull(row->band->sigmaPx)}, {"coverage_95", numberOrNull(row->band->coverage)}};
   j["time_us"] = numberOrNull(c.prediction.timeUs);
@@ -205,7 +206,7 @@ void addRows(const Inspection& inspection, const ModelResult& result, const Fram
     j["reason"] = e.scoringFailure()       ? e.scoringFailure()->message()
                   : c.prediction.failure() ? c.prediction.failure()->message()
                                            : "no highlight";
-    metricsJson(nullptr, c, j);
+    metricsJson(nullptr, c, false, j);
     out.push_back(j);
     return;
   }
@@ -220,7 +221,7 @@ void addRows(const Inspection& inspection, const ModelResult& result, const Fram
     if (const std::string general = row.failure ? row.failure->message() : ""; !row.metrics && general != reason)
       reason = general + (general.empty() ? "" : "; ") + reason;
     j["reason"] = row.metrics ? poor : reason;
-    metricsJson(&row, c, j);
+    metricsJson(&row, c, row.observed >= 0 && e.scored()[static_cast<std::size_t>(row.observed)].touchesBorder, j);
     out.push_back(j);
   }
 }

@@ -213,8 +213,14 @@ std::optional<DetectionError> detectionError(const Inspection& inspection) {
     error.missed += static_cast<int>(truth.size() - pairs.size());
     for (const auto& [t, f] : pairs) {
       const Highlight& own = e.highlights[static_cast<std::size_t>(f)];
-      const ContourMetrics m = compareContours(truth[static_cast<std::size_t>(t)], own.contour, {}, own.ellipse,
-                                               e.truth[static_cast<std::size_t>(t)].peak, own.peak);
+      const Highlight& known = e.truth[static_cast<std::size_t>(t)];
+      if (known.peakCut != own.peakCut) continue;  // their levels are fractions of different places
+      const Camera& camera = inspection.scene->frames[static_cast<std::size_t>(e.frame)].camera;
+      PredictedHighlight asPredicted;
+      asPredicted.contour = own.contour;
+      asPredicted.ellipse = own.ellipse;
+      asPredicted.brightest.pixel = own.peak;
+      const ContourMetrics m = comparedHighlights(known, asPredicted, camera, known.touchesBorder || own.touchesBorder);
       percent.push_back(m.contourErrorPct);
       pixels.push_back(m.contourErrorPx);
     }

@@ -143,14 +143,8 @@ Highlight readHighlight(const JsonNode& node, const Camera& camera) {
   const JsonNode contour = node.at("contour");
   const std::size_t n = contour.size();
   if (n < 5) contour.fail("must have at least 5 points, has " + std::to_string(n));
-  // Half a pixel beyond the outermost pixel centres the image ends, to the digits of a printed coordinate.
-  constexpr double kBorderPx = 0.5 - 1e-9;
-  for (std::size_t i = 0; i < n; ++i) {
-    const Pixel measured = pixel(contour.at(i));
-    h.touchesBorder = h.touchesBorder || measured.minCoeff() <= -kBorderPx || measured.x() >= camera.width - 1 + kBorderPx ||
-                      measured.y() >= camera.height - 1 + kBorderPx;
-    h.contour.points.push_back(ideal(contour.at(i)));
-  }
+  for (std::size_t i = 0; i < n; ++i) h.contour.points.push_back(ideal(contour.at(i)));
+  h.touchesBorder = runsAlongImageBorder(camera, h.contour);  // one that leaves the image and comes back is whole
   h.peak = ideal(node.at("peak"));
   // One orientation for all contours, whatever program wrote them; the first point stays first.
   const double area = signedArea(h.contour);

@@ -69,6 +69,7 @@ NumberGroup observation(const FrameEvidence& evidence, int index, bool synthesis
     if (h.clipped) lines.note(QObject::tr("clipped: the peak is the ellipse centre"));
     if (!h.byHand.empty()) lines.note(toQString(h.byHand));
     if (h.touchesBorder) lines.note(QObject::tr("cut by the image border"));
+    if (h.peakCut) lines.note(QObject::tr("its peak lies beyond the image"));
     if (h.fromScene) lines.note(synthesised ? QObject::tr("synthesised (what-if)") : QObject::tr("given in the scene file"));
   }
   const int count = int(evidence.highlights.size());

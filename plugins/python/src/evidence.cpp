@@ -87,6 +87,7 @@ void declareHighlight(py::module_& module) {
       .def_readonly("area", &Highlight::areaPx2, "px^2.")
       .def_readonly("clipped", &Highlight::clipped, "Saturated: its peak is not known.")
       .def_readonly("touches_border", &Highlight::touchesBorder, "Cut by the image's border.")
+      .def_readonly("peak_cut", &Highlight::peakCut, "Brightest at the border that cuts it: the peak lies beyond.")
       .def_readonly("from_scene", &Highlight::fromScene, "Given, not detected.")
       .def("undistorted", &withoutLens, py::arg("camera"),
            "The same highlight, seen in measured pixels of this camera, in ideal ones. Raises CannotAnswer where the lens shows "

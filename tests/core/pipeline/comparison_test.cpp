@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+
 namespace glint {
 namespace {
 
@@ -91,6 +93,59 @@ TEST(CompareFrame, APredictionIsCutWhereTheImageCutTheObservation) {
   ASSERT_TRUE(c.rows[0].metrics);
   EXPECT_LT(c.rows[0].metrics->contourErrorPx, 2e-3);  // chords of both polygons
   EXPECT_GT(c.rows[0].metrics->iou, 0.999);
+}
+
+/// The left half of a circle around the right edge of a 640 px wide image, open, as truth files have it.
+Polyline openHalf(double radius, double y) {
+  Polyline half{{}, false};
+  for (int i = 0; i <= 2000; ++i) {
+    const double t = M_PI / 2 + M_PI * i / 2000;
+    half.points.emplace_back(639.5 + radius * std::cos(t), y + radius * std::sin(t));
+  }
+  return half;
+}
+
+/// Error of a prediction that is the same circle, moved to the left.
+ContourMetrics movedCircle(double radius, double by, const Polyline& half) {
+  const FrameComparison c =
+      compareFrame(observed({half}, true), "lamp", imageOf(640, 2000), predicted({circle(639.5 - by, 1000, radius)}));
+  EXPECT_EQ(c.rows.size(), 1u);
+  return c.rows.empty() || !c.rows[0].metrics ? ContourMetrics{} : *c.rows[0].metrics;
+}
+
+TEST(CompareFrame, ACutContourIsComparedWhereItIsSeen) {
+  // Moved by d, the arc is off by d |cos t|: 2 d / pi on average. The chord that closes it is no contour.
+  EXPECT_NEAR(movedCircle(30, 0.5, openHalf(30, 1000)).contourErrorPx, 0.5 * 2 / M_PI, 0.01);
+  EXPECT_LT(movedCircle(30, 0, openHalf(30, 1000)).contourErrorPx, 1e-3);
+}
+
+TEST(CompareFrame, TheErrorOfACutContourDoesNotDependOnItsSize) {
+  EXPECT_NEAR(movedCircle(300, 5, openHalf(300, 1000)).contourErrorPct, movedCircle(60, 1, openHalf(60, 1000)).contourErrorPct,
+              0.01);
+}
+
+TEST(CompareFrame, NoiseOfACutContourCountsAsNoise) {
+  Polyline half = openHalf(100, 1000);
+  std::mt19937 engine(3);
+  std::normal_distribution<double> gauss(0, 0.2);
+  for (Pixel& p : half.points) p += gauss(engine) * (p - Pixel(639.5, 1000)).normalized();
+  const double mean = 0.2 * std::sqrt(2 / M_PI);  // of |gauss|; the way back finds nearer places
+  const double error = movedCircle(100, 0, half).contourErrorPx;
+  EXPECT_GT(error, 0.3 * mean);
+  EXPECT_LT(error, 1.1 * mean);
+}
+
+TEST(CompareFrame, WhatFillsTheImageOrLiesOutsideHasNoError) {
+  const Polyline frame{{{0, 0}, {639, 0}, {639, 479}, {0, 479}}, true};
+  const FrameComparison full =
+      compareFrame(observed({frame}, true), "lamp", imageOf(640, 480), predicted({circle(320, 240, 900)}));
+  ASSERT_EQ(full.rows.size(), 1u);
+  ASSERT_TRUE(full.rows[0].metrics);
+  EXPECT_EQ(full.rows[0].metrics->contourErrorPx, 0);
+  EXPECT_GT(full.iou, 0.999);
+  EXPECT_TRUE(compareFrame(observed({circle(900, 100, 20)}, true), "lamp", imageOf(640, 480), Prediction{}).rows.empty());
+  EXPECT_TRUE(compareFrame(observed({circle(900, 100, 20)}, true), "lamp", imageOf(640, 480), predicted({circle(903, 100, 20)}))
+                  .rows.empty());
 }
 
 TEST(CompareFrame, AnUnreadableFrameKeepsItsReason) {
