@@ -18,6 +18,9 @@ constexpr double kTogether = 0.5;       // of the cells, independent ones: noise
 // Of the logarithm of the codes' variance. Right curves leave 0.2 (gamma 2.2 in noise) to 3 less than sRGB; wrong ones leave up to
 // 0.01 less where JPEG's blocks or a lobe in two parts are what remains.
 constexpr double kClearlyLess = 0.15;
+// The same where what remains still goes together: a lobe in two parts or a roughness that varies leaves up to 0.4 less through a
+// wrong curve, a filmic curve 0.6 to 1 less through an S-curve.
+constexpr double kFarLess = 0.5;
 constexpr double kExplains = 0.1;  // of the cells, independent ones: right curves leave a fifth in noise, two lobes a thirtieth
 constexpr double kBeyondChance = 15;  // of the logarithm of the likelihood: noise gains one or two
 /// Of raw converters, old Macs and displays, and contrasts of developed photographs.
@@ -179,7 +182,8 @@ std::string responseDoubt(const Scene& scene, FrameSource source, const std::vec
   if (best->response.kind() == CameraResponse::Kind::SCurve) best = trials.bestContrast(*best);
   const double independent = best->fit.independentCells;
   const double gain = given->left.logVariance - best->left.logVariance;
-  if (!(gain > kClearlyLess && gain / 2 * independent > kBeyondChance && independent > kExplains * best->fit.cells)) return "";
+  const double least = independent > kExplains * best->fit.cells ? kClearlyLess : kFarLess;
+  if (!(gain > least && gain / 2 * independent > kBeyondChance)) return "";
   const std::string text = best->response.text();
   return formatted(
       "no response of the camera is stated, and the pixels of the highlights do not follow the sRGB curve: read as %s, the fit "

@@ -71,7 +71,7 @@ TEST(ResponseDoubt, LinearCodesAndPowersAreNamedAndSrgbIsNot) {
 
 TEST(ResponseDoubt, AnSCurveIsNamedWithItsContrast) {
   GLINT_NEEDS_SHARED_DATA();
-  const double contrast = 0.42;
+  constexpr double contrast = 0.42;
   const std::string said = saidOf([](double light, double) {
     const double code = srgbFromLinear(light);
     return code - contrast * std::sin(2 * std::numbers::pi * code) / (2 * std::numbers::pi);
