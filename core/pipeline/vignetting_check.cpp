@@ -12,9 +12,9 @@
 namespace glint {
 namespace {
 
-constexpr int kPoints = 1500;            // of a view: the loss is good to 2 % of the light where noise is a tenth of it
+constexpr int kFallPoints = 1500;        // of a view: the loss is good to 2 % of the light where noise is a tenth of it
 constexpr std::size_t kFewestViews = 3;  // of a point, so that one that is off does not lead
-constexpr std::size_t kFewestPoints = 200;
+constexpr std::size_t kFewestFallPoints = 200;
 constexpr double kDarkest = 0.15;    // of the bright points: ratios of darker ones are noise
 constexpr double kLeastLoss = 0.15;  // moves contours by less than 0.1 % below
 constexpr double kSure = 8;          // standard deviations; neighbouring points are not independent
@@ -24,7 +24,7 @@ constexpr double kOutliers = 3;      // spreads beyond which a value counts less
 // like a loss of 10 to 80 %, have slopes of half of it or losses along the axes of twice as much.
 constexpr double kAlike = 1.6, kSlope = 0.25;
 constexpr double kRidge = 1e-9;           // of the trace: tails that no view shows stay zero
-constexpr double kExact = 1e-9;           // spread of exact pictures
+constexpr double kFallSpread = 0.02;      // a code of 8 bits: values that are quantised alike must not lead
 constexpr double kNormalMedian = 1.4826;  // standard deviations in a median of absolute ones
 
 using Terms = std::vector<double> (*)(const Eigen::Vector2d& place);
@@ -66,7 +66,7 @@ std::vector<PointSightings> rowsOf(const Points& points, const std::vector<Eigen
 }
 
 /// Takes each point's own mean off.
-void centre(std::vector<PointSightings>& rows) {
+void takeMeansOff(std::vector<PointSightings>& rows) {
   for (PointSightings& point : rows) {
     double sum = 0, value = 0;
     Eigen::VectorXd row = Eigen::VectorXd::Zero(point.front().row.size());
@@ -91,7 +91,7 @@ FittedFall fittedFall(std::vector<PointSightings> rows, Eigen::Index own) {
   const Eigen::Index n = rows.front().front().row.size();
   FittedFall fitted;
   for (int round = 0; round < kReweightings; ++round) {
-    centre(rows);
+    takeMeansOff(rows);
     Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(n, n);
     Eigen::VectorXd right = Eigen::VectorXd::Zero(n);
     for (const PointSightings& point : rows)
@@ -105,7 +105,7 @@ FittedFall fittedFall(std::vector<PointSightings> rows, Eigen::Index own) {
     std::vector<double> left;
     for (const PointSightings& point : rows)
       for (const Sighting& s : point) left.push_back(std::abs(s.value - solved.dot(s.row)));
-    const double spread = std::max(kNormalMedian * upperMedian(left), kExact);
+    const double spread = std::max(kNormalMedian * upperMedian(left), kFallSpread);
     for (PointSightings& point : rows)
       for (Sighting& s : point) s.weight = 1 / (1 + std::pow((s.value - solved.dot(s.row)) / (kOutliers * spread), 2));
     fitted.terms = solved.tail(own);
@@ -117,7 +117,7 @@ FittedFall fittedFall(std::vector<PointSightings> rows, Eigen::Index own) {
 }  // namespace
 
 std::optional<Vignetting> vignettingOf(const TexturePanel& panel) {
-  Points points = panel.sightings(kPoints);
+  Points points = panel.sightings(kFallPoints);
   std::vector<double> bright;
   for (const auto& point : points)
     for (const TexturePanel::Sample& s : point) bright.push_back(s.value);
@@ -126,7 +126,7 @@ std::optional<Vignetting> vignettingOf(const TexturePanel& panel) {
   std::erase_if(points, [&](const std::vector<TexturePanel::Sample>& point) {
     return point.size() < kFewestViews || !(meanOf(point) > least);
   });
-  if (points.size() < kFewestPoints) return std::nullopt;
+  if (points.size() < kFewestFallPoints) return std::nullopt;
   std::vector<Eigen::Vector2d> middles;
   for (const TextureView& view : panel.views()) middles.emplace_back((view.value.width - 1) / 2.0, (view.value.height - 1) / 2.0);
   const FittedFall fall = fittedFall(rowsOf(points, middles, radial), 1), any = fittedFall(rowsOf(points, middles, anySmooth), 5);
