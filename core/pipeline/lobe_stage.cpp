@@ -7,9 +7,11 @@
 #include <map>
 #include <set>
 
+#include "core/base/evenly.h"
 #include "core/base/number_text.h"
 #include "core/base/progress.h"
 #include "core/model/model.h"
+#include "core/model/models.h"
 #include "core/model/pixel_evidence.h"
 #include "core/model/reflectance_settings.h"
 #include "core/pipeline/depth_motion.h"
@@ -19,6 +21,7 @@
 #include "core/pipeline/response_check.h"
 #include "core/pipeline/stage_inputs.h"
 #include "core/pipeline/training.h"
+#include "core/pipeline/vignetting_check.h"
 #include "core/reflectance/pixel_fit.h"
 
 namespace glint {
@@ -68,6 +71,31 @@ bool takesAnyLobe(const Settings& settings) {
                      [&](const char* key) { return settings.text(key) == any.text(key); });
 }
 
+/// A lobe as wide as the contours say, for pixels that no lobe explained.
+std::optional<LobeModel> startOf(const std::vector<TrainingView>& views, const Light& light) {
+  constexpr int kPoints = 36;  // of a contour
+  const double alpha = medianContourAngle(views, light, kPoints);
+  if (!(alpha > 0)) return std::nullopt;
+  LobeModel start;
+  start.lamp = light;
+  start.roughness = std::min(std::tan(alpha) / std::sqrt(std::log(2.0)), 1.0);  // of a Gaussian at half of its peak
+  return start;
+}
+
+/// Whether the pixels are what the codes of the images mean, and nothing was taken off.
+bool showCodes(const Inspection& r, const std::vector<TrainingView>& views) {
+  return std::all_of(views.begin(), views.end(), [&](const TrainingView& v) {
+    const FrameEvidence& e = r.evidence[static_cast<std::size_t>(v.frame)];
+    return !e.diffuse && e.separated.empty();
+  });
+}
+
+void addDoubt(Inspection& r, const FitKey& key, const std::string& doubt) {
+  if (doubt.empty()) return;
+  std::string& all = r.responseDoubts[key];
+  all += (all.empty() ? "" : "; ") + doubt;
+}
+
 /// One light's. What fails is kept with its question.
 void fitLobe(Inspection& r, const FitKey& key, const std::vector<TrainingView>& views, const ProgressFn& goesOn) {
   // The start is the same whatever the settings of the light are: they do not matter to where the fit ends.
@@ -76,15 +104,53 @@ void fitLobe(Inspection& r, const FitKey& key, const std::vector<TrainingView>& 
   const Settings settings = anyLobe(r.request.settings);
   Outcome<PixelFit> fit = fitViewsPixels(views, light, settings, goesOn);
   ++r.work.pixelFits;
+  const std::optional<LobeModel> start = fit     ? asksForResponse(*fit) ? std::optional(fit->model) : std::nullopt
+                                         : light ? startOf(views, light->light)
+                                                 : std::nullopt;
+  if (start && showCodes(r, views))
+    addDoubt(r, key, responseDoubt(*r.scene, r.inputs.lobes->evidence.source, views, *start, goesOn));
   if (fit) {
-    if (std::string doubt = responseDoubt(*r.scene, r.inputs.lobes->evidence.source, views, *fit, goesOn); !doubt.empty())
-      r.responseDoubts.insert_or_assign(key, std::move(doubt));
     r.pixelFits.insert_or_assign(key, std::make_shared<const PixelFit>(*std::move(fit)));
     return;
   }
   r.pixelFits.insert_or_assign(key, fit.failure());
   r.unexplained.insert_or_assign(
       key, std::make_shared<const UnexplainedPixels>(UnexplainedPixels{views, light, settings, fit.failure()}));
+}
+
+bool isPhotograph(const Frame& frame, FrameSource source) {
+  return !frame.image.empty() && (source == FrameSource::Image || frame.radiance.empty());
+}
+
+/// Light that falls towards the corners of the training frames' photographs, by surface.
+void addVignetting(Inspection& r, const std::vector<int>& frames, const SurfaceOfFrame& surfaceOf) {
+  constexpr std::size_t kMostViews = 6, kFewestViews = 4;  // more tell no more; of three, each point has hardly two more
+  const EvidenceInputs& asked = r.inputs.lobes->evidence;
+  std::map<std::string, std::vector<int>> bySurface;
+  for (const int f : frames) {
+    const Frame& frame = r.scene->frames[static_cast<std::size_t>(f)];
+    if (isPhotograph(frame, asked.source) && !frame.surface.empty() &&
+        frame.lightsOn == r.scene->frames[static_cast<std::size_t>(frames.front())].lightsOn)
+      bySurface[r.surfaces->keyOf(f)].push_back(f);
+  }
+  for (const auto& [key, own] : bySurface) {
+    const std::shared_ptr<const Surface> surface = surfaceOf(own.front());
+    if (!surface || own.size() < kFewestViews) continue;
+    std::vector<TextureView> views;
+    for (const int f : evenly(own, kMostViews)) {
+      Outcome<TextureView> view = textureView(*r.scene, f, asked.source, asked.detect, *surface);
+      if (!view) continue;
+      view->spots = lobeSpots(r.evidence[static_cast<std::size_t>(f)].highlights);
+      views.push_back(*std::move(view));
+    }
+    if (views.size() < kFewestViews) continue;
+    const std::size_t count = views.size();
+    const std::string remark = vignettingRemark(vignettingOf(TexturePanel(std::move(views), surface)), count);
+    if (remark.empty()) continue;
+    for (const int f : own)
+      for (const Highlight& h : r.evidence[static_cast<std::size_t>(f)].highlights)
+        if (std::string& said = r.responseDoubts[r.keyFor(f, h.light)]; said.empty()) said = remark;
+  }
 }
 
 }  // namespace
@@ -159,6 +225,7 @@ void fitLobes(Inspection& r, const SurfaceOfFrame& surfaceOf, bool together, con
       r.patches[s.ids[i]] = s.views[i].pixels;
       groups[r.keyFor(s.views[i].frame, s.views[i].highlight.light)].push_back(s.views[i]);
     }
+  addVignetting(r, frames, surfaceOf);
   int done = 0;
   const auto goesOn = [&](const StageEvent&) { return report(progress, {"lobe", done, static_cast<int>(groups.size())}); };
   for (const auto& [key, views] : groups) {

@@ -197,7 +197,9 @@ void TexturePanel::look(const SurfacePoint& at, int except, const std::vector<do
     const std::optional<Pixel> ideal = idealPlace(view, at);
     if (!ideal) continue;
     Sample s;
-    s.value = gains[j] * sampled(view.value, view.camera.hasDistortion() ? view.camera.distorted(*ideal) : *ideal);
+    s.view = j;
+    s.at = view.camera.hasDistortion() ? view.camera.distorted(*ideal) : *ideal;
+    s.value = gains[j] * sampled(view.value, s.at);
     if (!std::isfinite(s.value)) continue;
     s.radius2 = std::numeric_limits<double>::infinity();
     for (const LobeSpot& spot : view.spots) {
@@ -294,6 +296,23 @@ std::vector<std::vector<TexturePanel::Sample>> TexturePanel::pointsInTails() con
     });
   }
   return points;
+}
+
+std::vector<std::vector<TexturePanel::Sample>> TexturePanel::sightings(int points) const {
+  std::vector<std::vector<Sample>> found;
+  std::vector<Sample> samples;
+  const std::vector<double> asTheyAre(views_.size(), 1);
+  for (const TextureView& view : views_) {
+    std::size_t on = 0;
+    for (const float d : view.distance.data) on += std::isfinite(d);
+    const int step = view.stride * std::max(1, static_cast<int>(std::sqrt(static_cast<double>(on) / points)));
+    overSurface(view, step, [&](int, int, const SurfacePoint& at) {
+      look(at, -1, asTheyAre, samples);
+      std::erase_if(samples, [](const Sample& s) { return s.radius2 < kSurelyBeside2; });
+      if (samples.size() > 1) found.push_back(samples);
+    });
+  }
+  return found;
 }
 
 double TexturePanel::withoutTails(const Sample& s) const { return s.value - tails_[0] * s.tail[0] - tails_[1] * s.tail[1]; }

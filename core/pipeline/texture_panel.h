@@ -43,6 +43,14 @@ Outcome<TextureView> textureView(const Scene& scene, int frame, FrameSource sour
 /// Q around the spots of view j; a and b are shared by all points and views, and D is eliminated.
 class TexturePanel {
  public:
+  /// What a view shows of a surface point.
+  struct Sample {
+    std::size_t view = 0;              ///< by index into views()
+    Pixel at{0, 0};                    ///< measured
+    double value = 0, radius2 = 0;     ///< of the nearest spot
+    std::array<double, 2> tail{0, 0};  ///< Gaussian, GGX; in values
+  };
+
   TexturePanel(std::vector<TextureView> views, std::shared_ptr<const Surface> surface);
 
   /// What lies under a view's highlights: at every pixel on the surface, from the views of the panel without the view itself. Not
@@ -52,14 +60,13 @@ class TexturePanel {
   Image underByMedian(const TextureView& view) const;
 
   std::vector<TextureView>& views() { return views_; }
+  const std::vector<TextureView>& views() const { return views_; }
   /// Fits the tails to the surroundings of all spots, once these are known.
   void fitTails();
+  /// About so many surface points of each view, as all views show them that see them beside their spots.
+  std::vector<std::vector<Sample>> sightings(int points) const;
 
  private:
-  struct Sample {
-    double value = 0, radius2 = 0;     ///< of the nearest spot
-    std::array<double, 2> tail{0, 0};  ///< Gaussian, GGX; in values
-  };
   /// What the other views show of a surface point, each in the exposure of `gains`.
   void look(const SurfacePoint& at, int except, const std::vector<double>& gains, std::vector<Sample>& samples) const;
   /// Factor that brings each view of the panel to the exposure of this one: the median ratio over the surface.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <numbers>
 #include <optional>
 
 #include "core/base/atomic_file.h"
@@ -94,11 +95,27 @@ double interpolated(const std::vector<double>& xs, const std::vector<double>& ys
   return std::lerp(ys[i - 1], ys[i], t);
 }
 
+double withContrast(double code, double strength) {
+  return code - strength * std::sin(2 * std::numbers::pi * code) / (2 * std::numbers::pi);
+}
+
+/// The code before contrast was added.
+double withoutContrast(double code, double strength) {
+  if (!(code > 0 && code < 1)) return code;
+  double low = 0, high = 1;
+  constexpr int kHalvings = 52;  // to the last bit
+  for (int i = 0; i < kHalvings; ++i) {
+    const double middle = (low + high) / 2;
+    (withContrast(middle, strength) < code ? low : high) = middle;
+  }
+  return (low + high) / 2;
+}
+
 }  // namespace
 
 std::optional<CameraResponse> CameraResponse::named(const std::string& text, const std::string& file, const std::string& place) {
   CameraResponse response;
-  const std::string prefix = "gamma:";
+  const std::string prefix = "gamma:", contrast = "s-curve:";
   if (text == "srgb") {
     response.kind_ = Kind::Srgb;
   } else if (text == "linear") {
@@ -108,7 +125,13 @@ std::optional<CameraResponse> CameraResponse::named(const std::string& text, con
     if (!gamma || !(*gamma >= kLeastGamma && *gamma <= kMostGamma))
       throw InputError(file, place, "expected gamma:G with a number G from 0.1 to 10, such as gamma:2.2");
     response.kind_ = Kind::Gamma;
-    response.gamma_ = *gamma;
+    response.number_ = *gamma;
+  } else if (text.starts_with(contrast)) {
+    const std::optional<double> strength = io::numberOf(std::string_view(text).substr(contrast.size()));
+    if (!strength || !(std::abs(*strength) <= kMostContrast))
+      throw InputError(file, place, "expected s-curve:S with a number S from -0.95 to 0.95, such as s-curve:0.5");
+    response.kind_ = Kind::SCurve;
+    response.number_ = *strength;
   } else {
     return std::nullopt;
   }
@@ -170,7 +193,8 @@ double CameraResponse::lightOf(double code, int channel, bool isLinear) const {
     case Kind::ByFileType: return isLinear ? code : linearFromSrgb(code);
     case Kind::Srgb: return linearFromSrgb(code);
     case Kind::Linear: return code;
-    case Kind::Gamma: return std::pow(std::max(code, 0.0), gamma_);
+    case Kind::Gamma: return std::pow(std::max(code, 0.0), number_);
+    case Kind::SCurve: return linearFromSrgb(withoutContrast(code, number_));
     case Kind::Table: break;
   }
   return interpolated(table_->codes, table_->lights[static_cast<std::size_t>(channel)], code);
@@ -182,7 +206,8 @@ double CameraResponse::codeOf(double light, int channel, bool isLinear) const {
     case Kind::ByFileType: return isLinear ? light : srgbFromLinear(light);
     case Kind::Srgb: return srgbFromLinear(light);
     case Kind::Linear: return light;
-    case Kind::Gamma: return std::pow(light, 1 / gamma_);
+    case Kind::Gamma: return std::pow(light, 1 / number_);
+    case Kind::SCurve: return withContrast(srgbFromLinear(light), number_);
     case Kind::Table: break;
   }
   return interpolated(table_->lights[static_cast<std::size_t>(channel)], table_->codes, light);
@@ -193,11 +218,13 @@ std::string CameraResponse::text() const {
     case Kind::ByFileType: return "";
     case Kind::Srgb: return "srgb";
     case Kind::Linear: return "linear";
-    case Kind::Gamma: break;
+    case Kind::Gamma:
+    case Kind::SCurve: break;
     case Kind::Table: return file_.string();
   }
   char buffer[32];
-  return "gamma:" + std::string(buffer, std::to_chars(buffer, buffer + sizeof buffer, gamma_).ptr);
+  return (kind_ == Kind::Gamma ? "gamma:" : "s-curve:") +
+         std::string(buffer, std::to_chars(buffer, buffer + sizeof buffer, number_).ptr);
 }
 
 std::string CameraResponse::words(bool isLinear) const {
@@ -205,7 +232,8 @@ std::string CameraResponse::words(bool isLinear) const {
     case Kind::ByFileType: return isLinear ? "taken as linear, as the files say" : "through the sRGB curve";
     case Kind::Srgb: return "through the sRGB curve";
     case Kind::Linear: return "taken as linear";
-    case Kind::Gamma: return formatted("to the power of %g", gamma_);
+    case Kind::Gamma: return formatted("to the power of %g", number_);
+    case Kind::SCurve: return formatted("through the sRGB curve with an S-curve of contrast %g", number_);
     case Kind::Table: return "through the curve of " + file_.filename().string();
   }
   return "";
@@ -218,7 +246,7 @@ std::string CameraResponse::doubt() const {
   // Half the codes hold half the light in a linear camera; noise of a measured curve is below this.
   constexpr double kMoreThanLinear = 0.55;
   if (most <= kMoreThanLinear) return "";
-  const double inverse = 1 / gamma_;
+  const double inverse = 1 / number_;
   return formatted(
              "the camera response gives %.0f %% of the light at half of the largest code, but cameras give less than half: ",
              100 * most) +
@@ -233,7 +261,7 @@ CameraResponse readResponseJson(const JsonNode& camera, const fs::path& folder, 
   if (std::optional<CameraResponse> known = CameraResponse::named(text, node->file(), node->place())) return *known;
   const fs::path file = resolveInside(folder, text, rights, node->file(), node->place());
   std::error_code ignored;  // a file that cannot be looked at counts as missing
-  if (!fs::is_regular_file(file, ignored)) node->fail("'" + text + "' is neither srgb, linear, gamma:G, nor a file");
+  if (!fs::is_regular_file(file, ignored)) node->fail("'" + text + "' is neither srgb, linear, gamma:G, s-curve:S, nor a file");
   return CameraResponse::ofFile(file);
 }
 

@@ -23,14 +23,16 @@ class CameraResponse {
     Srgb,        ///< IEC 61966-2-1
     Linear,      ///< light = code
     Gamma,       ///< light = code^gamma
-    Table        ///< measured: a file
+    SCurve,  ///< more contrast than sRGB, as developers of photographs add: code = c - S sin(2 pi c) / (2 pi), c the sRGB code
+    Table    ///< measured: a file
   };
   static constexpr double kLeastGamma = 0.1, kMostGamma = 10;  ///< beyond, an 8-bit image has no more than a few shades
+  static constexpr double kMostContrast = 0.95;  ///< of S, either sign: at 1 the codes of the darkest light would stand still
 
   /// The response where nothing is stated.
   CameraResponse() = default;
-  /// "srgb", "linear", "gamma:G". Nothing for another text, which then names a file.
-  /// InputError (file, place) for a gamma that is not a number of the range above.
+  /// "srgb", "linear", "gamma:G", "s-curve:S". Nothing for another text, which then names a file.
+  /// InputError (file, place) for a G or S that is not a number of the range above.
   static std::optional<CameraResponse> named(const std::string& text, const std::string& file, const std::string& place);
   /// A measured response. One line per code, in rising order: `light` (codes equally spaced from 0), `code light`, `red green
   /// blue`, or `code red green blue`; or one line of all lights. Separated by blanks, commas or semicolons; '#' begins a comment;
@@ -43,13 +45,15 @@ class CameraResponse {
 
   Kind kind() const { return kind_; }
   bool isStated() const { return kind_ != Kind::ByFileType; }
+  /// G of Kind::Gamma, S of Kind::SCurve.
+  double number() const { return number_; }
   /// The file of Kind::Table, absolute; else empty.
   const std::filesystem::path& file() const { return file_; }
   /// Light of a code of this colour channel (0 to 2). `isLinear`: what a response that is not stated becomes.
   double lightOf(double code, int channel, bool isLinear = false) const;
   /// Code of a light; both are clamped to [0, 1]. The inverse of `lightOf`; the smallest code where several have this light.
   double codeOf(double light, int channel, bool isLinear = false) const;
-  /// "srgb", "linear", "gamma:2.2", or the path of a table's file as it stands in `file`; "" where nothing is stated.
+  /// "srgb", "linear", "gamma:2.2", "s-curve:0.5", or the path of a table's file as it stands in `file`; "" where nothing is stated.
   std::string text() const;
   /// For people: "the sRGB curve", "code to the power of 2.2", "the curve in response.csv".
   std::string words(bool isLinear = false) const;
@@ -58,7 +62,7 @@ class CameraResponse {
   std::string doubt() const;
 
   friend bool operator==(const CameraResponse& a, const CameraResponse& b) {
-    return a.kind_ == b.kind_ && a.gamma_ == b.gamma_ && a.file_ == b.file_;
+    return a.kind_ == b.kind_ && a.number_ == b.number_ && a.file_ == b.file_;
   }
 
  private:
@@ -69,7 +73,7 @@ class CameraResponse {
   static Table readTable(const std::string& text, const std::string& file);
 
   Kind kind_ = Kind::ByFileType;
-  double gamma_ = 1;
+  double number_ = 1;  ///< G or S
   std::filesystem::path file_;
   std::shared_ptr<const Table> table_;
 };

@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <functional>
+#include <numbers>
 #include <opencv2/imgcodecs.hpp>
+#include <random>
+#include <string>
 
 #include "core/base/image.h"
 #include "core/pipeline/inspection.h"
@@ -16,40 +21,91 @@ namespace {
 
 using namespace testing_support;
 
-/// What the fit says of the response, where the codes are light to the power of 1 / gamma; 0: as they are.
-std::string saidOf(double gamma) {
+using Recode = std::function<double(double light, double radius2)>;
+
+/// What the fit says of response and vignetting, where codes are this function of the light and of the squared distance from the
+/// middle, 1 in the corners; empty: as they are.
+std::string saidOf(const Recode& recode, int frames = 4) {
   const TemporaryFolder folder;
   Scene scene = readScene(std::filesystem::path(GLINT_SHARED_DIR) / "data/cycles/sphere/scene-analytic.json");
   for (Frame& frame : scene.frames) {
     frame.radiance.clear();
-    if (gamma == 0) continue;
+    if (!recode) continue;
     cv::Mat codes = cv::imread(frame.image.string(), cv::IMREAD_COLOR);
+    const double cx = (codes.cols - 1) / 2.0, cy = (codes.rows - 1) / 2.0;
     for (int y = 0; y < codes.rows; ++y)
       for (int x = 0; x < codes.cols; ++x)
         for (int c = 0; c < 3; ++c) {
           unsigned char& code = codes.at<cv::Vec3b>(y, x)[c];
-          code = static_cast<unsigned char>(std::lround(255 * std::pow(linearFromSrgb(code / 255.0), 1 / gamma)));
+          const double radius2 = ((x - cx) * (x - cx) + (y - cy) * (y - cy)) / (cx * cx + cy * cy);
+          code =
+              static_cast<unsigned char>(std::lround(255 * std::clamp(recode(linearFromSrgb(code / 255.0), radius2), 0.0, 1.0)));
         }
     frame.image = folder / (frame.id + ".png");
     cv::imwrite(frame.image.string(), codes);
   }
   InspectionRequest request;
   request.models = {"limit-angle"};
-  request.train = "spread:4";
+  request.train = "spread:" + std::to_string(frames);
   request.source = FrameSource::Image;
   const Inspection r = inspect(std::make_shared<const Scene>(std::move(scene)), request);
   const Outcome<ModelFit>& fit = r.models.at("limit-angle").fits.at(0).fit;
   if (!fit) return fit.failure().message();
   for (const std::string& remark : fit->remarks)
-    if (remark.find("no response of the camera") != std::string::npos) return remark;
+    if (remark.find("no response of the camera") != std::string::npos || remark.find("vignetting") != std::string::npos)
+      return remark;
   return "";
 }
 
-TEST(ResponseDoubt, LinearCodesAndAPowerAreNamedAndSrgbIsNot) {
+Recode power(double gamma) {
+  return [gamma](double light, double) { return std::pow(light, 1 / gamma); };
+}
+
+TEST(ResponseDoubt, LinearCodesAndPowersAreNamedAndSrgbIsNot) {
   GLINT_NEEDS_SHARED_DATA();
-  EXPECT_EQ(saidOf(0), "");
-  EXPECT_NE(saidOf(1).find("\"response\": \"linear\""), std::string::npos) << saidOf(1);
-  EXPECT_NE(saidOf(1.8).find("\"response\": \"gamma:1.8\""), std::string::npos) << saidOf(1.8);
+  EXPECT_EQ(saidOf({}), "");
+  EXPECT_NE(saidOf(power(1)).find("\"response\": \"linear\""), std::string::npos) << saidOf(power(1));
+  EXPECT_NE(saidOf(power(1.8)).find("\"response\": \"gamma:1.8\""), std::string::npos) << saidOf(power(1.8));
+  EXPECT_NE(saidOf(power(2.2)).find("\"response\": \"gamma:2.2\""), std::string::npos) << saidOf(power(2.2));
+}
+
+TEST(ResponseDoubt, AnSCurveIsNamedWithItsContrast) {
+  GLINT_NEEDS_SHARED_DATA();
+  constexpr double contrast = 0.42;
+  const std::string said = saidOf([](double light, double) {
+    const double code = srgbFromLinear(light);
+    return code - contrast * std::sin(2 * std::numbers::pi * code) / (2 * std::numbers::pi);
+  });
+  const std::string before = "\"response\": \"s-curve:";
+  ASSERT_NE(said.find(before), std::string::npos) << said;
+  EXPECT_NEAR(std::stod(said.substr(said.find(before) + before.size())), contrast, 0.02) << said;
+}
+
+/// Values that say nothing of a curve: as noise grows, nothing false is said.
+TEST(ResponseDoubt, NoiseNamesNoCurve) {
+  GLINT_NEEDS_SHARED_DATA();
+  std::mt19937 random(1);
+  std::normal_distribution<double> noise(0, 4 / 255.0);
+  EXPECT_EQ(saidOf([&](double light, double) { return srgbFromLinear(light) + noise(random); }), "");
+}
+
+TEST(Vignetting, IsNamedWithItsSize) {
+  GLINT_NEEDS_SHARED_DATA();
+  const auto darker = [](double loss) {
+    return Recode([loss](double light, double radius2) { return srgbFromLinear(light * (1 - loss * radius2)); });
+  };
+  for (const double loss : {0.25, 0.5}) {
+    const std::string said = saidOf(darker(loss), 6), before = "about ";
+    ASSERT_NE(said.find("vignetting"), std::string::npos) << said;
+    EXPECT_NEAR(std::stod(said.substr(said.find(before) + before.size())), 100 * loss, 3) << said;
+  }
+  EXPECT_EQ(saidOf(darker(0.05), 6), "");  // below what matters
+}
+
+/// Three views: too few for it.
+TEST(Vignetting, FewViewsSayNothing) {
+  GLINT_NEEDS_SHARED_DATA();
+  EXPECT_EQ(saidOf([](double light, double radius2) { return srgbFromLinear(light * (1 - 0.4 * radius2)); }, 3), "");
 }
 
 }  // namespace

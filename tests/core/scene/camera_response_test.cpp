@@ -60,6 +60,10 @@ TEST(CameraResponse, NamedOnesAreTheirClosedForms) {
   EXPECT_NEAR(known("linear").lightOf(0.3, 1), 0.3, kExact);
   EXPECT_NEAR(known("gamma:2").lightOf(0.3, 2), 0.09, kExact);
   EXPECT_NEAR(known("gamma:0.5").lightOf(0.09, 2), 0.3, kExact);
+  EXPECT_NEAR(known("s-curve:0.5").codeOf(0.2158605, 0), 128 / 255.0 + 0.5 * 0.0019607, 1e-6);  // sin(2 pi (c - 1/2)) is small
+  EXPECT_NEAR(known("s-curve:0.5").codeOf(0.0508761, 0), 0.25 - 0.5 / (2 * 3.14159265), 1e-6);  // c = 1/4: sin = 1
+  EXPECT_NEAR(known("s-curve:0.5").lightOf(0.25 - 0.5 / (2 * 3.14159265), 1), 0.0508761, 1e-6);
+  EXPECT_NEAR(known("s-curve:0").lightOf(128 / 255.0, 2), 0.2158605, 1e-7);
   EXPECT_NEAR(CameraResponse().lightOf(128 / 255.0, 0), 0.2158605, 1e-7);
   EXPECT_NEAR(CameraResponse().lightOf(0.3, 0, true), 0.3, kExact);
   EXPECT_EQ(CameraResponse::named("curve.csv", "f", "p"), std::nullopt);
@@ -192,7 +196,7 @@ std::string sceneWith(const std::string& response) {
 TEST(CameraResponse, ASceneKeepsItAndItsFile) {
   const TemporaryFolder folder;
   folder.write("curves/camera.csv", kColours);
-  for (const char* text : {"srgb", "linear", "gamma:2.2", "curves/camera.csv"}) {
+  for (const char* text : {"srgb", "linear", "gamma:2.2", "s-curve:0.5", "curves/camera.csv"}) {
     const Scene scene = readScene(folder.write("scene.json", sceneWith(text)));
     EXPECT_THAT(scene.warnings, IsEmpty());
     writeScene(scene, folder / "again.json");
@@ -209,8 +213,10 @@ TEST(CameraResponse, ASceneIsRefusedWithPlaceAndReason) {
   const auto refused = [&](const std::string& response) {
     return inputErrorOf([&] { readScene(folder.write("scene.json", sceneWith(response))); });
   };
-  EXPECT_THAT(refused("sRGB"), HasSubstr("scene.json: camera.response: 'sRGB' is neither srgb, linear, gamma:G, nor a file"));
+  EXPECT_THAT(refused("sRGB"),
+              HasSubstr("scene.json: camera.response: 'sRGB' is neither srgb, linear, gamma:G, s-curve:S, nor a file"));
   EXPECT_THAT(refused("gamma:x"), HasSubstr("scene.json: camera.response: expected gamma:G"));
+  EXPECT_THAT(refused("s-curve:1"), HasSubstr("scene.json: camera.response: expected s-curve:S with a number S from -0.95 to"));
   EXPECT_THAT(refused("../curve.csv"), HasSubstr("camera.response"));
   folder.write("curve.csv", "0 1\n255 0\n");
   EXPECT_THAT(refused("curve.csv"), HasSubstr("curve.csv: line 2: light must not fall"));
@@ -238,16 +244,17 @@ TEST(CameraResponse, ASessionKeepsTheOption) {
       if (std::string(option.flag) == "--response") option.set(c, text);
     return c;
   };
-  for (const std::string& text : {std::string("srgb"), std::string("gamma:2.2"), curve.string()}) {
+  for (const std::string& text : {std::string("srgb"), std::string("gamma:2.2"), std::string("s-curve:0.5"), curve.string()}) {
     const InputChoices c = given(text);
     const std::string json = toJson(c, [&](const fs::path& p) { return p.lexically_relative(folder.path()).string(); }).dump();
     const InputChoices again = readInputChoices(JsonNode::parse(json, "s.glint"), folder.path());
     EXPECT_EQ(again, c) << json;
     EXPECT_EQ(responseOf(again).text(), text);
   }
-  EXPECT_THAT(inputErrorOf([&] { given("sRGB"); }), HasSubstr("--response sRGB: is neither srgb, linear, gamma:G, nor a file"));
+  EXPECT_THAT(inputErrorOf([&] { given("sRGB"); }),
+              HasSubstr("--response sRGB: is neither srgb, linear, gamma:G, s-curve:S, nor a file"));
   EXPECT_THAT(inputErrorOf([&] { readInputChoices(JsonNode::parse(R"({"response": "curve.csv"})", "s.glint"), folder.path()); }),
-              HasSubstr("s.glint: response: must be srgb, linear or gamma:G"));
+              HasSubstr("s.glint: response: must be srgb, linear, gamma:G or s-curve:S"));
 }
 
 }  // namespace
