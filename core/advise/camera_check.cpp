@@ -55,11 +55,11 @@ class Check {
       return std::move(result_);
     }
     asGiven_ = lampAfter({});
-    if (std::string moves = movesWithCamera(); !moves.empty()) {
+    if (const std::string moves = movesWithCamera(); !moves.empty()) {
       const Scene there = inCameras(scene_);
-      CameraCheck check = Check(there, progress_).run();
-      check.lightFrame = std::move(moves);
-      return check;
+      result_ = Check(there, progress_).run();
+      result_.lightFrame = moves;
+      return std::move(result_);
     }
     if (asGiven_ && asGiven_->miss < EIGEN_PI / 2) result_.missDeg = asGiven_->miss * kDegrees;
     const std::optional<Fitted> given = asGiven_ ? fit({}, *asGiven_, agreeing(*asGiven_), {}) : std::nullopt;
@@ -442,16 +442,14 @@ class Check {
       if (!evidence.highlights.empty()) areas.push_back(evidence.highlights.front().areaPx2);
     }
     const double least = settings_.number("detect.min_area");
-    if (2 * areas.size() > searched_.size())
-      result_.findings.push_back(
-          formatted("the highlights are too small: %zu of %zu frames show one, of about %.2g px^2 (median), and detection "
-                    "takes them from %g px^2 on (--set detect.min_area=%.2g; photographs of more pixels are better)",
-                    areas.size(), searched_.size(), upperMedian(areas), least, kLeastAreaPx2));
-    else
-      result_.findings.push_back(
-          formatted("no highlight was found in any of %zu frames (are they the right photographs? Is the "
-                    "background brighter than the highlight, or the mask of another part?)",
-                    searched_.size()));
+    result_.findings.push_back(
+        small
+            ? formatted("the highlights are too small: %zu of %zu frames show one, of about %.2g px^2 (median), and detection "
+                        "takes them from %g px^2 on (--set detect.min_area=%.2g; photographs of more pixels are better)",
+                        areas.size(), searched_.size(), upperMedian(areas), least, kLeastAreaPx2)
+            : formatted("no highlight was found in any of %zu frames (are they the right photographs? Is the background brighter "
+                        "than the highlight, or the mask of another part?)",
+                        searched_.size()));
   }
 
   /// In words, where the mirrored rays meet in the axes of the cameras and not in the world; else "".
@@ -459,10 +457,9 @@ class Check {
     const std::optional<SharedLamp> carried = lampAfter({}, true);
     const double fixed = asGiven_ ? asGiven_->miss : EIGEN_PI;
     if (!carried || !(carried->miss < kMeets) || !(fixed > std::max(2 * carried->miss, kMeets))) return "";
-    return formatted(
-        "the lamp moves with the camera (or the object turned before a camera that stood still): the mirrored rays "
-        "miss it by %.2g degrees, and one that stands still by %s",
-        carried->miss * kDegrees, missText(asGiven_).c_str());
+    return "the lamp moves with the camera (or the object turned before a camera that stood still): the mirrored rays miss it "
+           "by " +
+           formatted("%.2g degrees, and one that stands still by ", carried->miss * kDegrees) + missText(asGiven_);
   }
 
   void sayThatNothingFits(const std::optional<Fitted>& given) {

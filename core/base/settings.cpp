@@ -136,8 +136,9 @@ std::vector<ParamSpec>& params() {
        .symbol = "F",
        .defaultValue = std::string("auto"),
        .choices = {"auto", "world", "camera"},
-       .help = "World: lamps stand still. Camera: they move with the camera, as a flash does, or the object turned before a camera "
-               "that stood still. Auto: the one in which the mirrored rays of the training highlights meet. L stays the same in F.",
+       .help =
+           "World: lamps stand still. Camera: they move with the camera, as a flash does, or the object turned before a camera "
+           "that stood still. Auto: the one in which the mirrored rays of the training highlights meet. L stays the same in F.",
        .stage = "light"},
       {.key = "light.bundle_points",
        .title = "Bundle points",

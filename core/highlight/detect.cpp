@@ -502,8 +502,7 @@ class Detector {
     } else if (peak) {
       h.peak = peak->at + origin;
       h.peakValue = peak->value;
-    } else {
-      // A plateau or a ridge on the border: the pixel is the best.
+    } else {  // a plateau or a ridge on the border: the pixel is the best
       h.peak = Pixel(at.x, at.y) + origin;
       h.peakValue = roi.at(at.x, at.y);
     }
@@ -545,9 +544,8 @@ class Detector {
   }
 
   bool onImageBorder(const std::vector<Pixel>& points, double px) const {
-    return std::any_of(points.begin(), points.end(), [&](const Pixel& q) {
-      return q.x() < px || q.y() < px || q.x() > p_.value.width - 1 - px || q.y() > p_.value.height - 1 - px;
-    });
+    const Eigen::AlignedBox2d inner(Pixel::Constant(px), Pixel(p_.value.width - 1 - px, p_.value.height - 1 - px));
+    return std::any_of(points.begin(), points.end(), [&](const Pixel& q) { return !inner.contains(q); });
   }
 
   /// Strongest first; a region found from two candidates (their boxes overlap) is kept once.

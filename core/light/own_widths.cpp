@@ -116,7 +116,7 @@ std::pair<Eigen::Vector4d, WidthSpread> fittedWidths(const WidthPoints& points, 
   constexpr double kStep = 1e-6, kSettled = 1e-6;  // of unit vectors; of the cost
   constexpr int kTries = 10;
   WidthSpread now = widthSpread(points, light, widths);
-  double damping = 1e-3;
+  double damping = 1e-3;  // as Levenberg and Marquardt start: small against a curvature of 1
   const Eigen::Index n = Eigen::Index(points.all.size());
   for (int round = 0; round < kWidthRounds; ++round) {
     const Eigen::Matrix4d basis = Eigen::HouseholderQR<Eigen::Vector4d>(light).householderQ();

@@ -46,6 +46,13 @@ const FieldPeak* peakInside(const SurfaceField& field, const Polyline& outline) 
   return best;
 }
 
+/// Every peak lies outside the photograph.
+bool allOutside(const SurfaceField& field, const Camera& camera) {
+  constexpr double kHalf = 0.5;  // px: the image ends at the outer edges of its pixels
+  return !field.peaks.empty() && std::all_of(field.peaks.begin(), field.peaks.end(),
+                                             [&](const FieldPeak& p) { return !isInPhotograph(camera, p.point.pixel, kHalf); });
+}
+
 }  // namespace
 
 Prediction predictLevelSet(const SurfaceField& field, const Camera& camera, const Surface& surface, const Settings& settings) {
@@ -103,12 +110,8 @@ Prediction predictLevelSet(const SurfaceField& field, const Camera& camera, cons
     found.push_back(std::move(h));
   }
   if (!found.empty()) return found;
-  const bool outside = !field.peaks.empty() && std::all_of(field.peaks.begin(), field.peaks.end(), [&](const FieldPeak& p) {
-    constexpr double kHalf = 0.5;  // px: the image ends at the outer edges of its pixels
-    return !isInPhotograph(camera, p.point.pixel, kHalf);
-  });
-  return outside ? Failure{Reason::OutsideImage, "the whole highlight lies outside the image"}
-                 : Failure{Reason::NotReached, "no level set in the image"};
+  return allOutside(field, camera) ? Failure{Reason::OutsideImage, "the whole highlight lies outside the image"}
+                                   : Failure{Reason::NotReached, "no level set in the image"};
 }
 
 }  // namespace glint

@@ -226,10 +226,9 @@ Scene sceneOfCapture(const Capture& capture, const ReadOptions& options) {
   const CameraResponse response = responseOf(choices);
   if (const std::string doubt = response.doubt(); !doubt.empty()) scene.warnings.push_back(doubt);
   const std::vector<std::string> ids = idsOf(capture.views);
-  for (std::size_t i = 0; i < capture.views.size(); ++i) {
-    const CaptureView& view = capture.views[i];
+  for (const CaptureView& view : capture.views) {
     Frame frame;
-    frame.id = ids[i];
+    frame.id = ids[scene.frames.size()];
     frame.image = view.image;
     frame.depth = view.depth;
     frame.mask = view.mask;
@@ -237,9 +236,8 @@ Scene sceneOfCapture(const Capture& capture, const ReadOptions& options) {
     frame.depthScale = view.depth.empty() ? 0 : choices.depthScale.value_or(view.depthScale);
     frame.camera = view.camera;
     frame.response = response;
-    frame.camera.camFromWorld.translation() *= metres;
     frame.worldFromObject = view.worldFromObject;
-    frame.worldFromObject.translation() *= metres;
+    for (Eigen::Isometry3d* pose : {&frame.camera.camFromWorld, &frame.worldFromObject}) pose->translation() *= metres;
     if (!(frame.camera.camFromWorld.translation().cwiseAbs().maxCoeff() <= kFarthest))
       throw InputError(capture.file.string(), view.name, "its camera is farther than 1e15 m from the origin");
     if (onPoints || !mesh.empty()) frame.surface = kSurfaceId;

@@ -116,6 +116,22 @@ void addConclusions(const ConventionReport& r, Json& j) {
 }
 }  // namespace
 
+namespace {
+Json camerasJson(const CameraCheck& c) {
+  const auto text = [](const std::string& words) { return words.empty() ? Json() : Json(words); };
+  const auto number = [](const std::optional<double>& v) { return v ? Json(*v) : Json(); };
+  Json hypotheses = Json::array();
+  for (const CameraCheck::Hypothesis& h : c.hypotheses) hypotheses.push_back({{"change", h.change}, {"rms_px", number(h.rmsPx)}});
+  return {{"views", c.views},
+          {"miss_deg", number(c.missDeg)},
+          {"light_frame", text(c.lightFrame)},
+          {"why_not", text(c.whyNot)},
+          {"hypotheses", std::move(hypotheses)},
+          {"focal_pct", number(c.focalPct)},
+          {"shift_px", number(c.shiftPx)}};
+}
+}  // namespace
+
 std::string toJson(const ConventionReport& r) {
   const auto vector = [](const Eigen::Vector3d& v) { return Json::array({v.x(), v.y(), v.z()}); };
   const auto vector2 = [](const Eigen::Vector2d& v) { return Json::array({v.x(), v.y()}); };
@@ -148,20 +164,7 @@ std::string toJson(const ConventionReport& r) {
     one["problems"] = f.problems;
     j["frames"].push_back(std::move(one));
   }
-  j["cameras"] = Json();
-  if (r.cameras) {
-    const CameraCheck& c = *r.cameras;
-    Json hypotheses = Json::array();
-    for (const CameraCheck::Hypothesis& h : c.hypotheses)
-      hypotheses.push_back({{"change", h.change}, {"rms_px", h.rmsPx ? Json(*h.rmsPx) : Json()}});
-    j["cameras"] = {{"views", c.views},
-                    {"miss_deg", c.missDeg ? Json(*c.missDeg) : Json()},
-                    {"light_frame", c.lightFrame.empty() ? Json() : Json(c.lightFrame)},
-                    {"why_not", c.whyNot.empty() ? Json() : Json(c.whyNot)},
-                    {"hypotheses", std::move(hypotheses)},
-                    {"focal_pct", c.focalPct ? Json(*c.focalPct) : Json()},
-                    {"shift_px", c.shiftPx ? Json(*c.shiftPx) : Json()}};
-  }
+  j["cameras"] = r.cameras ? camerasJson(*r.cameras) : Json();
   j["points"] = Json();
   if (r.tracks)
     j["points"] = {{"points", r.tracks->points},

@@ -17,7 +17,7 @@ namespace glint {
 
 /// A camera of a live stream, a video or a folder of photographs. The first sign of a line tells its kind:
 ///   {"id": "0007", "time": 1.23, "camera_from_world": [4x4], "camera": {}, "world_from_object": [4x4]}
-///                                                                                       JSON, keys as in scene files; the last two optional
+///                                                                JSON, keys as in scene files; the last two are optional
 ///   1305031102.1758 tx ty tz qx qy qz qw                                                TUM: camera to world, quaternion w last
 /// Times in seconds (others: capture::secondsOf); lengths in the unit of the scene.
 struct PoseLine {

@@ -196,6 +196,23 @@ struct FrameContext {
   capture::FileNames& names;
 };
 
+std::vector<std::string> readIds(const JsonNode& list) {
+  std::vector<std::string> ids;
+  for (std::size_t i = 0; i < list.size(); ++i) ids.push_back(readIdJson(list.at(i)));
+  return ids;
+}
+
+void readHighlights(const JsonNode& list, const FrameContext& context, Frame& frame, Json& rest) {
+  Json rests = Json::array();
+  bool any = false;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    frame.highlights.push_back(readHighlight(list.at(i), frame.camera));
+    rests.push_back(context.unknown.of(list.at(i), {"light", "level", "peak", "contour"}));
+    any = any || !rests.back().empty();
+  }
+  if (any) rest["highlights"] = rests;
+}
+
 Frame readFrame(const JsonNode& node, const FrameContext& context, Json& rest) {
   Frame frame;
   const Scene& scene = context.scene;
@@ -227,13 +244,14 @@ Frame readFrame(const JsonNode& node, const FrameContext& context, Json& rest) {
   } else if (!frame.depth.empty()) {
     frame.depthCamera = context.sharedDepthCamera;
   }
-  std::string warning;
-  frame.camera.camFromWorld = readPoseJson(node.at("camera_from_world"), &warning);
-  if (!warning.empty()) context.scene.warnings.push_back(warning);
-  if (const auto n = node.find(kObjectPoseKey)) {
-    frame.worldFromObject = readPoseJson(*n, &warning);
+  const auto pose = [&](const JsonNode& n) {
+    std::string warning;
+    const Eigen::Isometry3d read = readPoseJson(n, &warning);
     if (!warning.empty()) context.scene.warnings.push_back(warning);
-  }
+    return read;
+  };
+  frame.camera.camFromWorld = pose(node.at("camera_from_world"));
+  if (const auto n = node.find(kObjectPoseKey)) frame.worldFromObject = pose(*n);
   if (const auto n = node.find("surface"); n && !n->isNull()) {
     frame.surface = n->text();
     if (!scene.surfaces.count(frame.surface)) n->fail("surface '" + frame.surface + "' does not exist");
@@ -244,18 +262,8 @@ Frame readFrame(const JsonNode& node, const FrameContext& context, Json& rest) {
                                               : "is missing: the scene has several surfaces");
     frame.surface = scene.surfaces.begin()->first;
   }
-  if (const auto n = node.find("lights_on"))
-    for (std::size_t i = 0; i < n->size(); ++i) frame.lightsOn.push_back(readIdJson(n->at(i)));
-  if (const auto n = node.find("highlights")) {
-    Json rests = Json::array();
-    bool any = false;
-    for (std::size_t i = 0; i < n->size(); ++i) {
-      frame.highlights.push_back(readHighlight(n->at(i), frame.camera));
-      rests.push_back(context.unknown.of(n->at(i), {"light", "level", "peak", "contour"}));
-      any = any || !rests.back().empty();
-    }
-    if (any) rest["highlights"] = rests;
-  }
+  if (const auto n = node.find("lights_on")) frame.lightsOn = readIds(*n);
+  if (const auto n = node.find("highlights")) readHighlights(*n, context, frame, rest);
   return frame;
 }
 

@@ -68,7 +68,8 @@ Inspection inspected(const CutScene& cut, const std::vector<std::string>& models
   return inspect(cut.scene, request);
 }
 
-/// Mean distance of the truth that held-out photographs show from the predicted contours, percent of the diameter of what is seen.
+/// Mean distance of the truth that held-out photographs show from the predicted contours, percent of the diameter of what is
+/// seen.
 double heldOutPct(const CutScene& cut, const Inspection& r, const std::string& model) {
   double sum = 0;
   int frames = 0;
