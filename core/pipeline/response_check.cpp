@@ -22,6 +22,8 @@ constexpr double kClearlyLess = 0.15;
 // through a wrong curve, S-curves 1 to 4 less through one that is near.
 constexpr double kFarLess = 0.8;
 constexpr double kExplains = 0.4;     // of the cells, independent ones
+constexpr double kHardlyACode = 0.2;  // of 255: less than rounding leaves (0.29) is explained too, and then this must be gained:
+constexpr double kLessOfLittle = 0.3;
 constexpr double kBeyondChance = 15;  // of the logarithm of the likelihood: noise gains one or two
 /// What raw converters, old Macs and displays write, and contrasts of developed photographs.
 constexpr std::array<const char*, 5> kOthers{"linear", "gamma:1.8", "gamma:2.2", "s-curve:0.3", "s-curve:0.6"};
@@ -182,7 +184,9 @@ std::string responseDoubt(const Scene& scene, FrameSource source, const std::vec
   if (best->response.kind() == CameraResponse::Kind::SCurve) best = trials.bestContrast(*best);
   const double independent = best->fit.independentCells;
   const double gain = given->left.logVariance - best->left.logVariance;
-  const double least = independent > kExplains * best->fit.cells ? kClearlyLess : kFarLess;
+  const double least = independent > kExplains * best->fit.cells ? kClearlyLess
+                       : best->left.typical() < kHardlyACode     ? kLessOfLittle
+                                                                 : kFarLess;
   if (!(gain > least && gain / 2 * independent > kBeyondChance)) return "";
   const std::string text = best->response.text();
   return formatted(

@@ -24,7 +24,7 @@ constexpr double kOutliers = 3;      // spreads beyond which a value counts less
 // like a loss of 10 to 80 %, have slopes of half of it or losses along the axes of twice as much.
 constexpr double kAlike = 1.6, kSlope = 0.25;
 constexpr double kRidge = 1e-9;           // of the trace: tails that no view shows stay zero
-constexpr double kFallSpread = 0.02;      // a code of 8 bits: values that are quantised alike must not lead
+constexpr double kFallSpread = 0.1;       // a code of 8 bits in the dark: steps of the codes are no outliers
 constexpr double kNormalMedian = 1.4826;  // standard deviations in a median of absolute ones
 
 using Terms = std::vector<double> (*)(const Eigen::Vector2d& place);
