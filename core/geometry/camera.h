@@ -73,8 +73,8 @@ Eigen::AlignedBox2d seenWindow(const Camera& camera);
 /// `marginPx` beyond them; measured pixels. False if the lens shows none.
 bool isInPhotograph(const Camera& camera, const Pixel& ideal, double marginPx = 0);
 
-/// Whether an ideal pixel is measured on the border of the photograph, where contours that it cuts run: between the centres of the
-/// outermost pixels and their outer edges, or as far inside.
+/// Whether an ideal pixel is measured on the border of the photograph, where contours that it cuts run: between the centres of
+/// the outermost pixels and their outer edges, or as far inside.
 bool onImageBorder(const Camera& camera, const Pixel& ideal);
 /// Whether a piece of a contour runs along that border: it closes a contour that is cut there, and is no level set.
 bool alongImageBorder(const Camera& camera, const Pixel& from, const Pixel& to);

@@ -273,8 +273,8 @@ class HighlightModel {
   /// @param surface  may be null for `primal`.
   virtual Prediction predict(const ModelFit& fit, const Camera& camera, const Surface* surface,
                              const Settings& settings) const = 0;
-  /// The same fit for a contour at its level of the radiance at `place`, an ideal pixel of this view, and not of the maximum: that
-  /// of a highlight whose peak the image's border cuts off (Highlight::peakCut). Empty where the model does not tell.
+  /// The same fit for a contour at its level of the radiance at `place`, an ideal pixel of this view, and not of the maximum:
+  /// that of a highlight whose peak the image's border cuts off (Highlight::peakCut). Empty where the model does not tell.
   virtual std::optional<ModelFit> atLevelOf(const ModelFit&, const Pixel& /*place*/, const Camera&, const Surface&,
                                             const Settings&) const {
     return std::nullopt;

@@ -19,7 +19,7 @@ namespace {
 
 constexpr int kNoisePoints = 72;     // docs/formats.md, "Noise"
 constexpr double kSameLevel = 1e-6;  // levels are typed with a few digits
-constexpr double kHalfPx = 0.5;        // px: the image ends at the outer edges of its pixels
+constexpr double kHalfPx = 0.5;      // px: the image ends at the outer edges of its pixels
 
 /// The reason when a part of the highlight lies where the lens distortion has no inverse.
 std::optional<Failure> toIdealPixels(Highlight& h, const Camera& camera) {
