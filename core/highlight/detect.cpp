@@ -35,9 +35,8 @@ constexpr double kBackgroundShare = 0.01;   // of the clip height: by that much 
 constexpr int kBackgroundRounds = 3;        // with the tail that the slope shows: it settles in two
 constexpr double kSettledBackground = 0.1;  // of its standard deviation
 constexpr double kWorseBackground = 1.1;    // of the spread around it: that much more is another background, no better one
-constexpr double kOnBorderPx = 0.01;        // contours run along it to 1e-7 px
-constexpr double kPeakAtBorderPx = 0.5;     // a quadratic that one side alone holds finds a peak to no better
-constexpr double kBadReachPx = 1.5;         // an unusable pixel this near to a contour decides on its course
+constexpr double kOnBorderPx = 0.01, kPeakAtBorderPx = 0.5;  // contours run along it; a peak that one side holds is no surer
+constexpr double kBadReachPx = 1.5;                          // an unusable pixel this near to a contour decides on its course
 
 /// One channel, with what may and may not be used of it.
 struct Prepared {
@@ -502,9 +501,9 @@ class Detector {
     } else if (peak) {
       h.peak = peak->at + origin;
       h.peakValue = peak->value;
-    } else {  // a plateau or a ridge on the border: the pixel is the best
+    } else {
       h.peak = Pixel(at.x, at.y) + origin;
-      h.peakValue = roi.at(at.x, at.y);
+      h.peakValue = roi.at(at.x, at.y);  // a plateau or a ridge on the border: the pixel is the best
     }
     h.peakCut = h.touchesBorder && (h.clipped || !peak || onImageBorder({h.peak}, kPeakAtBorderPx));
     const double spread = std::max(noise_, options_.removeBackground ? candidate.background.spread : 0.0);
@@ -544,8 +543,9 @@ class Detector {
   }
 
   bool onImageBorder(const std::vector<Pixel>& points, double px) const {
-    const Eigen::AlignedBox2d inner(Pixel::Constant(px), Pixel(p_.value.width - 1 - px, p_.value.height - 1 - px));
-    return std::any_of(points.begin(), points.end(), [&](const Pixel& q) { return !inner.contains(q); });
+    return std::any_of(points.begin(), points.end(), [&](const Pixel& q) {
+      return q.x() < px || q.y() < px || q.x() > p_.value.width - 1 - px || q.y() > p_.value.height - 1 - px;
+    });
   }
 
   /// Strongest first; a region found from two candidates (their boxes overlap) is kept once.

@@ -31,6 +31,16 @@ double coverageOf(const LevelSetComponent& c, const Eigen::AlignedBox2d& window,
   return total > 0 ? 1 - cut / total : 0;
 }
 
+/// Whether the window cuts a component, or shows no component although a peak lies beyond: that one may be smaller than a cell of
+/// the scan.
+bool mayLeave(const std::vector<LevelSetComponent>& components, const SurfaceField& field, const Eigen::AlignedBox2d& window) {
+  if (components.empty())
+    return std::any_of(field.peaks.begin(), field.peaks.end(),
+                       [&](const FieldPeak& p) { return !window.contains(p.point.pixel); });
+  return std::any_of(components.begin(), components.end(),
+                     [&](const LevelSetComponent& c) { return coverageOf(c, window, 0) < 1; });
+}
+
 /// The highlight's peak: the known one inside the outline with the smallest value. A merged highlight holds several whose values
 /// are equal up to round-off: the one nearest to the middle is taken, so that round-off decides nothing.
 const FieldPeak* peakInside(const SurfaceField& field, const Polyline& outline) {
@@ -78,12 +88,8 @@ Prediction predictLevelSet(const SurfaceField& field, const Camera& camera, cons
   const Eigen::AlignedBox2d window = seenWindow(camera);
   std::vector<LevelSetComponent> components = traceLevelSets(exact, batch, field.level, window, options);
   const bool none = components.empty();
-  const auto beyond = [&](const FieldPeak& p) { return !window.contains(p.point.pixel); };
-  if (std::any_of(components.begin(), components.end(),
-                  [&](const LevelSetComponent& c) { return coverageOf(c, window, 0) < 1; }) ||
-      (none && std::any_of(field.peaks.begin(), field.peaks.end(), beyond))) {
-    // The image cuts the highlight: it is followed beyond the border, so that all of it is known. What the image shows of one
-    // whose peak lies beyond may be smaller than the scan's cells.
+  if (mayLeave(components, field, window)) {
+    // The image cuts the highlight: it is followed beyond the border, so that all of it is known.
     options.marginPx = kMarginFraction * window.sizes().maxCoeff();
     components = traceLevelSets(exact, batch, field.level, window, options);
     if (none) std::erase_if(components, [&](const LevelSetComponent& c) { return clippedTo(window, c.outline).points.empty(); });

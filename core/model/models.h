@@ -29,8 +29,7 @@ Outcome<std::vector<BrightestPoint>> brightestPointsFor(const Surface& surface, 
 /// ModelFit::hints of a fit's input.
 std::vector<SurfacePoint> hintsOf(const FitInput& input);
 
-/// Points of a view's contour, equally spaced: n along all of it, without those that lie on the image's border where that cuts
-/// it.
+/// Points of a view's contour, equally spaced: n along all of it, without those on the image's border where that cuts it.
 std::vector<Pixel> levelSetPoints(const TrainingView& view, int n);
 
 /// Median alpha, rad, over the contour points (equally spaced) that the light reaches: the robust limit angle for a given light.
