@@ -15,10 +15,12 @@ namespace {
 
 constexpr std::size_t kAskedViews = 3;  // one curve is behind all of them
 constexpr double kTogether = 0.5;       // of the cells, independent ones: noise and 8 bits leave more
-// Of the logarithm of the codes' variance, where the better curve explains the pixels down to noise: gamma 2.2 leaves 0.2 less than
+// Of the logarithm of the codes' variance, where the better curve explains the pixels down to noise: gamma 2.2 leaves 0.2 less
+// than
 // sRGB, in the noise of 8 linear bits; JPEG's blocks leave wrong curves up to 0.01 less.
 constexpr double kClearlyLess = 0.15;
-// The same where what remains still goes together: poses, lobes in two parts and meshes that are off leave up to 0.6 less through a
+// The same where what remains still goes together: poses, lobes in two parts and meshes that are off leave up to 0.6 less
+// through a
 // wrong curve, S-curves 1 to 4 less through one that is near.
 constexpr double kFarLess = 0.8;
 constexpr double kExplains = 0.4;     // of the cells, independent ones

@@ -27,7 +27,8 @@ struct InputChoices {
   std::string world;                           ///< nerfstudio: "original" = before applied_transform; "" = as stored
   std::filesystem::path poses;                 ///< of a folder of images or a video: TUM or JSON lines; absolute; "" = none
   bool posesByOrder = false;                   ///< the n-th pose is that of the n-th picture; only because a person says so
-  std::string response;  ///< of the images: "srgb", "linear", "gamma:G", "s-curve:S", or the absolute path of a file; "" = by file type
+  std::string
+      response;  ///< of the images: "srgb", "linear", "gamma:G", "s-curve:S", or the absolute path of a file; "" = by file type
   bool none() const { return *this == InputChoices{}; }
   friend bool operator==(const InputChoices&, const InputChoices&) = default;
 };
