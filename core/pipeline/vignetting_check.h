@@ -16,9 +16,9 @@ struct Vignetting {
 };
 
 /// From the diffuse light of the same surface points in several views, away from highlights: v_ij = g_i D_j (1 - k r_ij^2) +
-/// tails, with a gain for each view, D eliminated, and the spots' tails as two more shares. It is believed only if the light
-/// falls alike across and along the image and has no slope: what changes with the view otherwise (a lamp that moves, long
-/// tails) does not.
+/// tails,
+/// with a gain for each view, D eliminated, and the spots' tails as two more shares. It is believed only if the light falls alike
+/// across and along the image and has no slope: what changes with the view otherwise (a lamp that moves, long tails) does not.
 /// @return  nothing where the light does not fall by a seventh, or the views do not tell
 std::optional<Vignetting> vignettingOf(const TexturePanel& panel);
 

@@ -91,13 +91,18 @@ TEST(ResponseDoubt, NoiseNamesNoCurve) {
 
 TEST(Vignetting, IsNamedWithItsSize) {
   GLINT_NEEDS_SHARED_DATA();
-  const auto darker = [](double loss) {
-    return Recode([loss](double light, double radius2) { return srgbFromLinear(light * (1 - loss * radius2)); });
+  // The photographs' codes are spread first over what was rounded to them: dark light that lies on steps cannot fall by less.
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> within(-0.5 / 255, 0.5 / 255);
+  const auto darker = [&](double loss) {
+    return Recode([&, loss](double light, double radius2) {
+      return srgbFromLinear(std::max(0.0, linearFromSrgb(srgbFromLinear(light) + within(random))) * (1 - loss * radius2));
+    });
   };
   for (const double loss : {0.25, 0.5}) {
     const std::string said = saidOf(darker(loss), 6), before = "about ";
     ASSERT_NE(said.find("vignetting"), std::string::npos) << said;
-    EXPECT_NEAR(std::stod(said.substr(said.find(before) + before.size())), 100 * loss, 3) << said;
+    EXPECT_NEAR(std::stod(said.substr(said.find(before) + before.size())), 100 * loss, 5) << said;
   }
   EXPECT_EQ(saidOf(darker(0.05), 6), "");  // below what matters
 }
