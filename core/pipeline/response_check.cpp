@@ -15,19 +15,17 @@ namespace {
 
 constexpr std::size_t kAskedViews = 3;  // one curve is behind all of them
 constexpr double kTogether = 0.5;       // of the cells, independent ones: noise and 8 bits leave more
-// Of the logarithm of the codes' variance, where the better curve explains the pixels down to noise: gamma 2.2 leaves 0.2 less
-// than
-// sRGB, in the noise of 8 linear bits; JPEG's blocks leave wrong curves up to 0.01 less.
+// What the logarithm of the codes' variance must fall by, where the better curve explains the pixels down to noise: gamma 2.2
+// leaves 0.2 less than sRGB, in the noise of 8 linear bits; JPEG's blocks leave wrong curves up to 0.01 less.
 constexpr double kClearlyLess = 0.15;
 // The same where what remains still goes together: poses, lobes in two parts and meshes that are off leave up to 0.6 less
-// through a
-// wrong curve, S-curves 1 to 4 less through one that is near.
+// through a wrong curve, S-curves 1 to 4 less through one that is near.
 constexpr double kFarLess = 0.8;
 constexpr double kExplains = 0.4;     // of the cells, independent ones
 constexpr double kHardlyACode = 0.2;  // of 255: less than rounding leaves (0.29) is explained too, and then this must be gained:
 constexpr double kLessOfLittle = 0.3;
 constexpr double kBeyondChance = 15;  // of the logarithm of the likelihood: noise gains one or two
-/// Of raw converters, old Macs and displays, and contrasts of developed photographs.
+/// What raw converters, old Macs and displays write, and contrasts of developed photographs.
 constexpr std::array<const char*, 5> kOthers{"linear", "gamma:1.8", "gamma:2.2", "s-curve:0.3", "s-curve:0.6"};
 constexpr double kFirstStep = 0.15;       // of the contrast: half way to the other one
 constexpr int kMostIterations = 25;       // from a start that is near: curves that take longer leave much
