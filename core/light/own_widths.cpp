@@ -9,6 +9,7 @@
 #include "core/base/evenly.h"
 #include "core/base/numeric.h"
 #include "core/geometry/polyline.h"
+#include "core/surface/posed_surface.h"
 
 namespace glint {
 namespace {
@@ -236,7 +237,11 @@ std::optional<OwnWidths> ownWidths(const std::vector<BundleView>& views, const s
   found.light = Light::homogeneous(world);
   found.cost = countedWidths(own.second);
   found.commonCost = std::isfinite(common.second.cost) ? countedWidths(common.second) : std::numeric_limits<double>::infinity();
-  for (std::size_t v = 0; v < views.size(); ++v) found.views.push_back(ownWidthOf(points, own.first, own.second, v));
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    found.views.push_back(ownWidthOf(points, own.first, own.second, v));
+    Eigen::Vector3d& place = found.views.back().place;
+    place = poseOf(*views[v].surface).inverse() * place;
+  }
   return found;
 }
 

@@ -14,7 +14,7 @@ struct OwnWidth {
   double limitAngle = 0;                            ///< rad; 0 where fewer than five contour points are on the surface
   double sigma = 0;                                 ///< of its logarithm
   bool explained = false;                           ///< one angle describes most of the contour
-  Eigen::Vector3d place = Eigen::Vector3d::Zero();  ///< middle of the contour on the surface, world, m
+  Eigen::Vector3d place = Eigen::Vector3d::Zero();  ///< middle of the contour on the object, which may move, m
   double sineSquared = 0;                           ///< of the light's incidence there
 };
 

@@ -46,7 +46,7 @@ PeakView peakViewOf(const Scene& scene, const FrameEvidence& evidence, const std
   PeakView view{evidence.frame, &scene.frames[static_cast<std::size_t>(evidence.frame)].camera, surface, {}, {}, {}, 0};
   std::vector<const Highlight*> list;
   for (const Highlight& h : evidence.highlights)
-    if (h.light == light && h.areaPx2 > 0 && (!h.touchesBorder || h.fromScene)) list.push_back(&h);
+    if (h.light == light && h.areaPx2 > 0 && !h.peakCut) list.push_back(&h);
   std::stable_sort(list.begin(), list.end(), [](const Highlight* a, const Highlight* b) { return a->areaPx2 > b->areaPx2; });
   if (list.size() > kMostHighlights) list.resize(kMostHighlights);
   for (const Highlight* h : list) {

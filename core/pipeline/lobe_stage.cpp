@@ -23,6 +23,7 @@
 #include "core/pipeline/training.h"
 #include "core/pipeline/vignetting_check.h"
 #include "core/reflectance/pixel_fit.h"
+#include "core/surface/posed_surface.h"
 
 namespace glint {
 
@@ -126,6 +127,9 @@ bool isPhotograph(const Frame& frame, FrameSource source) {
 void addVignetting(Inspection& r, const std::vector<int>& frames, const SurfaceOfFrame& surfaceOf) {
   constexpr std::size_t kMostViews = 6, kFewestViews = 4;  // more tell no more; of three, each point has hardly two more
   const EvidenceInputs& asked = r.inputs.lobes->evidence;
+  // The same points of the object are asked, wherever it stands.
+  const Scene around = standsStill(*r.scene) ? Scene() : inObject(*r.scene);
+  const Scene& scene = around.frames.empty() ? *r.scene : around;
   std::map<std::string, std::vector<int>> bySurface;
   for (const int f : frames) {
     const Frame& frame = r.scene->frames[static_cast<std::size_t>(f)];
@@ -134,11 +138,12 @@ void addVignetting(Inspection& r, const std::vector<int>& frames, const SurfaceO
       bySurface[r.surfaces->keyOf(f)].push_back(f);
   }
   for (const auto& [key, own] : bySurface) {
-    const std::shared_ptr<const Surface> surface = surfaceOf(own.front());
+    std::shared_ptr<const Surface> surface = surfaceOf(own.front());
     if (!surface || own.size() < kFewestViews) continue;
+    surface = movedTo(Eigen::Isometry3d::Identity(), std::move(surface));
     std::vector<TextureView> views;
     for (const int f : evenly(own, kMostViews)) {
-      Outcome<TextureView> view = textureView(*r.scene, f, asked.source, asked.detect, *surface);
+      Outcome<TextureView> view = textureView(scene, f, asked.source, asked.detect, *surface);
       if (!view) continue;
       view->spots = lobeSpots(r.evidence[static_cast<std::size_t>(f)].highlights);
       views.push_back(*std::move(view));
