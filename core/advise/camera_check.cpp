@@ -441,12 +441,12 @@ class Check {
       const FrameEvidence evidence = gatherEvidence(scene_, frame, FrameSource::Radiance, fine);
       if (!evidence.highlights.empty()) areas.push_back(evidence.highlights.front().areaPx2);
     }
-    const double least = settings_.number("detect.min_area");
+    const bool found = 2 * areas.size() > searched_.size();
     result_.findings.push_back(
-        small
+        found
             ? formatted("the highlights are too small: %zu of %zu frames show one, of about %.2g px^2 (median), and detection "
                         "takes them from %g px^2 on (--set detect.min_area=%.2g; photographs of more pixels are better)",
-                        areas.size(), searched_.size(), upperMedian(areas), least, kLeastAreaPx2)
+                        areas.size(), searched_.size(), upperMedian(areas), settings_.number("detect.min_area"), kLeastAreaPx2)
             : formatted("no highlight was found in any of %zu frames (are they the right photographs? Is the background brighter "
                         "than the highlight, or the mask of another part?)",
                         searched_.size()));
