@@ -28,7 +28,10 @@ constexpr int kCoarseDivisions = 120;  ///< cells along the longest side: some 5
 }  // namespace
 
 bool LayerInput::onSurface(int frame) const {
-  return !inspection->surfaces || inspection->surfaces->placedKeyOf(frame) == inspection->surfaces->placedKeyOf(selection.frame);
+  const auto& surfaces = inspection->surfaces;
+  if (!surfaces) return true;
+  const auto place = [&](int f) { return surfaces->placedKeyOf(f).substr(surfaces->keyOf(f).size()); };
+  return surfaces->keyOf(frame) == surfaceKey && place(frame) == place(selection.frame);
 }
 
 std::vector<const TrainingView*> LayerInput::views() const {

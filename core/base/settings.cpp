@@ -138,7 +138,8 @@ std::vector<ParamSpec>& params() {
        .choices = {"auto", "world", "camera"},
        .help =
            "World: lamps stand still. Camera: they move with the camera, as a flash does, or the object turned before a camera "
-           "that stood still. Auto: the one in which the mirrored rays of the training highlights meet. L stays the same in F.",
+           "that stood still. Auto: the one in which the mirrored rays of the training highlights meet. x_F = x, or R x + t of "
+           "each camera.",
        .stage = "light"},
       {.key = "light.bundle_points",
        .title = "Bundle points",

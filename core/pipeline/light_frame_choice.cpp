@@ -136,7 +136,8 @@ LightFrameChoice chooseLightFrame(const Scene& scene, const SurfaceCache& surfac
   std::map<std::string, std::vector<PeakView>> views;
   for (const int frame : evenly(training, kMostViews)) {
     const FrameEvidence& e = evidence[static_cast<std::size_t>(frame)];
-    if (e.frame < 0 || e.highlights.empty()) continue;
+    // A depth map of the frame's own would be read here and again with the views.
+    if (e.frame < 0 || e.highlights.empty() || scene.frames[static_cast<std::size_t>(frame)].surface.empty()) continue;
     const Outcome<std::shared_ptr<const Surface>> surface = surfaces.surfaceOf(frame, meshPolicy(settings));
     if (!surface) continue;
     std::set<std::string> labels;

@@ -26,7 +26,7 @@ struct LightFrameChoice {
 
 /// Chooses by `light.frame`; `auto` decides by the training highlights alone. In each frame of coordinates it looks for the lamp
 /// that the mirrored rays of the peaks share, and measures by how many pixels its brightest points miss the peaks. The camera is
-/// chosen where it explains them and the world leaves several times as much.
+/// chosen where it explains them and the world leaves several times as much. Frames with a depth map of their own are not asked.
 /// @param scene     in the world
 /// @param surfaces  of that scene
 /// @param training  frames that train

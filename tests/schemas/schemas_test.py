@@ -184,7 +184,7 @@ def put(*path_and_value):
 
 FRAME, SHAPE, GIVEN = ("frames", 0), ("surfaces", "plate", "analytic"), ("frames", 0, "highlights", 0)
 SCENES_REFUSED = {
-    "version": put("glint_scene", 2),
+    "version": put("glint_scene", 3),
     "no version": put("glint_scene", ...),
     "units": put("units", "mm"),
     "no camera": put("camera", ...),

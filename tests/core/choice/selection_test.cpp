@@ -204,6 +204,8 @@ std::shared_ptr<Scene> narrowScene(const AnalyticSpec& spec, double stepDeg = 0.
     f.surface = "body";
     f.lightsOn = {"lamp"};
     f.highlights = exactContours(spec, f.camera, lamp);
+    for (Highlight& h : f.highlights)
+      h.touchesBorder = false;  // a sheet's end beyond the margin of 300 px, which is known whole here
     scene->frames.push_back(f);
   }
   return scene;

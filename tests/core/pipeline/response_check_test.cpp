@@ -5,9 +5,11 @@
 #include <cmath>
 #include <filesystem>
 #include <functional>
+#include <locale>
 #include <numbers>
 #include <opencv2/imgcodecs.hpp>
 #include <random>
+#include <sstream>
 #include <string>
 
 #include "core/base/image.h"
@@ -66,7 +68,9 @@ TEST(ResponseDoubt, LinearCodesAndPowersAreNamedAndSrgbIsNot) {
   EXPECT_EQ(saidOf({}), "");
   EXPECT_NE(saidOf(power(1)).find("\"response\": \"linear\""), std::string::npos) << saidOf(power(1));
   EXPECT_NE(saidOf(power(1.8)).find("\"response\": \"gamma:1.8\""), std::string::npos) << saidOf(power(1.8));
-  EXPECT_NE(saidOf(power(2.2)).find("\"response\": \"gamma:2.2\""), std::string::npos) << saidOf(power(2.2));
+  constexpr int kViews = 6;  // gamma 2.2 is so near to sRGB that four do not tell
+  const std::string near = saidOf(power(2.2), kViews);
+  EXPECT_NE(near.find("\"response\": \"gamma:2.2\""), std::string::npos) << near;
 }
 
 TEST(ResponseDoubt, AnSCurveIsNamedWithItsContrast) {
@@ -78,7 +82,11 @@ TEST(ResponseDoubt, AnSCurveIsNamedWithItsContrast) {
   });
   const std::string before = "\"response\": \"s-curve:";
   ASSERT_NE(said.find(before), std::string::npos) << said;
-  EXPECT_NEAR(std::stod(said.substr(said.find(before) + before.size())), contrast, 0.02) << said;
+  std::istringstream number(said.substr(said.find(before) + before.size()));
+  number.imbue(std::locale::classic());
+  double named = 0;
+  number >> named;
+  EXPECT_NEAR(named, contrast, 0.02) << said;
 }
 
 /// Values that say nothing of a curve: as noise grows, nothing false is said.
