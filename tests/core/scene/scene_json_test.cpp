@@ -148,7 +148,18 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         BadCase{"syntax", "\"frames\": [", "\"frames\": [,", "line 3, column ", "not valid JSON"},
         BadCase{"cut off", "\"radius\": 0.4}}}}", "\"radius\"", "line 4, column ", "not valid JSON"},
-        BadCase{"other version", "\"glint_scene\": 1", "\"glint_scene\": 2", "glint_scene: ", "version 2"},
+        BadCase{"other version", "\"glint_scene\": 1", "\"glint_scene\": 3", "glint_scene: ", "version 3"},
+        BadCase{"pose of version 2", "\"id\": \"a\"",
+                "\"id\": \"a\", \"world_from_object\": [[1,0,0,0],[0,1,0,0],[0,0,1,3],[0,0,0,1]]",
+                "frames[0].world_from_object: ", "version 2"},
+        BadCase{"object that is no pose", "\"id\": \"a\"", "\"id\": \"a\", \"world_from_object\": 1",
+                "frames[0].world_from_object: ", "array"},
+        BadCase{"frame of version 2", "\"surfaces\"",
+                "\"lights\": [{\"id\": \"l\", \"position\": [0, 0, 1], \"frame\": \"camera\"}], \"surfaces\"",
+                "lights[0].frame: ", "version 2"},
+        BadCase{"no such frame", "\"surfaces\"",
+                "\"lights\": [{\"id\": \"l\", \"position\": [0, 0, 1], \"frame\": \"object\"}], \"surfaces\"",
+                "lights[0].frame: ", "must be \"world\" or \"camera\""},
         BadCase{"version of a wrong type", "\"glint_scene\": 1", "\"glint_scene\": \"1\"",
                 "glint_scene: ", "must be a finite number, is text"},
         BadCase{"no frames key", "\"frames\"", "\"farmes\"", "frames: ", "missing"},
@@ -237,6 +248,27 @@ TEST(ReadScene, WhatIsNotUnderstoodIsSaidWithAListOfWhatIs) {
   EXPECT_THAT(inputErrorOf([&] { readScene(folder.path()); }), HasSubstr("is recognised; its folder 'inside' is: scene file"));
   EXPECT_THAT(inputErrorOf([&] { readScene(folder / "nothing"); }), HasSubstr("no such file"));
   EXPECT_THAT(inputErrorOf([&] { readScene(folder.write("empty.json", "")); }), HasSubstr("the file is empty"));
+}
+
+TEST(ReadScene, WhatMovesIsReadAndWrittenAsVersion2) {
+  const TemporaryFolder folder;
+  std::string text = with(minimalScene(), "\"glint_scene\": 1", "\"glint_scene\": 2");
+  text = with(text, "\"id\": \"a\"", "\"id\": \"a\", \"world_from_object\": [[0,-1,0,0.5],[1,0,0,0],[0,0,1,0],[0,0,0,1]]");
+  text = with(text, "\"surfaces\"",
+              "\"lights\": [{\"id\": \"flash\", \"position\": [0.05, 0, 0], \"frame\": \"camera\"}], \"surfaces\"");
+  const Scene scene = readScene(folder.write("scene.json", text));
+  EXPECT_TRUE(scene.warnings.empty());
+  EXPECT_LT((scene.frames[0].worldFromObject * Eigen::Vector3d(1, 0, 0) - Eigen::Vector3d(0.5, 1, 0)).norm(), 1e-15);
+  EXPECT_EQ(scene.lights[0].frame, LightFrame::Camera);
+  // The camera stands 2 m before the origin: the flash lies beside it, by hand.
+  EXPECT_LT((inWorld(scene.lights[0], scene.frames[0]).lamp.position() - Eigen::Vector3d(0.05, 0, -2)).norm(), 1e-15);
+  writeScene(scene, folder / "again.json");
+  EXPECT_THAT(contentOf(folder / "again.json"), HasSubstr("\"glint_scene\": 2"));
+  const Scene again = readScene(folder / "again.json");
+  EXPECT_EQ(again.frames[0].worldFromObject.matrix(), scene.frames[0].worldFromObject.matrix());
+  EXPECT_EQ(again.lights[0].frame, LightFrame::Camera);
+  EXPECT_EQ(inObject(again).frames[0].camera.camFromWorld.matrix(),
+            (scene.frames[0].camera.camFromWorld * scene.frames[0].worldFromObject).matrix());
 }
 
 TEST(ReadScene, UnknownKeysAreWarnedOfAndKept) {
