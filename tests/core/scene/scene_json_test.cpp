@@ -153,7 +153,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "\"id\": \"a\", \"world_from_object\": [[1,0,0,0],[0,1,0,0],[0,0,1,3],[0,0,0,1]]",
                 "frames[0].world_from_object: ", "version 2"},
         BadCase{"object that is no pose", "\"id\": \"a\"", "\"id\": \"a\", \"world_from_object\": 1",
-                "frames[0].world_from_object: ", "array"},
+                "frames[0].world_from_object: ", "must be a list"},
         BadCase{"frame of version 2", "\"surfaces\"",
                 "\"lights\": [{\"id\": \"l\", \"position\": [0, 0, 1], \"frame\": \"camera\"}], \"surfaces\"",
                 "lights[0].frame: ", "version 2"},
