@@ -75,7 +75,9 @@ SceneLegend legendOf(const LayerInput& in, const std::vector<ShownLayer>& layers
   if (drawn("virtual-cameras") || drawn("tangent-planes"))
     legend.entries.push_back({kVirtualCamera, "virtual camera, tangent plane"});
   if (drawn("observed-contours")) legend.entries.push_back({kObserved, "observed contour"});
-  if (drawn("light")) legend.entries.push_back({kLightColour, "light (estimate)"});
+  const bool carried = in.inspection->lightFrame.frame == LightFrame::Camera;
+  if (drawn("light"))
+    legend.entries.push_back({kLightColour, carried ? "light (estimate), moves with the camera" : "light (estimate)"});
   if (drawn("true-light")) legend.entries.push_back({kTruth, "light (truth)"});
   if (drawn("measured-lamps")) legend.entries.push_back({kMeasuredLamp, "measured lamp, 95 % region"});
   if (drawn("solver-runs")) legend.entries.push_back({in.ink(), "runs of a solver: hollow start, full end"});

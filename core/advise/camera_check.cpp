@@ -17,6 +17,7 @@
 #include "core/model/reflectance_settings.h"
 #include "core/pipeline/evidence.h"
 #include "core/pipeline/fit_engine.h"
+#include "core/pipeline/light_frame_choice.h"
 #include "core/pipeline/training.h"
 #include "core/scene/convention_report.h"
 #include "core/surface/mesh_policy.h"
@@ -42,7 +43,12 @@ constexpr double kDegrees = 180 / double(EIGEN_PI);
 
 class Check {
  public:
-  Check(const Scene& scene, const ProgressFn& progress) : scene_(scene), progress_(progress) {}
+  /// @param world  surfaces of the scene in the world, where `scene` is in the coordinates of the cameras; else null
+  Check(const Scene& scene, const ProgressFn& progress, const SurfaceCache* world = nullptr)
+      : scene_(scene),
+        progress_(progress),
+        surfaces_(world ? SurfaceCache(scene, *world) : SurfaceCache(scene)),
+        carried_(world != nullptr) {}
 
   CameraCheck run() {
     gather();
@@ -55,10 +61,10 @@ class Check {
       return std::move(result_);
     }
     asGiven_ = lampAfter({});
-    if (const std::string moves = movesWithCamera(); !moves.empty()) {
+    if (const LightFrameChoice choice = lightFrame(); choice.frame == LightFrame::Camera && !carried_) {
       const Scene there = inCameras(scene_);
-      result_ = Check(there, progress_).run();
-      result_.lightFrame = moves;
+      result_ = Check(there, progress_, &surfaces_).run();
+      result_.lightFrame = choice.reason;
       return std::move(result_);
     }
     if (asGiven_ && asGiven_->miss < EIGEN_PI / 2) result_.missDeg = asGiven_->miss * kDegrees;
@@ -110,7 +116,6 @@ class Check {
   /// Up to kMostViews frames, spread evenly over those that a sequence offers.
   void gather() {
     const int n = static_cast<int>(scene_.frames.size());
-    const SurfaceCache surfaces(scene_);
     std::map<std::string, int> lights;
     const int tried = std::min(n, 2 * kMostViews);
     for (int i = 0; i < tried && static_cast<int>(views_.size()) < kMostViews; ++i) {
@@ -125,7 +130,7 @@ class Check {
       dark_ += evidence.failure && evidence.failure->reason == Reason::NoHighlight;
       std::erase_if(evidence.highlights, [](const Highlight& h) { return h.clipped || h.touchesBorder || !(h.areaPx2 > 0); });
       if (evidence.failure || evidence.highlights.empty()) continue;
-      const Outcome<std::shared_ptr<const Surface>> surface = surfaces.surfaceOf(frame, meshPolicy(settings_));
+      const Outcome<std::shared_ptr<const Surface>> surface = surfaces_.surfaceOf(frame, meshPolicy(settings_));
       if (!surface) continue;
       std::set<std::string> here;
       for (const Highlight& h : evidence.highlights) here.insert(h.light);
@@ -154,8 +159,7 @@ class Check {
   const Camera& cameraOf(const View& v) const { return scene_.frames[static_cast<std::size_t>(v.evidence.frame)].camera; }
 
   /// The lamp that the mirrored rays of all highlights share; `chosen` are places among the highlights of each view.
-  /// @param withCamera  in the axes of each camera, where a lamp that moves with it stands still
-  std::optional<SharedLamp> lampAfter(const CameraChange& change, bool withCamera = false) const {
+  std::optional<SharedLamp> lampAfter(const CameraChange& change) const {
     stopIfAsked(0, 0);
     std::vector<std::vector<ReflectedRay>> rays(views_.size());
     std::vector<std::vector<int>> places(views_.size());
@@ -167,13 +171,7 @@ class Check {
         change.move(h, cameraOf(v));
         const Outcome<BrightestPoint> seen = observedBrightestPoint(*v.surface, camera, h.peak);
         if (!seen) continue;
-        ReflectedRay ray = reflectedRay(*seen, camera);
-        if (withCamera) {
-          ray.origin = camera.camFromWorld * ray.origin;
-          ray.direction = camera.camFromWorld.linear() * ray.direction;
-          ray.normal = camera.camFromWorld.linear() * ray.normal;
-        }
-        rays[i].push_back(ray);
+        rays[i].push_back(reflectedRay(*seen, camera));
         places[i].push_back(static_cast<int>(k));
       }
     }
@@ -452,14 +450,15 @@ class Check {
                         searched_.size()));
   }
 
-  /// In words, where the mirrored rays meet in the axes of the cameras and not in the world; else "".
-  std::string movesWithCamera() const {
-    const std::optional<SharedLamp> carried = lampAfter({}, true);
-    const double fixed = asGiven_ ? asGiven_->miss : EIGEN_PI;
-    if (!carried || !(carried->miss < kMeets) || !(fixed > std::max(2 * carried->miss, kMeets))) return "";
-    return "the lamp moves with the camera (or the object turned before a camera that stood still): the mirrored rays miss it "
-           "by " +
-           formatted("%.2g degrees, and one that stands still by ", carried->miss * kDegrees) + missText(asGiven_);
+  /// Where the lamp stands still, as evaluations choose it.
+  LightFrameChoice lightFrame() const {
+    std::vector<FrameEvidence> evidence(scene_.frames.size());
+    std::vector<int> frames;
+    for (const View& v : views_) {
+      evidence[static_cast<std::size_t>(v.evidence.frame)] = v.evidence;
+      frames.push_back(v.evidence.frame);
+    }
+    return chooseLightFrame(scene_, surfaces_, frames, evidence, settings_);
   }
 
   void sayThatNothingFits(const std::optional<Fitted>& given) {
@@ -573,6 +572,8 @@ class Check {
 
   const Scene& scene_;
   const ProgressFn& progress_;
+  const SurfaceCache surfaces_;
+  const bool carried_;
   Settings settings_;
   std::vector<View> views_;
   std::vector<int> searched_;  ///< frames

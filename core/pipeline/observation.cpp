@@ -57,6 +57,8 @@ Inspection besideObservation(const Inspection& earlier, const Observation& obser
   Inspection r;
   r.scene = observation.scene;
   r.given = observation.given;
+  r.world = earlier.world;
+  r.lightFrame = earlier.lightFrame;
   r.surfaces = earlier.surfaces;
   r.request = observation.request;
   r.train = earlier.train;

@@ -20,7 +20,6 @@
 #include "core/pipeline/highlight_motion.h"
 #include "core/pipeline/live_prediction.h"
 #include "core/pipeline/lobe_stage.h"
-#include "core/pipeline/merged_peaks.h"
 #include "core/pipeline/training.h"
 #include "core/pipeline/width_check.h"
 #include "core/surface/mesh_policy.h"
@@ -369,6 +368,16 @@ void StageRun::modelFits() {
   if (viewsLackPixels_) attachPixels(r_);
   const std::vector<Group> all = groups();
   int done = 0;
+  std::map<FitKey, Doubts> doubts;  // the same for all models
+  const auto doubtsOf = [&](const Group& group) -> const Doubts& {
+    const auto [found, isNew] = doubts.try_emplace(group.key);
+    if (!isNew) return found->second;
+    const LightEstimate* const estimate = r_.lightOf(group.key);
+    const std::optional<Light> light = estimate ? std::optional(estimate->light) : std::nullopt;
+    const std::vector<TrainingView> views = viewsOf(group, false);
+    found->second = {widthDoubt(views, light), mergedPeaks(views, light, r_.request.settings)};
+    return found->second;
+  };
   for (const std::string& name : r_.request.models) {
     ModelResult& result = r_.models[name];
     result.model = name;
@@ -379,21 +388,21 @@ void StageRun::modelFits() {
     for (const Group& g : all) {
       const StageEvent now{"fit " + name, done++, static_cast<int>(all.size() * r_.request.models.size())};
       if (!report(progress_, now)) throw Stopped{};
-      result.fits.push_back(fitOf(modelByName(name), g.key, [&](const StageEvent&) { return report(progress_, now); }));
+      result.fits.push_back(
+          fitOf(modelByName(name), g.key, doubtsOf(g), [&](const StageEvent&) { return report(progress_, now); }));
       ++r_.work.fits;
     }
   }
 }
 
-ModelResult::Fit StageRun::fitOf(const HighlightModel& model, const FitKey& key, const ProgressFn& goesOn) const {
+ModelResult::Fit StageRun::fitOf(const HighlightModel& model, const FitKey& key, const Doubts& doubts,
+                                 const ProgressFn& goesOn) const {
   ModelResult::Fit entry;
   entry.light = key.light;
   entry.surface = key.surface;
   FitInput input = fitInputOf(r_, model, key);
   input.progress = goesOn;
-  const std::optional<Light> light = input.light ? std::optional(input.light->light) : std::nullopt;
-  const std::string widths = widthDoubt(input.views, light);
-  const std::optional<MergedPeaks> merged = mergedPeaks(input.views, light, r_.request.settings);
+  const auto& [widths, merged] = doubts;
   const auto start = std::chrono::steady_clock::now();
   entry.fit = model.fit(input, r_.request.settings);
   if (entry.fit && merged && merged->certain) entry.fit = Failure{Reason::NotConverged, merged->text};

@@ -11,6 +11,7 @@
 #include "core/base/progress.h"
 #include "core/model/band.h"
 #include "core/pipeline/inspection.h"
+#include "core/pipeline/merged_peaks.h"
 
 namespace glint {
 
@@ -64,7 +65,12 @@ class StageRun {
   bool anyModel(bool (HighlightModel::*needs)() const) const;
   std::vector<TrainingView> viewsOf(const Group& group, bool asGiven) const;
   void correct(const Group& group, const SurfaceCorrection& correction, std::vector<TrainingView> corrected);
-  ModelResult::Fit fitOf(const HighlightModel& model, const FitKey& key, const ProgressFn& goesOn) const;
+  /// What the highlights of a group say against any model of one lamp and one material.
+  struct Doubts {
+    std::string widths;  ///< widthDoubt()
+    std::optional<MergedPeaks> merged;
+  };
+  ModelResult::Fit fitOf(const HighlightModel& model, const FitKey& key, const Doubts& doubts, const ProgressFn& goesOn) const;
   std::vector<std::shared_ptr<const Band>> bandsOf(const HighlightModel& model, ModelResult& result);
   void predict(const HighlightModel& model, ModelResult& result);
   void standInLightFrame();
