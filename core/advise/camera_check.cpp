@@ -62,8 +62,7 @@ class Check {
     }
     asGiven_ = lampAfter({});
     if (const LightFrameChoice choice = lightFrame(); choice.frame == LightFrame::Camera && !carried_) {
-      const Scene there = inCameras(scene_);
-      result_ = Check(there, progress_, &surfaces_).run();
+      result_ = Check(inCameras(scene_), progress_, &surfaces_).run();
       result_.lightFrame = choice.reason;
       return std::move(result_);
     }
