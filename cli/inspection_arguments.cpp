@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <set>
 #include <sstream>
 
 #include "core/app/session.h"
@@ -140,6 +141,16 @@ void warnOfUnusedTrainingFrames(const Inspection& inspection, const Context& con
 
 void requireUsableViews(const Inspection& inspection) {
   if (std::optional<Failure> none = noUsableView(inspection)) throw CannotAnswer{*std::move(none)};
+}
+
+void requireLights(const Inspection& result) {
+  std::set<std::string> ids;
+  for (const auto& [name, model] : result.models)
+    for (const ModelResult::Fit& fit : model.fits) ids.insert(fit.light);
+  std::string all;
+  for (const std::string& id : ids) all += (all.empty() ? "" : ", ") + id;
+  for (const std::string& id : result.request.lights)
+    if (!ids.count(id)) throw InputError("", "--light", "no light '" + id + "' is fitted or known; there are: " + all);
 }
 
 }  // namespace glint::cli

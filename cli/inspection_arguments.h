@@ -71,4 +71,7 @@ void warnOfUnusedTrainingFrames(const Inspection& inspection, const Context& con
 /// Throws CannotAnswer if no training view could be used at all, with the first reason.
 void requireUsableViews(const Inspection& inspection);
 
+/// InputError for a light of --light that is neither fitted nor known.
+void requireLights(const Inspection& result);
+
 }  // namespace glint::cli

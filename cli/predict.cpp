@@ -46,7 +46,7 @@ std::string predictionTable(const Inspection& inspection, const std::vector<int>
 
 struct PredictArguments {
   std::string session, frames, exclude, out, json, preset, masks, labels, poses;
-  std::vector<std::string> set;
+  std::vector<std::string> set, lights;
   bool stream = false;
   SceneArguments places;
   /// Bands take several fits: a user who wants none gets none.
@@ -104,6 +104,7 @@ int run(const PredictArguments& a, const Context& context) {
   if (!a.preset.empty()) applyPreset(opened.session, a.preset, request);
   applyEach(request.settings, a.set);
   exclude(a.exclude, *opened.scene, request);
+  request.lights = a.lights;
   if (a.stream) return answerPoses(opened, request, a.poses, context);
   const Scene& scene = *opened.scene;
   std::vector<int> frames;
@@ -120,6 +121,7 @@ int run(const PredictArguments& a, const Context& context) {
   const bool shows = (!a.out.empty() && !formats) || !a.json.empty();
   if (shows && !a.saysBand()) request.settings.set("predict.band", true);
   const Inspection result = inspect(opened.scene, request, context.progress());
+  requireLights(result);
   if (formats) writeLabels(result, a.out, context.progress(), *formats, frames);
   if (!a.out.empty() && !formats) writeFolder(a.out, result, frames, context);
   if (!a.masks.empty()) writeLabels(result, a.masks, context.progress());
@@ -152,11 +154,13 @@ Command predictCommand() {
       "  glint predict run.glint                       a table of all frames\n"
       "  glint predict run.glint --frames 6-20 --out predicted\n"
       "  glint predict run.glint --labels coco,yolo --out labels\n"
+      "  glint predict dome.glint --light dome-13        a known lamp that no photograph shows\n"
       "  tracker | glint predict run.glint --preset balanced --stream | viewer\n";
   c.declare = [a](Options& o) {
     o.positional(a->session, "FILE.glint", "A session written by `glint reconstruct` or the inspector");
     o.option(a->frames, "--frames", "SPEC", "Frames to predict: numbers, ids, ranges, first:K or spread:K (default: all)");
     o.option(a->exclude, "--exclude", "SPEC", kExcludeHelp);
+    o.repeated(a->lights, "--light", "ID", "Predict this light, fitted or known, whether it is on or not; may be repeated");
     o.option(a->preset, "--preset", "NAME",
              "Take model and settings from the session's trade-off: fast, balanced, exact or chosen");
     o.option(a->out, "--out", "DIR", "Write contours, overlays and labels to this folder");

@@ -6,6 +6,7 @@
 #include <iostream>
 #include <system_error>
 
+#include "cli/inspection_arguments.h"
 #include "cli/interrupt.h"
 #include "cli/terminal.h"
 #include "core/base/stage_times.h"
@@ -76,6 +77,7 @@ int answerPoses(const OpenedSession& opened, const InspectionRequest& request, c
   PoseInput input(poses);
   const LivePredictor predictor(opened.scene, request, context.progress());
   if (const std::optional<Failure> none = predictor.failure()) throw CannotAnswer{*none};
+  requireLights(predictor.inspection());
   for (const std::string& w : warningsOf(predictor.inspection())) context.warn(w);
   for (const auto& [name, result] : predictor.inspection().models)
     for (const std::string& line : bandLines(predictor.inspection(), result)) context.info(name + ": " + line);

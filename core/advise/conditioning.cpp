@@ -42,17 +42,6 @@ const char* chosen(Verdict v, const char* green, const char* amber, const char* 
   return v == Verdict::Green ? green : v == Verdict::Amber ? amber : v == Verdict::Red ? red : "";
 }
 
-/// The training views of one fit.
-std::vector<TrainingView> viewsOf(const Inspection& inspection, const ModelResult::Fit& fit) {
-  std::vector<TrainingView> views;
-  for (const TrainingView& v : inspection.views) {
-    if (v.highlight.light != fit.light) continue;
-    if (fit.surface && inspection.surfaces && inspection.surfaces->keyOf(v.frame) != *fit.surface) continue;
-    views.push_back(v);
-  }
-  return views;
-}
-
 /// The outlines that the model takes for those of its ellipsoid.
 std::vector<ConicView> outlinesOf(const HighlightModel& model, const std::vector<TrainingView>& views) {
   std::vector<ConicView> conics;
@@ -82,7 +71,7 @@ class Findings {
         result_(result),
         fit_(fit),
         model_(modelByName(result.model)),
-        views_(viewsOf(inspection, fit)),
+        views_(inspection.viewsOf(fit.key())),
         rays_(raysOf(model_, views_)) {
     c_.model = result.model;
     c_.light = fit.light;

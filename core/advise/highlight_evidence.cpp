@@ -25,20 +25,13 @@ constexpr double kOutlier = 1.12;    // of a limit angle from the median of its 
 constexpr double kLargeShare = 0.1;  // of the radius that a residual leaves: the default of fit.most_residual
 constexpr double kManyTimes = 3;     // times the median residual
 
-std::vector<TrainingView> viewsOf(const Inspection& inspection, const FitKey& key) {
-  std::vector<TrainingView> views;
-  for (const TrainingView& v : inspection.views)
-    if (inspection.keyFor(v.frame, v.highlight.light) == key) views.push_back(v);
-  return views;
-}
-
 /// The common light; if its bundle failed, the light of the peaks alone, so that the failure can be explained.
 Outcome<LightEstimate> lightAnyway(const Inspection& inspection, const FitKey& key) {
   const auto known = inspection.lights.find(key);
   if (known != inspection.lights.end() && known->second) return known->second;
   Settings settings = inspection.request.settings;
   settings.setFromText("light.solver", "triangulated");
-  return estimateLight(viewsOf(inspection, key), settings);
+  return estimateLight(inspection.viewsOf(key), settings);
 }
 
 /// The model's fit to the views of one key; where that failed, one that is refused by nothing.
@@ -54,7 +47,7 @@ Outcome<ModelFit> fitAnyway(const Inspection& inspection, const HighlightModel& 
     light = lightAnyway(inspection, key);
     if (!*light) return light->failure();
   }
-  std::vector<TrainingView> views = viewsOf(inspection, key);
+  std::vector<TrainingView> views = inspection.viewsOf(key);
   if (model.needsCanonicalContours() && light)
     for (TrainingView& v : views)
       if (v.seen && !v.canonical) addCanonicalContour(v, (*light)->light, settings);

@@ -35,14 +35,7 @@ Fault faultOf(const FrameComparison& c, const std::string& model) {
 
 /// The views of one fit, on their surfaces as given: of its light, and of its surface where models are per surface.
 std::vector<TrainingView> viewsOf(const Inspection& inspection, const Fault& fault) {
-  std::vector<TrainingView> views;
-  for (int v = 0; v < static_cast<int>(inspection.views.size()); ++v) {
-    const TrainingView& view = inspection.views[static_cast<std::size_t>(v)];
-    if (view.highlight.light == fault.light &&
-        inspection.keyFor(view.frame, fault.light) == inspection.keyFor(fault.frame, fault.light))
-      views.push_back(inspection.viewAsGiven(v));
-  }
-  return views;
+  return inspection.viewsOf(inspection.keyFor(fault.frame, fault.light), true);
 }
 
 /// The answer of the model fitted to some of the views.

@@ -17,6 +17,7 @@
 #include "core/model/plausible.h"
 #include "core/pipeline/fit_engine.h"
 #include "core/pipeline/inspection.h"
+#include "core/pipeline/known_lamps.h"
 #include "core/pipeline/training.h"
 
 namespace glint {
@@ -177,10 +178,19 @@ class SceneLamp {
     dropContrary();
     a_.from = middleOf(views_);
     if (!fromModel() && !fromBundle()) fromRays();
+    compareWithStated();
     return a_;
   }
 
  private:
+  /// Where the scene states the lamp as known: by how much the highlights see it elsewhere.
+  void compareWithStated() {
+    const std::optional<KnownLamp> stated = knownLamp(*r_.scene, light_.id);
+    if (!stated || a_.failure) return;
+    const Eigen::Vector3d to = lightOf(stated->lamp).directionFrom(*a_.from);
+    a_.remarks.push_back(formatted("the scene states this lamp: it lies %.2g\u00b0 from the measured direction",
+                                   degrees(std::atan2(to.cross(a_.direction).norm(), to.dot(a_.direction)))));
+  }
   const std::string& idOf(int frame) const { return r_.scene->frames[static_cast<std::size_t>(frame)].id; }
 
   void drop(const TrainingView& v, const std::string& reason) {
@@ -190,6 +200,7 @@ class SceneLamp {
   void gather() {
     for (const int v : light_.views) {
       TrainingView view = r_.viewAsGiven(v);
+      view.known.reset();  // the highlights are asked, not the scene
       if (view.seen) {
         // The points of a given contour may be exact; points between them lie on chords, inside the contour.
         Polyline& contour = view.highlight.contour;
@@ -225,7 +236,8 @@ class SceneLamp {
     views_ = std::move(lit.views);
     estimate_ = std::move(lit.light);
     const auto known = r_.pixelFits.find(r_.keyFor(views_.front().frame, light_.id));
-    const bool use = whole_ && !lit.correction && known != r_.pixelFits.end() && known->second;
+    const bool use =
+        whole_ && !lit.correction && !knownLamp(*r_.scene, light_.id) && known != r_.pixelFits.end() && known->second;
     const Outcome<ModelFit> fit =
         accepted(fitModel(radianceModel(), views_, estimate_, settings, use ? KnownPixels{*known->second} : KnownPixels{}),
                  PoorFits::Refuse);

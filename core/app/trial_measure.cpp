@@ -201,11 +201,7 @@ double TradeoffBench::fitUs(const Inspection& inspection, const Trial& trial) co
   for (int r = 0; r < repeats_; ++r) {
     double total = 0;
     for (const ModelResult::Fit& f : inspection.models.at(trial.model).fits) {
-      std::vector<TrainingView> views;
-      for (int v = 0; v < static_cast<int>(inspection.views.size()); ++v) {
-        const TrainingView& view = inspection.views[static_cast<std::size_t>(v)];
-        if (inspection.keyFor(view.frame, view.highlight.light) == f.key()) views.push_back(inspection.viewAsGiven(v));
-      }
+      std::vector<TrainingView> views = inspection.viewsOf(f.key(), true);
       check();
       const auto start = std::chrono::steady_clock::now();
       std::optional<LightFit> light;

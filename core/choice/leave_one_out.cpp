@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
+#include <set>
 #include <utility>
 
 #include "core/base/evenly.h"
@@ -133,12 +134,12 @@ std::vector<Fold> foldsOf(const Inspection& inspection, LeaveOut together) {
     fold.leftSurface = fold.left.surface;
     const FitKey key = inspection.keyFor(fold.left.frame, fold.left.highlight.light);
     // The whole frame is left out: another highlight in it has seen the same camera and the same errors.
-    for (std::size_t i = 0; i < inspection.views.size(); ++i) {
-      const TrainingView& v = inspection.views[i];
-      if (together == LeaveOut::Place && places[i] == places[left]) continue;
-      if (!v.seen || v.frame == fold.left.frame || inspection.keyFor(v.frame, v.highlight.light) != key) continue;
-      fold.others.push_back(inspection.viewAsGiven(static_cast<int>(i)));
-    }
+    std::set<int> out{fold.left.frame};
+    for (std::size_t i = 0; i < inspection.views.size(); ++i)
+      if (together == LeaveOut::Place && places[i] == places[left] && inspection.views[i].highlight.light == key.light)
+        out.insert(inspection.views[i].frame);
+    for (TrainingView& v : inspection.viewsOf(key, true))
+      if (v.seen && !out.count(v.frame)) fold.others.push_back(std::move(v));
     fold.pixels = knownPixelsOf(inspection, key);
     fold.pixels.near = std::exchange(fold.pixels.fit, nullptr);  // that of all views
     all.push_back(std::move(fold));

@@ -138,7 +138,7 @@ Colour colourOf(const SceneThing& thing) {
 SceneDrawing sceneThings(const Inspection& inspection, const DrawingOptions& options) {
   SceneDrawing things;
   for (const auto& [key, estimate] : inspection.lights) {
-    if (!estimate) continue;
+    if (!estimate || estimate->known) continue;  // a known lamp is drawn once, below
     things.push_back(estimateThing(key.light, estimate->light, options.scale));
     things.back().surface = key.surface;
   }
@@ -260,7 +260,7 @@ std::optional<SceneThing> fittedLampThing(const Inspection& inspection, const Mo
 SceneThing trueLampThing(const TrueLight& light, double least, const SceneScale& scale) {
   const Lamp& lamp = light.lamp;
   const Lamp shown = lamp.atInfinity() ? lamp : withRadius(lamp, std::max(radiusOf(lamp), least));
-  SceneThing thing = lampThing(SceneRole::TrueLamp, shown, "truth: " + lightName(light.id), scale);
+  SceneThing thing = lampThing(SceneRole::TrueLamp, shown, (light.known ? "known: " : "truth: ") + lightName(light.id), scale);
   thing.light = light.id;
   return thing;
 }

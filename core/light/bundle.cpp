@@ -114,6 +114,7 @@ bool reweighted(std::vector<ContourEvidence>& points, Attempt& a, bool atInfinit
       else
         problem.SetManifold(a.light.data(), new ceres::SphereManifold<4>());
       // Down to round-off: only then do invariances hold to 1e-9.
+      if (options.holdLight) problem.SetParameterBlockConstant(a.light.data());
       solution = solveDense(problem, already + options.maxIterations - a.iterations, 1e-12);
     }
     a.iterations += solution.iterations;
@@ -171,6 +172,20 @@ Attempt traced(NormalisedContours& contours, Eigen::Vector4d start, bool atInfin
   run.end(a.converged && !a.behind, ending, worldOf(a.light, contours));
   a.run = run.index();
   return a;
+}
+
+/// The limit angle's alone, under a light that is known.
+void setLimitUncertainty(const std::vector<ContourEvidence>& points, const Attempt& a, double robustPx, Bundle& bundle) {
+  const ResidualSpread spread = spreadOf(points, a, 1, robustPx);
+  double squares = 0;
+  for (const ContourEvidence& e : points) squares += e.pixelsPerRadian * e.pixelsPerRadian;
+  bundle.covariance.setZero();
+  bundle.positionCovariance.setZero();
+  if (!(squares > 0)) return;
+  bundle.covariance(3, 3) = spread.factor / squares;
+  Eigen::MatrixXd root = Eigen::MatrixXd::Zero(5, 1);
+  root(4, 0) = std::sqrt(bundle.covariance(3, 3));
+  bundle.uncertainty = ParameterUncertainty{std::move(root), spread.noisePx, spread.degreesOfFreedom};
 }
 
 void setCovariance(const std::vector<ContourEvidence>& points, const Attempt& a, const Eigen::Vector3d& origin, double scale,
@@ -240,11 +255,21 @@ struct Best {
   Attempt attempt;
   int iterations = 0;  ///< of all starts
 };
+/// The limit angle that explains the points best under the start itself.
+Outcome<Best> heldAttempt(NormalisedContours& contours, const Eigen::Vector4d& start, const BundleOptions& options) {
+  const Attempt a = traced(contours, start, start.w() == 0, options);
+  if (a.behind || a.light.head<3>().dot(start.head<3>()) < 0)
+    return Failure{Reason::LightBehindSurface, "the known light is behind the surface that shows its highlight"};
+  if (!std::isfinite(a.cost) || !a.converged) return Failure{Reason::NotConverged, "limit angle under a known light"};
+  traceAnswer(a.run);
+  return Best{a, a.iterations};
+}
 Outcome<Best> bestAttempt(NormalisedContours& contours, const Light& start, const BundleOptions& options) {
   std::vector<ContourEvidence>& points = contours.points;
   Eigen::Vector4d first;
   first << (start.homogeneous().head<3>() - start.homogeneous().w() * contours.origin) / contours.scale, start.homogeneous().w();
   if (!(first.norm() > 0) || !first.allFinite()) first << 0, 0, 1, 0;
+  if (options.holdLight) return heldAttempt(contours, first, options);
   const auto attempt = [&](const Eigen::Vector4d& from) {
     Attempt a = traced(contours, from, from.w() == 0, options);
     if (from.w() == 0 && std::isfinite(a.cost) && !a.behind) {  // the light may be nearer than infinity
@@ -364,7 +389,7 @@ Outcome<Bundle> bundleLight(const std::vector<ContourEvidence>& evidence, std::s
   const Attempt best = options.limitOrders > 0 ? directedAndTraced(*contours, found->attempt, options) : found->attempt;
   if (const std::optional<Failure> degenerate = withoutLimit(points, best)) return *degenerate;
   Bundle bundle;
-  bundle.light = Light::homogeneous(worldOf(best.light, *contours));
+  bundle.light = options.holdLight ? start : Light::homogeneous(worldOf(best.light, *contours));
   bundle.limitAngle = best.limit;
   if (best.directed) bundle.extent = symmetric(best.extent) * (best.light.w() == 0 ? 1.0 : contours->scale * contours->scale);
   bundle.iterations = found->iterations;
@@ -377,7 +402,10 @@ Outcome<Bundle> bundleLight(const std::vector<ContourEvidence>& evidence, std::s
     bundle.typicalPx.push_back(rmsWithoutTail(residuals));
   }
   bundle.rmsPx = std::sqrt(sum / points.size());
-  setCovariance(points, best, contours->origin, contours->scale, options.robustPx, bundle);
+  if (options.holdLight)
+    setLimitUncertainty(points, best, options.robustPx, bundle);
+  else
+    setCovariance(points, best, contours->origin, contours->scale, options.robustPx, bundle);
   return bundle;
 }
 

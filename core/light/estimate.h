@@ -43,6 +43,7 @@ struct BundleOptions {
   int pointsPerView = 72;  ///< contour points used, equally spaced in arc length
   double robustPx = 1.0;   ///< scale of the Huber/Cauchy loss, px
   int maxIterations = 100;
+  bool holdLight = false;  ///< the start is known: only the limit angle is estimated
   int limitOrders = 0;  ///< 0: one limit angle; 1: also the extent of the light (directed_limit.h), from the second even order on
 };
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <array>
 #include <functional>
 #include <memory>
@@ -63,6 +64,12 @@ enum class CutUse {
   Pixels  ///< the pixels that are seen, wherever the peak is
 };
 
+/// A lamp that the scene states as known, in the coordinates of a view.
+struct KnownLamp {
+  Lamp lamp;
+  double sigma = 0;  ///< standard deviation of each coordinate of its place, m, or of its direction, rad
+};
+
 /// One observation used for training: one highlight of one light in one frame, with what was derived from it.
 struct TrainingView {
   int frame = -1;
@@ -73,6 +80,10 @@ struct TrainingView {
   std::vector<LevelContour> levels;  ///< contours at other levels than highlight.level; they share the frame's maximum
   CutUse cut = CutUse::None;
   std::shared_ptr<const PixelPatch> pixels;  ///< around the highlight, where pixels are evidence (core/reflectance/pixel_patch.h)
+  std::optional<KnownLamp> known;            ///< the lamp of the highlight, where the scene states it
+  /// From the scene's coordinates to those of camera, surface and lamp: not the identity where the view was carried to another
+  /// known lamp (core/pipeline/known_lamps.h). `pixels` stay in the scene's.
+  Eigen::Isometry3d fromScene = Eigen::Isometry3d::Identity();
   /// What was seen, or why this view cannot be used; only `primal`, which needs no surface, looks at the reason.
   Outcome<SeenOnSurface> seen = Failure{Reason::NotReached, "nothing was observed"};
   std::optional<CanonicalContour> canonical;  ///< of a view that was seen, once its light is known
@@ -88,7 +99,8 @@ struct LightEstimate {
   double condition = 0;                       ///< of the triangulation
   double rmsPx = 0;                           ///< of the bundle's residuals, 0 when triangulated
   std::vector<double> residualPx;             ///< per view that was used (those `seen`), in their order: rmsWithoutTail()
-  std::string solver;                         ///< "triangulated" or "bundle"
+  std::string solver;                         ///< "triangulated", "bundle" or "known"
+  std::optional<LampShape> known;             ///< shape of a lamp that the scene states: fits keep it and `light`
   /// Second moment of an extended light about `light`, m^2 (rad^2 for a light at infinity): widens the limit angle where the
   /// light is long. Empty for a limit angle that is one constant.
   std::optional<Eigen::Matrix3d> extent;

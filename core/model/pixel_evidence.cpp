@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <deque>
+#include <map>
+#include <utility>
 
 #include "core/base/number_text.h"
 #include "core/light/estimate.h"
@@ -20,6 +23,31 @@ constexpr std::size_t kFewestContours = 3;  // that tell a lamp's shape
 // the contours.
 constexpr double kContradiction = 0.025;
 constexpr double kBlurShift = 1.5;  // times blur^2 / radius: how far blur moves a contour, of a lobe with a long tail too
+
+/// Pixels of views with the light's strength of each: under known lamps, which were carried to one, every frame's lamp has its
+/// own.
+class PatchesOfViews {
+ public:
+  explicit PatchesOfViews(const std::vector<TrainingView>& views) {
+    std::map<std::pair<int, std::string>, int> strengths;
+    for (const TrainingView& v : views) {
+      if (!v.seen || !v.pixels) continue;
+      if (v.known) {
+        const int own = static_cast<int>(strengths.size());
+        carried_.push_back(carriedBy(*v.pixels, v.fromScene));
+        carried_.back().frame = strengths.try_emplace({v.frame, v.highlight.light}, own).first->second;
+      }
+      pointers_.push_back(v.known ? &carried_.back() : v.pixels.get());
+    }
+  }
+  PatchesOfViews(const PatchesOfViews&) = delete;
+  PatchesOfViews& operator=(const PatchesOfViews&) = delete;
+  const std::vector<const PixelPatch*>& all() const { return pointers_; }
+
+ private:
+  std::deque<PixelPatch> carried_;
+  std::vector<const PixelPatch*> pointers_;
+};
 
 std::vector<ReflectedRay> peakRays(const std::vector<TrainingView>& views) {
   std::vector<ReflectedRay> rays;
@@ -147,15 +175,15 @@ bool havePixels(const std::vector<TrainingView>& views) {
 
 Outcome<PixelFit> fitViewsPixels(const std::vector<TrainingView>& views, const std::optional<LightEstimate>& light,
                                  const Settings& settings, const ProgressFn& progress, const PixelFit* near) {
-  std::vector<const PixelPatch*> patches;
+  const PatchesOfViews own(views);
+  const std::vector<const PixelPatch*>& patches = own.all();
   double level = 0.5;
-  for (const TrainingView& v : views) {
-    if (!v.seen || !v.pixels) continue;
-    patches.push_back(v.pixels.get());
-    level = v.highlight.level;
-  }
+  for (const TrainingView& v : views)
+    if (v.seen && v.pixels) level = v.highlight.level;
   if (patches.empty()) return Failure{Reason::TooFewViews, "no training view has pixels"};
+  const bool known = light && light->known;
   PixelFitOptions options;
+  options.holdLamp = known;
   options.progress = progress;
   if (near) {
     PixelFitOptions same = options;
@@ -165,15 +193,15 @@ Outcome<PixelFit> fitViewsPixels(const std::vector<TrainingView>& views, const s
     if (fit && !fit->poor) return fit;
   }
   const std::vector<Lobe> lobes = lobesOf(settings);
-  std::vector<Light> starts;
-  if (light) starts.push_back(light->light);
-  const std::vector<ReflectedRay> rays = peakRays(views);
+  std::vector<Lamp> starts;
+  if (light) starts.push_back(known ? Lamp(light->light.homogeneous(), *light->known) : Lamp(light->light));
+  const std::vector<ReflectedRay> rays = known ? std::vector<ReflectedRay>() : peakRays(views);
   // Where highlights are unequal, their contours lie at different shares of their own peaks, and mislead; their peaks do not.
   if (const Outcome<Triangulation> meet = triangulateLight(rays)) starts.push_back(meet->light);
   if (const std::optional<Light> mean = meanRay(rays)) starts.push_back(*mean);
   Outcome<PixelFit> best = Failure{Reason::NoLight, "no reflected ray to start from"};
-  for (const Light& start : starts) {
-    const double alpha = medianContourAngle(views, start, kWidthPoints);
+  for (const Lamp& start : starts) {
+    const double alpha = medianContourAngle(views, lightOf(start), kWidthPoints);
     if (!(alpha > 0)) continue;
     const double roughness =
         std::clamp(std::tan(alpha) / std::sqrt(-std::log(level)), 1e-3, 1.0);  // a start within the lobes' range
@@ -181,7 +209,7 @@ Outcome<PixelFit> fitViewsPixels(const std::vector<TrainingView>& views, const s
     if (!best || (fit && (fit->poor != best->poor ? best->poor : fit->cost < best->cost))) best = std::move(fit);
     if (best && !best->poor) break;
   }
-  if (best && (best->poor || asksForExtent(*best)))
+  if (best && !known && (best->poor || asksForExtent(*best)))
     if (std::optional<PixelFit> extended = withExtent(views, patches, *best, settings, progress)) best = *std::move(extended);
   if (best && best->poor) {
     const std::string detail = formatted("no lobe and light explain the pixels: %.3g px remain at the contours", best->rmsPx);

@@ -159,6 +159,7 @@ class Reflectance final : public HighlightModel {
                                              const Settings& settings) {
     RadianceFitOptions options = radianceFitOptionsOf(settings);
     options.progress = input.progress;
+    if (input.light && input.light->known) return underKnownLamp(input, views, settings, options);
     if (const std::optional<RadianceFit> near = input.near ? radianceFitOf(*input.near) : std::nullopt)
       if (Outcome<RadianceFit> found = fitNear(lobesOf(settings), views, *near, options); found && !found->poor) return found;
     const std::optional<Light> light = firstLight(input);
@@ -166,6 +167,20 @@ class Reflectance final : public HighlightModel {
     const double alpha = medianContourAngle(input.views, *light, kAnglePoints);
     if (!(alpha > 0)) return Failure{Reason::PeakOffSurface, "no contour point hits the lit surface"};
     return searchRadiance(lobesOf(settings), views, *light, std::min(alpha, kWidestStart), lampChoicesOf(settings), options);
+  }
+
+  /// The lobe alone: the lamp stays as the scene states it.
+  static Outcome<RadianceFit> underKnownLamp(const FitInput& input, const std::vector<RadianceView>& views,
+                                             const Settings& settings, RadianceFitOptions options) {
+    const std::vector<Lobe> lobes = lobesOf(settings);
+    const double alpha = medianContourAngle(input.views, input.light->light, kAnglePoints);
+    if (!(alpha > 0)) return Failure{Reason::PeakOffSurface, "no contour point hits the lit surface"};
+    options.holdLamp = true;
+    RadianceFit start;
+    start.lobe = lobes.front();
+    start.roughness = std::min(std::tan(std::min(alpha, kWidestStart)) / std::sqrt(-std::log(views.front().level)), 1.0);
+    start.lamp = Lamp(input.light->light.homogeneous(), *input.light->known);
+    return fitNear(lobes, views, start, options);
   }
 
   Eigen::MatrixXd bandShiftsPx(const ModelFit& fit, const PredictedHighlight& highlight, const Camera& camera,

@@ -66,8 +66,10 @@ class LightFitter {
   void refineNormals(LightFit& fit) const {
     const std::optional<std::string> surface = oneMesh(fit.views);
     if (!surface) return;
-    // Bumps are described in the world, where those of an object that moves do not stay.
-    const auto moves = [&](const TrainingView& v) { return !standsStill(scene_.frames[static_cast<std::size_t>(v.frame)]); };
+    // Bumps are described in the world, where those of an object that moves, or is carried to another lamp, do not stay.
+    const auto moves = [&](const TrainingView& v) {
+      return v.known || !standsStill(scene_.frames[static_cast<std::size_t>(v.frame)]);
+    };
     if (std::any_of(fit.views.begin(), fit.views.end(), moves)) return;
     Outcome<std::optional<RefinedNormals>> refined = glint::refineNormals(fit.views, *fit.light, *surface, settings_);
     if (!refined || !*refined) return;

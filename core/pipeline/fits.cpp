@@ -19,9 +19,7 @@
 namespace glint {
 
 FitInput fitInputOf(const Inspection& in, const HighlightModel& model, const FitKey& key) {
-  std::vector<TrainingView> views;
-  for (const TrainingView& v : in.views)
-    if (!v.highlight.light.empty() && in.keyFor(v.frame, v.highlight.light) == key) views.push_back(v);
+  std::vector<TrainingView> views = in.viewsOf(key);
   // The stage's fit is of all views of the group: it serves where none of them lost its pixels since.
   // Corrected normals are not those that the stage saw.
   const bool known = havePixels(views) && !in.corrections.count(key);

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/pipeline/corrected_depth.h"
+#include "core/pipeline/known_lamps.h"
 #include "core/scene/frame_name.h"
 #include "core/surface/mesh_policy.h"
 
@@ -34,6 +35,18 @@ TrainingView Inspection::viewAsGiven(int view) const {
   TrainingView v = given != viewsAsGiven.end() ? given->second : views[static_cast<std::size_t>(view)];
   v.canonical.reset();
   return v;
+}
+
+std::vector<TrainingView> Inspection::viewsOf(const FitKey& key, bool asGiven) const {
+  const std::optional<KnownLamp> lamp = knownLamp(*scene, key.light);
+  std::vector<TrainingView> own;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    const std::string& light = views[i].highlight.light;
+    const FitKey serves = keyFor(views[i].frame, light);
+    if (lamp ? serves.surface != key.surface || !views[i].known : serves != key) continue;
+    own.push_back(asGiven ? viewAsGiven(static_cast<int>(i)) : views[i]);
+  }
+  return lamp ? pooledViews(own, *lamp) : own;
 }
 
 const FrameEvidence* Inspection::evidenceOf(int frame, const StageInputs& from) const {

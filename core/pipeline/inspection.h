@@ -43,8 +43,9 @@ struct InspectionRequest {
   Settings settings;
   double noisePx = 0;  ///< Gaussian noise on training contours (72 points) and peaks
   unsigned seed = 1;
-  std::string truthFolder;  ///< --truth DIR, "" = own detection
-  WhatIf whatIf;            ///< changes to scene and evidence that the user tries out
+  std::vector<std::string> lights;  ///< predicted ones, on or not; empty = those that are on in each frame
+  std::string truthFolder;          ///< --truth DIR, "" = own detection
+  WhatIf whatIf;                    ///< changes to scene and evidence that the user tries out
   friend bool operator==(const InspectionRequest&, const InspectionRequest&) = default;
 };
 
@@ -107,6 +108,10 @@ struct Inspection {
   WorkCounts work;
   /// A training view on its surface as given, without canonical contour: what another fit than the inspection's own starts from.
   TrainingView viewAsGiven(int view) const;
+  /// The views that fits of a key see: those of its light, or of all known lamps that share its material, as views of this one
+  /// (core/pipeline/known_lamps.h).
+  /// @param asGiven  on the surfaces as given, see viewAsGiven()
+  std::vector<TrainingView> viewsOf(const FitKey& key, bool asGiven = false) const;
   /// The evidence of a frame, gathered from these inputs of Stage::Evidence; null if it is of others, or was not gathered.
   const FrameEvidence* evidenceOf(int frame, const StageInputs& from) const;
   /// What a later run takes its evidence and lobes from, and computes everything else anew.

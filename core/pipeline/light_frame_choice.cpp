@@ -11,6 +11,7 @@
 #include "core/base/evenly.h"
 #include "core/base/number_text.h"
 #include "core/light/shared_lamp.h"
+#include "core/pipeline/known_lamps.h"
 #include "core/surface/brightest_point.h"
 #include "core/surface/mesh_policy.h"
 
@@ -143,9 +144,15 @@ LightFrameChoice chooseLightFrame(const Scene& scene, const SurfaceCache& surfac
     std::set<std::string> labels;
     for (const Highlight& h : e.highlights) labels.insert(h.light);
     for (const std::string& label : labels)
-      if (PeakView view = peakViewOf(scene, e, label, *surface); !view.peaks.empty()) views[label].push_back(std::move(view));
+      if (PeakView view = peakViewOf(scene, e, label, *surface); !view.peaks.empty() && !knownLamp(scene, label))
+        views[label].push_back(std::move(view));
   }
   int still = 0, moving = 0;  // lights of which it is told
+  for (const TrueLight& light : scene.lights)
+    if (light.known) ++(light.frame == LightFrame::Camera ? moving : still);
+  const bool stated = moving + still > 0;
+  if (stated)
+    choice.reason = std::string("the scene states its lamps: they ") + (moving > 0 ? "move with the camera" : "stand still");
   for (const auto& [label, list] : views) {
     double radius = 0;
     for (const PeakView& v : list) radius += v.radiusPx / double(list.size());
@@ -159,7 +166,8 @@ LightFrameChoice chooseLightFrame(const Scene& scene, const SurfaceCache& surfac
     if (choice.reason.empty() || verdict.frame == LightFrame::Camera) choice.reason = verdict.reason;
     if (verdict.told == Verdict::Told::Either && choice.doubt.empty()) choice.doubt = verdict.reason;
   }
-  const std::string& wanted = settings.text("light.frame");
+  // The setting says where unknown lights stand.
+  const std::string wanted = stated && views.empty() ? "auto" : settings.text("light.frame");
   const bool carried = moving > 0 && moving >= still;
   choice.frame = wanted == "camera" || (wanted == "auto" && carried) ? LightFrame::Camera : LightFrame::World;
   const bool inCamera = choice.frame == LightFrame::Camera;

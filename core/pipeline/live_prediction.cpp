@@ -53,6 +53,11 @@ Prediction predictionFor(const Inspection& inspection, const ModelResult::Fit& f
   return given ? *why : given.failure();
 }
 
+bool isPredicted(const Scene& scene, const InspectionRequest& request, std::optional<int> frame, const std::string& light) {
+  if (!request.lights.empty()) return std::count(request.lights.begin(), request.lights.end(), light) > 0;
+  return !frame || isOn(scene, request.whatIf, *frame, light);
+}
+
 LivePredictor::LivePredictor(std::shared_ptr<const Scene> scene, const InspectionRequest& request, const ProgressFn& progress) {
   require(scene != nullptr && !scene->frames.empty(), "LivePredictor: no scene");
   const TrainSpec train = parseTrainSpec(request.train, *scene);
@@ -119,7 +124,7 @@ Outcome<LiveAnswer> LivePredictor::predict(const std::string& id, const Eigen::I
     const HighlightModel& model = modelByName(name);
     for (const ModelResult::Fit& fit : inspection_.models.at(name).fits) {
       if (fit.surface && frame && *fit.surface != inspection_.surfaces->keyOf(*frame)) continue;
-      if (answer.frame && !isOn(scene, inspection_.request.whatIf, *answer.frame, fit.light)) continue;
+      if (!isPredicted(scene, inspection_.request, answer.frame, fit.light)) continue;
       std::shared_ptr<const Surface> surface = surfaceOfModel(inspection_, model, frame.value_or(-1), fit.light);
       if (surface && !scene.frames[static_cast<std::size_t>(*frame)].surface.empty())
         surface = movedTo(place, std::move(surface));

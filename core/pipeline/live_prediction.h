@@ -31,6 +31,10 @@ std::shared_ptr<const Surface> surfaceOfModel(const Inspection& inspection, cons
 Prediction predictionFor(const Inspection& inspection, const ModelResult::Fit& fit, const HighlightModel& model, int frame,
                          const Camera& camera, const Surface* surface);
 
+/// Whether a light is predicted in a frame: one that the request names, or else one that is on there.
+/// @param frame  nothing = a view of no frame
+bool isPredicted(const Scene& scene, const InspectionRequest& request, std::optional<int> frame, const std::string& light);
+
 /// Predictions of one fit in a camera that came live.
 struct LiveHighlights {
   std::string model, light;

@@ -18,6 +18,7 @@
 #include "core/pipeline/evidence.h"
 #include "core/pipeline/hand_edits.h"
 #include "core/pipeline/highlight_motion.h"
+#include "core/pipeline/known_lamps.h"
 #include "core/pipeline/response_check.h"
 #include "core/pipeline/stage_inputs.h"
 #include "core/pipeline/training.h"
@@ -87,7 +88,7 @@ std::optional<LobeModel> startOf(const std::vector<TrainingView>& views, const L
 bool showCodes(const Inspection& r, const std::vector<TrainingView>& views) {
   return std::all_of(views.begin(), views.end(), [&](const TrainingView& v) {
     const FrameEvidence& e = r.evidence[static_cast<std::size_t>(v.frame)];
-    return !e.diffuse && e.separated.empty();
+    return !e.diffuse && e.separated.empty() && !(r.scene->frames[static_cast<std::size_t>(v.frame)].response.vignetting() > 0);
   });
 }
 
@@ -117,6 +118,47 @@ void fitLobe(Inspection& r, const FitKey& key, const std::vector<TrainingView>& 
   r.pixelFits.insert_or_assign(key, fit.failure());
   r.unexplained.insert_or_assign(
       key, std::make_shared<const UnexplainedPixels>(UnexplainedPixels{views, light, settings, fit.failure()}));
+}
+
+/// One group in place of those of all known lamps that share a material: that of the first of them. @return who shares it
+std::map<FitKey, std::vector<FitKey>> poolKnownLamps(const Inspection& r, std::map<FitKey, std::vector<TrainingView>>& groups) {
+  std::map<FitKey, std::vector<FitKey>> pools;
+  std::map<FitKey, std::vector<TrainingView>> pooled;
+  for (const auto& [key, views] : groups) {
+    const std::optional<KnownLamp> lamp = knownLamp(*r.scene, key.light);
+    if (!lamp) {
+      pooled.emplace(key, views);
+      continue;
+    }
+    const auto first = std::find_if(pools.begin(), pools.end(), [&, &surface = key.surface](const auto& pool) {
+      return pool.first.surface == surface && shareMaterial(*knownLamp(*r.scene, pool.first.light), *lamp);
+    });
+    const FitKey& of = first == pools.end() ? key : first->first;
+    if (first == pools.end())  // also lamps that no frame shows
+      for (const TrueLight& other : r.scene->lights)
+        if (other.known && shareMaterial(*knownLamp(*r.scene, other.id), *lamp)) pools[key].push_back({other.id, key.surface});
+    std::vector<TrainingView>& all = pooled[of];
+    all.insert(all.end(), views.begin(), views.end());
+  }
+  for (const auto& [key, sharers] : pools) pooled[key] = pooledViews(pooled[key], *knownLamp(*r.scene, key.light));
+  groups = std::move(pooled);
+  return pools;
+}
+
+/// The lobe of one known lamp's pixels for the others.
+void shareLobe(Inspection& r, const FitKey& of, const std::vector<FitKey>& sharers) {
+  for (const FitKey& key : sharers) {
+    if (key == of) continue;
+    const Outcome<std::shared_ptr<const PixelFit>>& found = r.pixelFits.at(of);
+    if (found) {
+      PixelFit own = **found;
+      own.model.lamp = knownLamp(*r.scene, key.light)->lamp;
+      r.pixelFits.insert_or_assign(key, std::make_shared<const PixelFit>(std::move(own)));
+    } else {
+      r.pixelFits.insert_or_assign(key, found.failure());
+    }
+    if (const auto doubt = r.responseDoubts.find(of); doubt != r.responseDoubts.end()) r.responseDoubts[key] = doubt->second;
+  }
 }
 
 bool isPhotograph(const Frame& frame, FrameSource source) {
@@ -150,7 +192,8 @@ void addVignetting(Inspection& r, const std::vector<int>& frames, const SurfaceO
     }
     if (views.size() < kFewestViews) continue;
     const std::size_t count = views.size();
-    const std::string remark = vignettingRemark(vignettingOf(TexturePanel(std::move(views), surface)), count);
+    const std::string remark = vignettingRemark(vignettingOf(TexturePanel(std::move(views), surface)), count,
+                                                scene.frames[static_cast<std::size_t>(own.front())].response);
     if (remark.empty()) continue;
     for (const int f : own)
       for (const Highlight& h : r.evidence[static_cast<std::size_t>(f)].highlights)
@@ -215,6 +258,7 @@ void fitLobes(Inspection& r, const SurfaceOfFrame& surfaceOf, bool together, con
           const auto use = cut.find(r.keyFor(f, highlight.light));
           TrainingView view = trainingView(evidence, h, frame.camera, surface, use == cut.end() ? CutUse::None : use->second);
           if (!view.seen) continue;
+          view.known = knownLamp(*r.scene, highlight.light);
           Outcome<PixelPatch> patch = pixelPatch(*pixels, frame.camera, *surface, f, atOwnLevel(highlight, evidence),
                                                  ofOthers(evidence, highlight.light));
           if (!patch) continue;
@@ -231,11 +275,13 @@ void fitLobes(Inspection& r, const SurfaceOfFrame& surfaceOf, bool together, con
       groups[r.keyFor(s.views[i].frame, s.views[i].highlight.light)].push_back(s.views[i]);
     }
   addVignetting(r, frames, surfaceOf);
+  const std::map<FitKey, std::vector<FitKey>> pools = poolKnownLamps(r, groups);
   int done = 0;
   const auto goesOn = [&](const StageEvent&) { return report(progress, {"lobe", done, static_cast<int>(groups.size())}); };
   for (const auto& [key, views] : groups) {
     if (!goesOn({})) throw Stopped{};
     fitLobe(r, key, views, goesOn);
+    if (const auto pool = pools.find(key); pool != pools.end()) shareLobe(r, key, pool->second);
     ++done;
   }
 }

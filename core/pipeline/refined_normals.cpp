@@ -13,6 +13,7 @@
 #include "core/reflectance/pixel_patch.h"
 #include "core/reflectance/radiance_field.h"
 #include "core/surface/mesh_policy.h"
+#include "core/surface/posed_surface.h"
 
 namespace glint {
 namespace {
@@ -107,10 +108,10 @@ std::string RefinedNormals::remark() const {
 }
 
 TrainingView onSurface(const TrainingView& view, std::shared_ptr<const Surface> surface) {
-  TrainingView other = seenAgain(view, view.camera, std::move(surface));
+  const bool carried = surface && view.fromScene.matrix() != Eigen::Isometry3d::Identity().matrix();
+  TrainingView other = seenAgain(view, view.camera, carried ? movedTo(view.fromScene * poseOf(*surface), surface) : surface);
   other.levels = view.levels;
-  if (view.pixels && other.surface)
-    other.pixels = std::make_shared<const PixelPatch>(glint::onSurface(*view.pixels, *other.surface));
+  if (view.pixels && surface) other.pixels = std::make_shared<const PixelPatch>(glint::onSurface(*view.pixels, *surface));
   return other;
 }
 

@@ -6,6 +6,7 @@
 #include "core/base/progress.h"
 #include "core/light/track.h"
 #include "core/pipeline/evidence.h"
+#include "core/pipeline/known_lamps.h"
 
 namespace glint {
 namespace {
@@ -79,7 +80,12 @@ void assignSeveralLights(const Scene& scene, std::vector<FrameEvidence>& evidenc
   for (std::size_t i = 0; i < n; ++i)
     if (statesNoLight(scene.frames[i]))
       for (Highlight& h : evidence[i].highlights) h.light.clear();
-  if (std::none_of(evidence.begin(), evidence.end(), open)) return;
+  const bool named = assignKnownLamps(scene, evidence, surfaceOf);
+  if (std::none_of(evidence.begin(), evidence.end(), open)) {
+    if (named)
+      for (FrameEvidence& e : evidence) nameTruth(e);
+    return;
+  }
   const auto assign = [&] {
     std::vector<TrackedFrame> tracked(n);
     for (std::size_t i = 0; i < n; ++i) tracked[i] = {scene.frames[i].camera, scene.frames[i].lightsOn, evidence[i].highlights};

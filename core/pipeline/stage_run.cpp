@@ -18,6 +18,7 @@
 #include "core/pipeline/fits.h"
 #include "core/pipeline/hand_edits.h"
 #include "core/pipeline/highlight_motion.h"
+#include "core/pipeline/known_lamps.h"
 #include "core/pipeline/live_prediction.h"
 #include "core/pipeline/lobe_stage.h"
 #include "core/pipeline/training.h"
@@ -260,6 +261,7 @@ void StageRun::brightestPointsAndTangentPlanes() {
     for (int h = 0; h < static_cast<int>(evidence.highlights.size()); ++h) {
       const CutUse use = cut.at(r_.keyFor(frame, evidence.highlights[static_cast<std::size_t>(h)].light));
       r_.views.push_back(trainingView(evidence, h, r_.scene->frames[frame].camera, surfaceOf(frame), use));
+      r_.views.back().known = knownLamp(*r_.scene, r_.views.back().highlight.light);
       if (TrainingView& view = r_.views.back(); !view.seen) view.seen = explained(frame, view.seen.failure());
     }
   }
@@ -282,6 +284,10 @@ std::vector<StageRun::Group> StageRun::groups() const {
   for (const FrameEvidence& e : r_.evidence)
     for (const Highlight& h : e.scored())
       if (!h.light.empty()) groupOf(e.frame, h.light);
+  // A known lamp needs no photograph of its own.
+  if (!r_.train.perSurface)
+    for (const TrueLight& light : r_.scene->lights)
+      if (light.known) groupOf(0, light.id);
   // So does a light that is on but has no highlight that could be told from those of other lights.
   if (!r_.train.perSurface)
     for (std::size_t i = 0; i < r_.scene->frames.size(); ++i) {
@@ -316,22 +322,28 @@ void StageRun::lights() {
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (!report(progress_, {"light", static_cast<int>(i), static_cast<int>(all.size())})) throw Stopped{};
     const FitKey& key = all[i].key;
-    if (!isSeen(r_, key.light)) {
+    const std::optional<KnownLamp> lamp = knownLamp(*r_.scene, key.light);
+    if (!lamp && !isSeen(r_, key.light)) {
       r_.lights.insert_or_assign(
           key, Failure{Reason::NoHighlight, key.light + " has none that can be distinguished from those of other lights"});
       continue;
     }
-    LightFit fit = fitLight(viewsOf(all[i], true), *r_.scene, *r_.surfaces, r_.request.settings);
+    LightFit fit = fitLight(r_.viewsOf(key, true), *r_.scene, *r_.surfaces, r_.request.settings);
     ++r_.work.lights;
     r_.lights.insert_or_assign(key, std::move(fit.light));
-    if (fit.correction) correct(all[i], fit.correction, std::move(fit.views));
+    if (!fit.correction) continue;
+    if (lamp) {  // the views of the fit are those of other lamps, too, and were carried
+      fit.views = ownViews(all[i]);
+      correctViews(fit.views, *r_.scene, *r_.surfaces, fit.correction, meshPolicy(r_.request.settings));
+    }
+    correct(all[i], fit.correction, std::move(fit.views));
   }
 }
 
-/// The views of a group on the surfaces as given, or as the fits see them.
-std::vector<TrainingView> StageRun::viewsOf(const Group& group, bool asGiven) const {
+/// Those of its light alone, where they stand in the scene.
+std::vector<TrainingView> StageRun::ownViews(const Group& group) const {
   std::vector<TrainingView> views;
-  for (const int v : group.views) views.push_back(asGiven ? r_.viewAsGiven(v) : r_.views[static_cast<std::size_t>(v)]);
+  for (const int v : group.views) views.push_back(r_.views[static_cast<std::size_t>(v)]);
   return views;
 }
 
@@ -374,8 +386,9 @@ void StageRun::modelFits() {
     if (!isNew) return found->second;
     const LightEstimate* const estimate = r_.lightOf(group.key);
     const std::optional<Light> light = estimate ? std::optional(estimate->light) : std::nullopt;
-    const std::vector<TrainingView> views = viewsOf(group, false);
-    found->second = {widthDoubt(views, light), mergedPeaks(views, light, r_.request.settings)};
+    const std::vector<TrainingView> views = ownViews(group);
+    found->second = {widthDoubt(views, light), mergedPeaks(views, light, r_.request.settings),
+                     estimate && estimate->known ? knownLampDoubt(views, *estimate) : std::string()};
     return found->second;
   };
   for (const std::string& name : r_.request.models) {
@@ -402,7 +415,8 @@ ModelResult::Fit StageRun::fitOf(const HighlightModel& model, const FitKey& key,
   entry.surface = key.surface;
   FitInput input = fitInputOf(r_, model, key);
   input.progress = goesOn;
-  const auto& [widths, merged] = doubts;
+  const std::optional<KnownLamp> known = knownLamp(*r_.scene, key.light);
+  const auto& [widths, merged, place] = doubts;
   const auto start = std::chrono::steady_clock::now();
   entry.fit = model.fit(input, r_.request.settings);
   if (entry.fit && merged && merged->certain) entry.fit = Failure{Reason::NotConverged, merged->text};
@@ -413,7 +427,8 @@ ModelResult::Fit StageRun::fitOf(const HighlightModel& model, const FitKey& key,
     if (together_ && input.views.empty())
       why.detail += "; no training frame shows this light: lamps may be switched between frames";
     if (merged && why.detail != merged->text) why.detail += "; " + merged->text;
-    if (!widths.empty()) why.detail += "; " + widths;
+    for (const std::string& doubt : {widths, place})
+      if (!doubt.empty()) why.detail += "; " + doubt;
     entry.fit = std::move(why);
     return entry;
   }
@@ -421,6 +436,7 @@ ModelResult::Fit StageRun::fitOf(const HighlightModel& model, const FitKey& key,
   fit.model = model.id();
   fit.light = key.light;
   fit.surface = key.surface;
+  if (known) describeKnownLamp(fit, key.light, *known, input.views);
   const auto add = [&](std::string remark) {
     if (!remark.empty()) fit.remarks.push_back(std::move(remark));
   };
@@ -432,6 +448,7 @@ ModelResult::Fit StageRun::fitOf(const HighlightModel& model, const FitKey& key,
   add(textureRemark(r_));
   add(takenOffRemark(r_));
   add(switchedRemark(r_, fit, [this](int frame) { return surfaceOf(frame); }));
+  add(place);
   add(widths);
   if (merged) add(merged->text);
   if (const auto doubt = r_.responseDoubts.find(key); doubt != r_.responseDoubts.end()) add(doubt->second);
@@ -486,7 +503,7 @@ void StageRun::predict(const HighlightModel& model, ModelResult& result) {
     for (int f = 0; f < static_cast<int>(result.fits.size()); ++f) {
       const ModelResult::Fit& fit = result.fits[f];
       if (fit.surface && *fit.surface != r_.surfaces->keyOf(frame)) continue;
-      if (!isOn(*r_.scene, r_.request.whatIf, frame, fit.light)) continue;
+      if (!isPredicted(*r_.scene, r_.request, frame, fit.light)) continue;
       tasks.push_back({frame, f});
     }
   }

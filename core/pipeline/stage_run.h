@@ -63,12 +63,13 @@ class StageRun {
   Failure explained(int frame, const Failure& failure) const;
   std::vector<Group> groups() const;
   bool anyModel(bool (HighlightModel::*needs)() const) const;
-  std::vector<TrainingView> viewsOf(const Group& group, bool asGiven) const;
+  std::vector<TrainingView> ownViews(const Group& group) const;
   void correct(const Group& group, const SurfaceCorrection& correction, std::vector<TrainingView> corrected);
   /// What the highlights of a group say against any model of one lamp and one material.
   struct Doubts {
     std::string widths;  ///< widthDoubt()
     std::optional<MergedPeaks> merged;
+    std::string place;  ///< knownLampDoubt()
   };
   ModelResult::Fit fitOf(const HighlightModel& model, const FitKey& key, const Doubts& doubts, const ProgressFn& goesOn) const;
   std::vector<std::shared_ptr<const Band>> bandsOf(const HighlightModel& model, ModelResult& result);

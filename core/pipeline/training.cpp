@@ -47,7 +47,10 @@ TrainingView seenAgain(const TrainingView& view, const Camera& camera, std::shar
   evidence.frame = view.frame;
   evidence.id = view.frameId;
   evidence.highlights = {view.highlight};
-  return trainingView(evidence, 0, camera, std::move(surface), view.cut);
+  TrainingView again = trainingView(evidence, 0, camera, std::move(surface), view.cut);
+  again.known = view.known;
+  again.fromScene = view.fromScene;
+  return again;
 }
 
 namespace {
@@ -65,6 +68,44 @@ int limitOrders(const std::vector<ContourEvidence>& evidence, const std::vector<
   constexpr int kLeftOut = 6;  // more places left out would not change a choice between two
   const Outcome<LeftOutErrors> errors = leftOutErrors(evidence, places, constant.light, options, kLeftOut);
   return errors && predictsLeftOutBetter(errors->directed, errors->constant) ? 1 : 0;
+}
+
+/// The lamp of all views, where it is known; null where it is not, or where they were not carried to one.
+const KnownLamp* knownLampOf(const std::vector<TrainingView>& views) {
+  const KnownLamp* known = nullptr;
+  for (const TrainingView& v : views) {
+    if (!v.seen) continue;
+    if (!v.known || (known && !(known->lamp == v.known->lamp))) return nullptr;
+    known = &*v.known;
+  }
+  return known;
+}
+
+/// The known light, with the limit angle that the contours show under it.
+Outcome<LightEstimate> knownLight(const std::vector<TrainingView>& views, const Lamp& lamp, const Settings& settings) {
+  LightEstimate estimate;
+  estimate.light = lightOf(lamp);
+  estimate.known = lamp.shape;
+  estimate.solver = "known";
+  BundleOptions options;
+  options.pointsPerView = settings.integer("light.bundle_points");
+  options.robustPx = settings.number("light.robust_px");
+  options.holdLight = true;
+  std::vector<ReflectedRay> rays;
+  std::vector<BundleView> bundleViews;
+  for (const TrainingView& v : views) {
+    if (!v.seen) continue;
+    rays.push_back(reflectedRay(v.seen->brightest, v.camera));
+    bundleViews.push_back(bundleView(v, options.pointsPerView));
+  }
+  estimate.condition = conditionOf(rays);
+  const Outcome<Bundle> b = bundleLight(bundleViews, estimate.light, options);
+  if (!b) return b.failure();
+  estimate.limitAngle = b->limitAngle;
+  estimate.rmsPx = b->rmsPx;
+  estimate.residualPx = b->typicalPx;
+  estimate.uncertainty = b->uncertainty;
+  return estimate;
 }
 
 /// The light, whichever side of the surface it is on.
@@ -132,7 +173,8 @@ Outcome<LightEstimate> estimateAnyLight(const std::vector<TrainingView>& views, 
 }  // namespace
 
 Outcome<LightEstimate> estimateLight(const std::vector<TrainingView>& views, const Settings& settings) {
-  Outcome<LightEstimate> estimate = estimateAnyLight(views, settings);
+  const KnownLamp* const known = knownLampOf(views);
+  Outcome<LightEstimate> estimate = known ? knownLight(views, known->lamp, settings) : estimateAnyLight(views, settings);
   if (!estimate) return estimate;
   if (std::optional<Failure> behind = lightBehind(views, estimate->light)) return *std::move(behind);
   return estimate;

@@ -138,13 +138,14 @@ std::optional<Vignetting> vignettingOf(const TexturePanel& panel) {
   return k > kLeastLoss && k > kSure * found.sigma && round ? std::optional(found) : std::nullopt;
 }
 
-std::string vignettingRemark(const std::optional<Vignetting>& found, std::size_t views) {
+std::string vignettingRemark(const std::optional<Vignetting>& found, std::size_t views, const CameraResponse& response) {
   if (!found) return "";
+  // To a hundredth: the light does not fall with a square to more digits.
+  const std::string fix = response.withVignetting(std::round(100 * found->cornerLoss) / 100).text();
   return formatted(
       "the images get darker towards their corners: about %.0f %% less light there, as the same surface points show in %zu "
-      "frames "
-      "(vignetting; the profile of the lens undoes it where the photographs are developed)",
-      100 * found->cornerLoss, views);
+      "frames (vignetting; state it: \"response\": \"%s\" in the camera, or --response \"%s\" for a capture)",
+      100 * found->cornerLoss, views, fix.c_str(), fix.c_str());
 }
 
 }  // namespace glint

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/pipeline/texture_panel.h"
+#include "core/scene/camera_response.h"
 
 namespace glint {
 
@@ -22,7 +23,8 @@ struct Vignetting {
 /// @return  nothing where the light does not fall by a seventh, or the views do not tell
 std::optional<Vignetting> vignettingOf(const TexturePanel& panel);
 
-/// A sentence about it; "" for nothing.
-std::string vignettingRemark(const std::optional<Vignetting>& found, std::size_t views);
+/// A sentence about it, with what undoes it; "" for nothing.
+/// @param response  of the views' images
+std::string vignettingRemark(const std::optional<Vignetting>& found, std::size_t views, const CameraResponse& response);
 
 }  // namespace glint

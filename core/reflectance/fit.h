@@ -28,6 +28,7 @@ struct RadianceFitOptions {
   double robustPx = 1.0;   ///< scale of the Huber loss, px
   int maxIterations = 100;
   bool lightSize = true;    ///< estimate the light's radius where the contours show it
+  bool holdLamp = false;    ///< the lamp is known: its place and shape stay those of the start
   bool otherStarts = true;  ///< try other distances and widths when the first guess converges badly
   ProgressFn progress{};    ///< asked after every iteration: fits and searches with these options throw Stopped
 };

@@ -116,18 +116,18 @@ void describeResiduals(const PixelProblem& pixels, PixelFit& fit) {
 
 /// Residuals of neighbouring cells go together along rows and along columns, so that the inflation that residualSpread() sees
 /// along rows counts twice.
-void describeUncertainty(PixelProblem& pixels, const State& at, bool blur, PixelFit& fit) {
+void describeUncertainty(PixelProblem& pixels, const State& at, FreeUnknowns free, PixelFit& fit) {
   fit.positionCovariance.setZero();
   fit.positionCovariance.diagonal().setConstant(std::numeric_limits<double>::infinity());
   std::vector<double> residuals(static_cast<std::size_t>(pixels.residuals()));
   if (!pixels.residualsAt(at, residuals.data())) return;
-  const std::vector<Moved> moved = movedStates(at, blur);
+  const std::vector<Moved> moved = movedStates(at, free);
   const Eigen::Index unknowns = static_cast<Eigen::Index>(moved.size());
   Rows jacobian(pixels.residuals(), unknowns);
   for (Eigen::Index k = 0; k < unknowns; ++k)
     pixels.differences(moved[static_cast<std::size_t>(k)].state, moved[static_cast<std::size_t>(k)].step, jacobian.data() + k,
                        static_cast<int>(unknowns));
-  if (at.lamp.isPoint() && !at.atInfinity()) fit.gainByExtent = gainByExtent(pixels, at, residuals, jacobian);
+  if (at.lamp.isPoint() && !at.atInfinity() && !free.heldLamp) fit.gainByExtent = gainByExtent(pixels, at, residuals, jacobian);
   std::vector<int> views;
   for (std::size_t f = 0; f < pixels.evidence().frames.size(); ++f)
     views.insert(views.end(), pixels.evidence().frames[f].used, static_cast<int>(f));
@@ -140,6 +140,13 @@ void describeUncertainty(PixelProblem& pixels, const State& at, bool blur, Pixel
   if (!(svd.singularValues()(unknowns - 1) > 1e-12 * svd.singularValues()(0))) return;  // a free direction
   const Eigen::MatrixXd all =
       std::sqrt(spread.factor * inflation) * svd.matrixV() * svd.singularValues().cwiseInverse().asDiagonal();
+  if (free.heldLamp) {
+    Eigen::MatrixXd root = Eigen::MatrixXd::Zero(5, all.cols());
+    root.row(4) = all.row(0);
+    fit.positionCovariance.setZero();
+    fit.uncertainty = ParameterUncertainty{std::move(root), fit.rmsPx, fit.independentCells};
+    return;
+  }
   const Eigen::Matrix<double, 4, 3> basis = across(at.lamp.centre);
   const Normalised& n = pixels.evidence();
   if (!at.atInfinity()) {

@@ -118,6 +118,7 @@ class Search {
     PixelProblem problem(evidence_, lobe, kind);
     patch::SolveOptions solving{false, options_.maxIterations, kSearchTolerance, kSearchTolerance};
     solving.progress = options_.progress;
+    solving.holdLamp = options_.holdLamp;
     if (!from.lamp.isPoint()) {
       solving.mostEvaluations = kMostEvaluations;
       solving.work = kExtentWork;
@@ -215,6 +216,7 @@ FullFit solveInFull(PixelProblem& problem, const patch::State& start, const Pixe
   const bool point = start.lamp.isPoint();
   patch::SolveOptions solving{false, options.maxIterations};
   solving.progress = options.progress;
+  solving.holdLamp = options.holdLamp;
   if (!point) {
     solving.mostEvaluations = 4 * kMostEvaluations;  // it may grow a little more
     solving.work = kExtentWork;
@@ -275,13 +277,13 @@ Outcome<PixelFit> fitPixels(const std::vector<Lobe>& lobes, const std::vector<co
   const FullFit best = solveInFull(problem, stateOf(start, fine), options, fit.iterations);
   const patch::State& at = best.attempt.at;
   if (!std::isfinite(best.attempt.cost)) return Failure{Reason::NotConverged, "pixels"};
-  fit.model = {chosen->lobe, at.roughness(), inWorld(at, fine), at.blurVariance};
+  fit.model = {chosen->lobe, at.roughness(), options.holdLamp ? lamp : inWorld(at, fine), at.blurVariance};
   if (!describeAllPixels(patches, fit)) return Failure{Reason::NotConverged, "pixels"};
   // The cells that were fitted say how well: joined ones hold the same evidence.
   problem.chooseRule(at);
   std::vector<double> fitted(fine.cells);
   if (!problem.residualsAt(at, fitted.data())) return Failure{Reason::NotConverged, "pixels"};
-  patch::describeUncertainty(problem, at, best.blur, fit);
+  patch::describeUncertainty(problem, at, {best.blur, options.holdLamp}, fit);
   return fit;
 }
 

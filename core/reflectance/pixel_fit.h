@@ -52,6 +52,7 @@ Outcome<std::vector<PatchSolution>> solvePatches(const std::vector<const PixelPa
 struct PixelFitOptions {
   int maxIterations = 60;
   bool blur = true;                          ///< estimate the blur where the pixels show it
+  bool holdLamp = false;                     ///< the lamp is known: its place and shape stay those of the start
   std::optional<BackgroundKind> background;  ///< no other is tried
   ProgressFn progress{};                     ///< asked at every look at all cells
 };

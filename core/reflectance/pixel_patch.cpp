@@ -170,6 +170,18 @@ Outcome<PixelPatch> pixelPatch(const LinearPixels& pixels, const Camera& camera,
   return patch;
 }
 
+PixelPatch carriedBy(PixelPatch patch, const Eigen::Isometry3d& by) {
+  if (by.matrix() == Eigen::Isometry3d::Identity().matrix()) return patch;
+  patch.camera.camFromWorld = patch.camera.camFromWorld * by.inverse();
+  for (PixelPatch::Seen& s : patch.seen) {
+    s.position = by * s.position;
+    s.toCamera = by.linear() * s.toCamera;
+    s.axes.normal = by.linear() * s.axes.normal;
+    s.axes.tangent = by.linear() * s.axes.tangent;
+  }
+  return patch;
+}
+
 PixelPatch onSurface(PixelPatch patch, const Surface& surface) {
   for (int row = 0; row < patch.rows; ++row)
     for (int column = 0; column < patch.columns; ++column) {

@@ -62,6 +62,10 @@ Outcome<PixelPatch> pixelPatch(const LinearPixels& pixels, const Camera& camera,
                                const Highlight& highlight, const std::vector<Highlight>& others,
                                const PatchOptions& options = {});
 
+/// The same pixels where camera and surface were carried together.
+/// @param by  rigid, world
+PixelPatch carriedBy(PixelPatch patch, const Eigen::Isometry3d& by);
+
 /// The same pixels, joined with another surface under the same camera.
 PixelPatch onSurface(PixelPatch patch, const Surface& surface);
 

@@ -130,6 +130,8 @@ bool run(PixelProblem& problem, Attempt& a, const SolveOptions& options, bool at
                                      ceres::SphereManifold<3>(), ceres::SubsetManifold(1, {0})));
   else
     ceres.SetManifold(blocks[0], new ceres::SphereManifold<4>());
+  if (options.holdLamp) ceres.SetParameterBlockConstant(blocks[0]);
+  if (options.holdLamp && blocks.size() > 3) ceres.SetParameterBlockConstant(blocks[3]);
   if (blocks.size() > 3 && std::visit([](const auto& shape) { return shape.kMayVanish; }, s.lamp.shape))
     ceres.SetParameterLowerBound(blocks[3], 0, std::visit([](const auto& shape) { return shape.kLeastStep; }, s.lamp.shape));
   if (options.blur) {
@@ -155,18 +157,18 @@ Eigen::Matrix<double, 4, 3> across(const Eigen::Vector4d& light) {
   return q.rightCols<3>();
 }
 
-std::vector<Moved> movedStates(const State& at, bool blur) {
+std::vector<Moved> movedStates(const State& at, FreeUnknowns free) {
   std::vector<Moved> moved;
   const Eigen::Matrix<double, 4, 3> basis = across(at.lamp.centre);
-  for (int k = 0; k < 3; ++k) moved.push_back({alongLight(at, basis.col(k)), kStep});
+  for (int k = 0; k < 3 && !free.heldLamp; ++k) moved.push_back({alongLight(at, basis.col(k)), kStep});
   const auto add = [&](double step, const auto& change) {
     moved.push_back({at, step});
     change(moved.back().state);
   };
   add(kStep, [](State& s) { s.logRoughness += kStep; });
   const double step = shapeStep(at.lamp.shape);
-  for (int k = 0; k < unknownCount(at.lamp.shape); ++k) moved.push_back({alongShape(at, k, step), step});
-  if (blur) add(kBlurStep, [](State& s) { s.blurVariance += kBlurStep; });
+  for (int k = 0; k < unknownCount(at.lamp.shape) && !free.heldLamp; ++k) moved.push_back({alongShape(at, k, step), step});
+  if (free.blur) add(kBlurStep, [](State& s) { s.blurVariance += kBlurStep; });
   return moved;
 }
 

@@ -67,9 +67,14 @@ struct Moved {
   State state;
   double step;
 };
-/// The columns of L (three directions across it), log m, what the shape adds (the squared radius; the half axis) and, where it is
-/// free, the blur's variance.
-std::vector<Moved> movedStates(const State& at, bool blur);
+/// Which unknowns are free beside those of the lobe.
+struct FreeUnknowns {
+  bool blur = false;
+  bool heldLamp = false;  ///< its place and shape are not
+};
+/// The columns of L (three directions across it), log m, what the shape adds (the squared radius; the half axis) and the blur's
+/// variance, each where it is free.
+std::vector<Moved> movedStates(const State& at, FreeUnknowns free);
 /// Three orthonormal directions across the unit vector L.
 Eigen::Matrix<double, 4, 3> across(const Eigen::Vector4d& light);
 
@@ -89,6 +94,7 @@ struct SolveOptions {
   double mostEvaluations = std::numeric_limits<double>::infinity();
   double work = std::numeric_limits<double>::infinity();  ///< evaluations in all; some iterations are always made
   ProgressFn progress{};                                  ///< asked at every look at all cells
+  bool holdLamp = false;                                  ///< place and shape stay
 };
 
 /// The minimum that is reached from a state with all unknowns of its shape free. A light at infinity stays there; a point that
@@ -99,6 +105,6 @@ Attempt solve(PixelProblem& problem, const State& start, const SolveOptions& opt
 void describeResiduals(const PixelProblem& problem, PixelFit& fit);
 
 /// Fills the covariances at the solution, and for a point at a finite place what an extent would gain.
-void describeUncertainty(PixelProblem& problem, const State& at, bool blur, PixelFit& fit);
+void describeUncertainty(PixelProblem& problem, const State& at, FreeUnknowns free, PixelFit& fit);
 
 }  // namespace glint::patch

@@ -289,6 +289,8 @@ Attempt RadianceProblem::solveFrom(const State& start) {
                                            ceres::SphereManifold<3>(), ceres::SubsetManifold(1, {0})));
       else
         problem.SetManifold(blocks[0], new ceres::SphereManifold<4>());
+      if (options_.holdLamp) problem.SetParameterBlockConstant(blocks[0]);
+      if (options_.holdLamp && unknownCount(shape) > 0) problem.SetParameterBlockConstant(blocks[2]);
       // Keeps the derivative of a square root finite.
       const double least = std::visit([](const auto& s) { return s.kLeast; }, shape);
       if (least > 0) problem.SetParameterLowerBound(blocks[2], 0, least);

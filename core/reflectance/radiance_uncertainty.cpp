@@ -55,12 +55,17 @@ void RadianceProblem::setUncertainty(State state, RadianceFit& fit) const {
   fit.rmsPx = std::sqrt(sum / double(points_.size()));
   fit.positionCovariance.setZero();
   fit.positionCovariance.diagonal().setConstant(std::numeric_limits<double>::infinity());
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(jacobian);
-  const Eigen::MatrixXd r = qr.matrixQR().topRows(parameters).triangularView<Eigen::Upper>();
+  std::vector<Eigen::Index> free;  // columns; a known lamp leaves those of the lobe
+  for (Eigen::Index k = 0; k < parameters; ++k)
+    if (!options_.holdLamp || k == 3 || k >= 4 + own) free.push_back(k);
+  const Eigen::Index unknowns = static_cast<Eigen::Index>(free.size());
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(Eigen::MatrixXd(jacobian(Eigen::all, free)));
+  const Eigen::MatrixXd r = qr.matrixQR().topRows(unknowns).triangularView<Eigen::Upper>();
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(r, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  if (!(svd.singularValues()(parameters - 1) > 1e-14 * svd.singularValues()(0))) return;  // a free direction, to round-off
-  const ResidualSpread spread = residualSpread(residuals, views, static_cast<int>(parameters), options_.robustPx);
-  const Eigen::MatrixXd root =
+  if (!(svd.singularValues()(unknowns - 1) > 1e-14 * svd.singularValues()(0))) return;  // a free direction, to round-off
+  const ResidualSpread spread = residualSpread(residuals, views, static_cast<int>(unknowns), options_.robustPx);
+  Eigen::MatrixXd root = Eigen::MatrixXd::Zero(parameters, unknowns);
+  root(free, Eigen::all) =
       std::sqrt(spread.factor) * svd.matrixV() * svd.singularValues().cwiseInverse().asDiagonal().toDenseMatrix();
   if (!state.atInfinity()) {
     const double w = state.lamp.centre.w();

@@ -115,7 +115,16 @@ double withoutContrast(double code, double strength) {
 
 std::optional<CameraResponse> CameraResponse::named(const std::string& text, const std::string& file, const std::string& place) {
   CameraResponse response;
-  const std::string prefix = "gamma:", contrast = "s-curve:";
+  const std::string prefix = "gamma:", contrast = "s-curve:", falls = "vignetting:";
+  if (const std::size_t at = text.rfind(falls); at != std::string::npos && (at == 0 || text[at - 1] == ' ')) {
+    const std::string curve = text.substr(0, at == 0 ? 0 : text.find_last_not_of(" ,", at - 1) + 1);
+    const std::optional<double> share = io::numberOf(std::string_view(text).substr(at + falls.size()));
+    if (!share || !(*share > 0 && *share <= kMostVignetting))
+      throw InputError(file, place, "expected vignetting:K with a number K above 0, up to 0.9, such as vignetting:0.3");
+    const std::optional<CameraResponse> whole = curve.empty() ? CameraResponse() : named(curve, file, place);
+    if (!whole) throw InputError(file, place, "vignetting:K follows srgb, linear, gamma:G or s-curve:S, or stands alone");
+    return whole->withVignetting(*share);
+  }
   if (text == "srgb") {
     response.kind_ = Kind::Srgb;
   } else if (text == "linear") {
@@ -136,6 +145,18 @@ std::optional<CameraResponse> CameraResponse::named(const std::string& text, con
     return std::nullopt;
   }
   return response;
+}
+
+CameraResponse CameraResponse::withVignetting(double share) const {
+  CameraResponse other = *this;
+  other.vignetting_ = share;
+  return other;
+}
+
+double CameraResponse::withoutVignetting(double light, double x, double y, int width, int height) const {
+  if (light >= 1) return light;
+  const double cx = (width - 1) / 2.0, cy = (height - 1) / 2.0, dx = x - cx, dy = y - cy;
+  return light * (1 - vignetting_) / (1 - vignetting_ * (dx * dx + dy * dy) / (cx * cx + cy * cy));
 }
 
 CameraResponse CameraResponse::ofFile(const fs::path& file) {
@@ -214,20 +235,25 @@ double CameraResponse::codeOf(double light, int channel, bool isLinear) const {
 }
 
 std::string CameraResponse::text() const {
+  const auto shortest = [](double v) {
+    char buffer[32];
+    return std::string(buffer, std::to_chars(buffer, buffer + sizeof buffer, v).ptr);
+  };
+  std::string curve;
   switch (kind_) {
-    case Kind::ByFileType: return "";
-    case Kind::Srgb: return "srgb";
-    case Kind::Linear: return "linear";
-    case Kind::Gamma:
-    case Kind::SCurve: break;
+    case Kind::ByFileType: break;
+    case Kind::Srgb: curve = "srgb"; break;
+    case Kind::Linear: curve = "linear"; break;
+    case Kind::Gamma: curve = "gamma:" + shortest(number_); break;
+    case Kind::SCurve: curve = "s-curve:" + shortest(number_); break;
     case Kind::Table: return file_.string();
   }
-  char buffer[32];
-  return (kind_ == Kind::Gamma ? "gamma:" : "s-curve:") +
-         std::string(buffer, std::to_chars(buffer, buffer + sizeof buffer, number_).ptr);
+  return vignetting_ > 0 ? curve + (curve.empty() ? "" : ", ") + "vignetting:" + shortest(vignetting_) : curve;
 }
 
 std::string CameraResponse::words(bool isLinear) const {
+  if (vignetting_ > 0)
+    return withVignetting(0).words(isLinear) + formatted(", brightened towards the corners by vignetting of %g", vignetting_);
   switch (kind_) {
     case Kind::ByFileType: return isLinear ? "taken as linear, as the files say" : "through the sRGB curve";
     case Kind::Srgb: return "through the sRGB curve";
@@ -261,7 +287,7 @@ CameraResponse readResponseJson(const JsonNode& camera, const fs::path& folder, 
   if (std::optional<CameraResponse> known = CameraResponse::named(text, node->file(), node->place())) return *known;
   const fs::path file = resolveInside(folder, text, rights, node->file(), node->place());
   std::error_code ignored;  // a file that cannot be looked at counts as missing
-  if (!fs::is_regular_file(file, ignored)) node->fail("'" + text + "' is neither srgb, linear, gamma:G, s-curve:S, nor a file");
+  if (!fs::is_regular_file(file, ignored)) node->fail("'" + text + "' is neither srgb, linear, gamma:G, s-curve:S, vignetting:K, nor a file");
   return CameraResponse::ofFile(file);
 }
 

@@ -27,12 +27,13 @@ class CameraResponse {
     Table    ///< measured: a file
   };
   static constexpr double kLeastGamma = 0.1, kMostGamma = 10;  ///< beyond, an 8-bit image has no more than a few shades
+  static constexpr double kMostVignetting = 0.9;               ///< beyond, the corners show nothing
   static constexpr double kMostContrast = 0.95;  ///< of S, either sign: at 1 the codes of the darkest light would stand still
 
   /// The response where nothing is stated.
   CameraResponse() = default;
-  /// "srgb", "linear", "gamma:G", "s-curve:S". Nothing for another text, which then names a file.
-  /// InputError (file, place) for a G or S that is not a number of the range above.
+  /// "srgb", "linear", "gamma:G", "s-curve:S", each alone or followed by ", vignetting:K"; or "vignetting:K". Nothing for another
+  /// text, which then names a file. InputError (file, place) for a G, S or K that is not a number of the range above.
   static std::optional<CameraResponse> named(const std::string& text, const std::string& file, const std::string& place);
   /// A measured response. One line per code, in rising order: `light` (codes equally spaced from 0), `code light`, `red green
   /// blue`, or `code red green blue`; or one line of all lights. Separated by blanks, commas or semicolons; '#' begins a comment;
@@ -45,6 +46,14 @@ class CameraResponse {
 
   Kind kind() const { return kind_; }
   bool isStated() const { return kind_ != Kind::ByFileType; }
+  /// K: the share of the light that is lost in the corners of the image; it grows with the square of the distance from the
+  /// middle. 0 = none.
+  double vignetting() const { return vignetting_; }
+  /// The same response for images whose corners got less light.
+  CameraResponse withVignetting(double share) const;
+  /// What a pixel received, up to a factor that all pixels share, from what it shows: light (1 - K) / (1 - K r^2), r the distance
+  /// from the middle over that of a corner. Light of the largest code stays 1, as clipped as it was.
+  double withoutVignetting(double light, double x, double y, int width, int height) const;
   /// G of Kind::Gamma, S of Kind::SCurve.
   double number() const { return number_; }
   /// The file of Kind::Table, absolute; else empty.
@@ -53,7 +62,7 @@ class CameraResponse {
   double lightOf(double code, int channel, bool isLinear = false) const;
   /// Code of a light; both are clamped to [0, 1]. The inverse of `lightOf`; the smallest code where several have this light.
   double codeOf(double light, int channel, bool isLinear = false) const;
-  /// "srgb", "linear", "gamma:2.2", "s-curve:0.5", or the path of a table's file as it stands in `file`; "" where nothing is
+  /// "srgb", "linear", "gamma:2.2", "s-curve:0.5, vignetting:0.3", or the path of a table's file as it stands in `file`; "" where nothing is
   /// stated.
   std::string text() const;
   /// For people: "the sRGB curve", "code to the power of 2.2", "the curve in response.csv".
@@ -63,7 +72,7 @@ class CameraResponse {
   std::string doubt() const;
 
   friend bool operator==(const CameraResponse& a, const CameraResponse& b) {
-    return a.kind_ == b.kind_ && a.number_ == b.number_ && a.file_ == b.file_;
+    return a.kind_ == b.kind_ && a.number_ == b.number_ && a.file_ == b.file_ && a.vignetting_ == b.vignetting_;
   }
 
  private:
@@ -75,6 +84,7 @@ class CameraResponse {
 
   Kind kind_ = Kind::ByFileType;
   double number_ = 1;  ///< G or S
+  double vignetting_ = 0;
   std::filesystem::path file_;
   std::shared_ptr<const Table> table_;
 };

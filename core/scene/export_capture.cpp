@@ -34,7 +34,7 @@ std::vector<std::string> leftOutOf(const Scene& scene) {
   say(count([](const Frame& f) { return !f.highlights.empty(); }), "highlights");
   say(count([](const Frame& f) { return !f.radiance.empty(); }), "radiance images");
   say(count([](const Frame& f) { return !f.normals.empty(); }), "normal maps");
-  if (const long n = count([](const Frame& f) { return f.response.isStated(); }))
+  if (const long n = count([](const Frame& f) { return !f.response.text().empty(); }))
     lines.push_back("the camera response of " + std::to_string(n) + " frames is left out: name it by --response");
   if (const long n = count([](const Frame& f) { return !standsStill(f); }))
     lines.push_back("the object moves in " + std::to_string(n) + " frames: the cameras are written as it sees them");

@@ -279,6 +279,14 @@ std::optional<Image> opaquePart(const Frame& frame) {
   return mask;
 }
 
+void undoVignetting(Image& image, const CameraResponse& response) {
+  float* value = image.data.data();
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x)
+      for (int c = 0; c < image.channels; ++c, ++value)
+        *value = static_cast<float>(response.withoutVignetting(*value, x, y, image.width, image.height));
+}
+
 /// @param opaqueOf  says opaquePart(frame)
 Outcome<Image> linearOf(const Frame& frame, FrameSource source, std::string* how,
                         const std::function<std::optional<Image>()>& opaqueOf) {
@@ -295,6 +303,7 @@ Outcome<Image> linearOf(const Frame& frame, FrameSource source, std::string* how
   if (!isCode(m)) return unreadable(file, "the pixel type is not supported (8-bit, 16-bit or float)");
   Image image = throughTable(
       m, [&frame, linear = takenAsLinear(*decoded)](double v, int c) { return frame.response.lightOf(v, c, linear); });
+  if (frame.response.vignetting() > 0) undoVignetting(image, frame.response);
   // Hidden colours are arbitrary, and a blur or an edge would bring them in: transparent pixels are dark.
   if (const std::optional<Image> opaque = useRadiance ? std::nullopt : opaqueOf())
     for (std::size_t i = 0; i < image.data.size(); ++i)

@@ -89,7 +89,7 @@ void setResponse(InputChoices& c, const std::string& text) {
   std::error_code ignored;  // a file that cannot be looked at counts as missing
   const bool isFile = !CameraResponse::named(text, "", place);
   if (isFile && !std::filesystem::is_regular_file(text, ignored))
-    throw InputError("", place, "is neither srgb, linear, gamma:G, s-curve:S, nor a file");
+    throw InputError("", place, "is neither srgb, linear, gamma:G, s-curve:S, vignetting:K, nor a file");
   c.response = isFile ? std::filesystem::absolute(text).lexically_normal().string() : text;
 }
 
@@ -130,7 +130,7 @@ const std::vector<ChoiceOption>& choiceOptions() {
        setPoses, [](const C& c) { return c.poses.string(); }},
       {"--poses-by", "order", "The n-th pose is that of the n-th image (default: by id or time)", setPosesBy,
        [](const C& c) { return std::string(c.posesByOrder ? kByOrder : ""); }},
-      {"--response", "srgb|linear|gamma:G|s-curve:S|FILE",
+      {"--response", "srgb|linear|gamma:G|s-curve:S|vignetting:K|FILE",
        "How the codes of a capture's images become linear light (default: by file type, mostly srgb)", setResponse,
        [](const C& c) { return c.response; }}};
   return options;
@@ -211,7 +211,8 @@ InputChoices readInputChoices(const JsonNode& node, const std::filesystem::path&
   }
   if (const auto n = node.find("response")) {
     c.response = shortText(*n);
-    if (!CameraResponse::named(c.response, n->file(), n->place())) n->fail("must be srgb, linear, gamma:G or s-curve:S");
+    if (!CameraResponse::named(c.response, n->file(), n->place()))
+      n->fail("must be srgb, linear, gamma:G, s-curve:S or vignetting:K");
   }
   if (const auto n = node.find("response_file")) c.response = pathIn(folder, *n).string();
   return c;

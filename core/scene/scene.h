@@ -52,11 +52,14 @@ struct FilesFolder {
   friend bool operator==(const FilesFolder&, const FilesFolder&) = default;
 };
 
-/// Truth for evaluation and display only; never read by reconstruction or prediction.
+/// A light that the scene states: truth for evaluation and display only, never read by reconstruction or prediction, unless it
+/// says that it is known.
 struct TrueLight {
   std::string id;
   Lamp lamp;  ///< in the coordinates of `frame`
   LightFrame frame = LightFrame::World;
+  bool known = false;  ///< input for fits, which keep it as it is
+  double sigma = 0;    ///< of a known one: standard deviation of each coordinate of its place, m, or of its direction, degrees
 };
 
 /// Everything a scene file says, checked. Images and surfaces are loaded on demand.

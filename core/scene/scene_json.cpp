@@ -48,10 +48,10 @@ void keep(Json& target, const std::string& key, Json value) {
 
 constexpr int kNewestScene = 2;
 constexpr const char* kNeedsVersion2 = "needs a scene of version 2 (\"glint_scene\": 2)";
-constexpr const char *kObjectPoseKey = "world_from_object", *kLightFrameKey = "frame";
+constexpr const char *kObjectPoseKey = "world_from_object", *kLightFrameKey = "frame", *kKnownKey = "known";
 const std::set<std::string> kCameraKeys = {"width", "height", "fx", "fy", "cx", "cy", "skew", "distortion", "model", "response"};
 std::set<std::string> lightKeys() {
-  std::set<std::string> keys{"id", "position", "direction", "radius", kLightFrameKey};
+  std::set<std::string> keys{"id", "position", "direction", "radius", kLightFrameKey, kKnownKey, sigmaKey(false), sigmaKey(true)};
   for (const PlacedShape& shape : placedShapes()) keys.insert(shape.name);
   return keys;
 }
@@ -77,7 +77,9 @@ const std::set<std::string> kSceneGeometry = {"scale",      "world_scale", "tran
 }  // namespace
 
 int versionOf(const Frame& frame) { return standsStill(frame) ? 1 : 2; }
-int versionOf(const TrueLight& light) { return light.frame == LightFrame::World ? 1 : 2; }
+int versionOf(const TrueLight& light) { return light.frame == LightFrame::World && !light.known ? 1 : 2; }
+
+const char* sigmaKey(bool ofDirection) { return ofDirection ? "sigma_deg" : "sigma_m"; }
 
 bool isMadeBySynth(const JsonNode& root) {
   const auto n = root.find(kMadeBy);
@@ -89,6 +91,19 @@ std::string placeKeys() {
   std::string keys = "position, direction";
   for (const PlacedShape& shape : placedShapes()) keys += ", " + shape.name;
   return keys;
+}
+
+/// `known`, and how well its place is known.
+void readKnown(const JsonNode& node, TrueLight& light) {
+  if (const auto n = node.find(kKnownKey)) light.known = n->boolean();
+  for (const bool ofDirection : {false, true}) {
+    const auto n = node.find(sigmaKey(ofDirection));
+    if (!n) continue;
+    if (!light.known) n->fail("belongs to a light that is known (\"known\": true)");
+    if (ofDirection != light.lamp.atInfinity()) n->fail(ofDirection ? "belongs to a direction" : "belongs to a place");
+    light.sigma = bounded(*n, ofDirection ? 90 : kFarthest);  // a lamp whose direction is less certain is not known
+    if (light.sigma < 0) n->fail("must not be negative");
+  }
 }
 }  // namespace
 
@@ -122,6 +137,7 @@ TrueLight readLightJson(const JsonNode& node) {
       n->fail("must be \"world\" or \"camera\"");
     if (n->text() == nameOf(LightFrame::Camera)) light.frame = LightFrame::Camera;
   }
+  readKnown(node, light);
   return light;
 }
 
@@ -327,7 +343,8 @@ Scene readSceneJson(const std::string& text, const fs::path& file, const ReadOpt
     for (std::size_t i = 0; i < n->size(); ++i) {
       const JsonNode node = n->at(i);
       scene.lights.push_back(readLightJson(node));
-      if (version.integer() < versionOf(scene.lights.back())) node.at(kLightFrameKey).fail(kNeedsVersion2);
+      if (version.integer() < versionOf(scene.lights.back()))
+        node.at(scene.lights.back().known ? kKnownKey : kLightFrameKey).fail(kNeedsVersion2);
       const std::string& id = scene.lights.back().id;
       if (!lightIds.insert(id).second) node.at("id").fail("duplicate id '" + id + "'");
       keep(lightRests, id, unknown.of(node, lightKeys()));

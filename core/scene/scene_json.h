@@ -16,11 +16,14 @@ namespace glint {
 // The parts of scene.json (docs/formats.md, "Scene") that other documents share (synth SPEC.json, sessions). All throw
 // InputError with file, place and reason. Keys that a part does not know are left to the caller (JsonNode::unknownKeys).
 
-/// {"id", one of "position" | "direction" | "segment", "radius", "frame"}. A direction is normalised.
+/// {"id", one of "position" | "direction" | "segment", "radius", "frame", "known", "sigma_m" | "sigma_deg"}. A direction is
+/// normalised.
 TrueLight readLightJson(const JsonNode& node);
-/// The version of scene files that can say it: 2 for what moves, else 1.
+/// The version of scene files that can say it: 2 for what moves or is known, else 1.
 int versionOf(const Frame& frame);
 int versionOf(const TrueLight& light);
+/// The key of TrueLight::sigma.
+const char* sigmaKey(bool ofDirection);
 
 /// "made_by": "glint synth" at the top of a scene file says that `synth` wrote it as it is. It is read without a warning and not
 /// kept, so that no copy that another command writes says so; another text under this key is an unknown key like others.

@@ -80,6 +80,8 @@ Json toJson(const Highlight& h, const Camera& camera) {
 Json toJson(const TrueLight& light) {
   Json j = {{"id", light.id}};
   if (light.frame != LightFrame::World) j["frame"] = nameOf(light.frame);
+  if (light.known) j["known"] = true;
+  if (light.sigma > 0) j[sigmaKey(light.lamp.atInfinity())] = light.sigma;
   for (const LampField& f : fieldsOf(light.lamp)) {
     if (f.value.size() == 1)
       j[f.name] = f.value(0);
@@ -110,7 +112,7 @@ std::string sceneToJson(const Scene& scene, const fs::path& folder) {
   };
   const auto response = [&](Json camera, const Frame& frame, const std::string& place) {
     const CameraResponse& r = frame.response;
-    if (r.isStated()) camera["response"] = r.file().empty() ? r.text() : relative(r.file(), place + "response");
+    if (!r.text().empty()) camera["response"] = r.file().empty() ? r.text() : relative(r.file(), place + "response");
     return camera;
   };
   int version = 1;

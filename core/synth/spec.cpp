@@ -293,6 +293,7 @@ SynthSpec readSynthSpec(const std::filesystem::path& file) {
   if (const auto n = root.find("name")) scene.name = n->text();
   const JsonNode cameraNode = root.at("camera");
   const SynthCamera camera{readCameraJson(cameraNode), readResponseJson(cameraNode, scene.folder, {})};
+  if (camera.response.vignetting() > 0) cameraNode.at("response").fail("synth renders no vignetting");
   if (!camera.response.file().empty()) cameraNode.at("response").fail("must be srgb, linear, gamma:G or s-curve:S");
   readLights(root.at("lights"), scene);
   const JsonNode surfaces = root.at("surfaces");

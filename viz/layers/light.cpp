@@ -128,8 +128,8 @@ LayerContent trueLightLayer(const LayerInput& in) {
     info.layer = "true-light";
     info.light = light.id;
     const Lamp& lamp = light.lamp;
-    info.text =
-        line("true light (not used by the method)", light.id) + (lamp.isPoint() ? line("radius", 0.0, "m") : sizeText(lamp));
+    info.text = line(light.known ? "known light (fits keep it)" : "true light (not used by the method)", light.id) +
+                (lamp.isPoint() ? line("radius", 0.0, "m") : sizeText(lamp));
     const double r = std::max(radiusOf(lamp), 4.2 * in.scale.point);
     const SceneThing drawn = trueLampThing(light, r, in.scale);
     if (!endsOf(lamp)) info.text += placeText(drawn);

@@ -148,7 +148,10 @@ void declareParts(py::class_<InspectionHandle>& inspection) {
           [](const InspectionHandle& i) {
             return SceneHandle{i.inspection->scene, i.inspection->surfaces, i.context.input};
           },
-          "Scene.")
+          "Scene, in the coordinates in which its lights stand still (`light_frame`).")
+      .def_property_readonly(
+          "light_frame", [](const InspectionHandle& i) { return nameOf(i.inspection->lightFrame.frame); },
+          "\"world\" or \"camera\": which coordinates `scene`, fits and views have.")
       .def_property_readonly(
           "request", [](const InspectionHandle& i) { return RequestHandle{i.inspection->request}; }, "Request that it answers.")
       .def_property_readonly(

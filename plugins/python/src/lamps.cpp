@@ -62,6 +62,9 @@ void declareLamp(py::module_& module) {
       .def_readonly("id", &LampAnswer::id, "Id.")
       .def_readonly("frames", &LampAnswer::frames, "Ids of the frames that show it.")
       .def_property_readonly(
+          "frame", [](const LampAnswer& l) { return l.frame ? std::optional<std::string>(nameOf(*l.frame)) : std::nullopt; },
+          "In which coordinates it stands still: \"world\" or \"camera\"; None of photographs of balls.")
+      .def_property_readonly(
           "failure", [](const LampAnswer& l) { return messageOrNone(l.failure ? &*l.failure : nullptr); },
           "Why nothing is known, or None.")
       .def_property_readonly(

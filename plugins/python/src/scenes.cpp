@@ -9,6 +9,7 @@
 #include "core/pipeline/evidence.h"
 #include "core/scene/outputs.h"
 #include "core/scene/scene.h"
+#include "core/scene/scene_json.h"
 #include "core/surface/mesh_policy.h"
 #include "plugins/python/src/arrays.h"
 #include "plugins/python/src/failures.h"
@@ -85,12 +86,16 @@ SurfaceHandle surfaceOf(const SceneHandle& s, const FrameName& frame, py::handle
 py::dict lightOf(const TrueLight& light) {
   py::dict out;
   out["id"] = light.id;
+  out["frame"] = nameOf(light.frame);
+  out["known"] = light.known;
+  if (light.sigma > 0) out[sigmaKey(light.lamp.atInfinity())] = light.sigma;
   addLamp(light.lamp, out);
   return out;
 }
 
 Frame frameFrom(const std::string& id, const Camera& camera, const std::string& surface, const std::vector<Highlight>& highlights,
-                const std::vector<std::string>& lightsOn, const std::map<std::string, std::string>& files, double depthScale) {
+                const std::vector<std::string>& lightsOn, const std::map<std::string, std::string>& files, double depthScale,
+                const ArrayLike& worldFromObject) {
   Frame f;
   f.id = id;
   f.camera = camera;
@@ -98,6 +103,7 @@ Frame frameFrom(const std::string& id, const Camera& camera, const std::string& 
   f.highlights = highlights;
   f.lightsOn = lightsOn;
   f.depthScale = depthScale;
+  if (!worldFromObject.is_none()) f.worldFromObject = poseFrom(worldFromObject, "world_from_object");
   const auto path = [&](const char* kind) {
     const auto it = files.find(kind);
     return it == files.end() || it->second.empty() ? std::filesystem::path()
@@ -176,16 +182,21 @@ void declareFrame(py::module_& module) {
       .def(py::init(&frameFrom), py::arg("id"), py::arg("camera"), py::kw_only(), py::arg("surface") = "",
            py::arg("highlights") = std::vector<Highlight>{}, py::arg("lights_on") = std::vector<std::string>{},
            py::arg("files") = std::map<std::string, std::string>{}, py::arg("depth_scale") = 0.0,
+           py::arg("world_from_object") = py::none(),
            "Parameters\n----------\nid : str\ncamera : Camera\nsurface : str\n    A key of the scene's surfaces; empty = this "
            "frame's own "
            "depth map.\nhighlights : list of Highlight\n    Used instead of detection.\nlights_on : list of str\n    Ids; empty "
            "= not "
            "stated.\nfiles : dict\n    Paths of \"image\", \"radiance\", \"depth\", \"normals\", \"mask\".\ndepth_scale : "
            "float\n    Metres per "
-           "stored unit of an integer depth image.")
+           "stored unit of an integer depth image.\nworld_from_object : (4, 4) array\n    Where the surface stands, rigid; "
+           "None = identity.")
       .def_readonly("id", &Frame::id, "Any text.")
       .def_readonly("camera", &Frame::camera, "Camera.")
       .def_readonly("surface", &Frame::surface, "Key of the scene's surfaces; empty = its own depth map.")
+      .def_property_readonly(
+          "world_from_object", [](const Frame& f) { return copyOf(f.worldFromObject.matrix()); },
+          "(4, 4) rigid pose: where its surface stands.")
       .def_readonly("lights_on", &Frame::lightsOn, "Ids; empty = not stated.")
       .def_readonly("highlights", &Frame::highlights, "Given highlights, used instead of detection.")
       .def_property_readonly(
@@ -276,7 +287,9 @@ void declareScenes(py::module_& module) {
             for (const TrueLight& l : s.scene->lights) out.push_back(lightOf(l));
             return out;
           },
-          "True lights, for evaluation only, as dictionaries with id, position or direction (3,), segment (2, 3), radius.")
+          "Lights that the scene states, as dictionaries with id, frame (\"world\", \"camera\"), known, position or direction "
+          "(3,), "
+          "segment (2, 3), radius, sigma_m or sigma_deg. Fits use known ones alone.")
       .def_property_readonly(
           "warnings", [](const SceneHandle& s) { return s.scene->warnings; }, "Unknown keys and other oddities, in words.")
       .def_property_readonly(

@@ -27,7 +27,8 @@ using Recode = std::function<double(double light, double radius2)>;
 
 /// What the fit says of response and vignetting, where codes are this function of the light and of the squared distance from the
 /// middle, 1 in the corners; empty: as they are.
-std::string saidOf(const Recode& recode, int frames = 4) {
+/// @param stated  as the scene's file says it
+std::string saidOf(const Recode& recode, int frames = 4, const std::string& stated = "") {
   const TemporaryFolder folder;
   Scene scene = readScene(std::filesystem::path(GLINT_SHARED_DIR) / "data/cycles/sphere/scene-analytic.json");
   for (Frame& frame : scene.frames) {
@@ -43,6 +44,7 @@ std::string saidOf(const Recode& recode, int frames = 4) {
           code =
               static_cast<unsigned char>(std::lround(255 * std::clamp(recode(linearFromSrgb(code / 255.0), radius2), 0.0, 1.0)));
         }
+    if (!stated.empty()) frame.response = *CameraResponse::named(stated, "", "");
     frame.image = folder / (frame.id + ".png");
     cv::imwrite(frame.image.string(), codes);
   }
@@ -108,9 +110,11 @@ TEST(Vignetting, IsNamedWithItsSize) {
     });
   };
   for (const double loss : {0.25, 0.5}) {
-    const std::string said = saidOf(darker(loss), 6), before = "about ";
+    const std::string said = saidOf(darker(loss), 6), before = "about ", fix = "\"response\": \"";
     ASSERT_NE(said.find("vignetting"), std::string::npos) << said;
     EXPECT_NEAR(std::stod(said.substr(said.find(before) + before.size())), 100 * loss, 5) << said;
+    const std::size_t at = said.find(fix) + fix.size();
+    EXPECT_EQ(saidOf(darker(loss), 6, said.substr(at, said.find('"', at) - at)), "");  // what it names is the fix
   }
   EXPECT_EQ(saidOf(darker(0.05), 6), "");  // below what matters
 }

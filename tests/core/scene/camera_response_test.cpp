@@ -196,7 +196,8 @@ std::string sceneWith(const std::string& response) {
 TEST(CameraResponse, ASceneKeepsItAndItsFile) {
   const TemporaryFolder folder;
   folder.write("curves/camera.csv", kColours);
-  for (const char* text : {"srgb", "linear", "gamma:2.2", "s-curve:0.5", "curves/camera.csv"}) {
+  for (const char* text :
+       {"srgb", "linear", "gamma:2.2", "s-curve:0.5", "vignetting:0.25", "srgb, vignetting:0.3", "curves/camera.csv"}) {
     const Scene scene = readScene(folder.write("scene.json", sceneWith(text)));
     EXPECT_THAT(scene.warnings, IsEmpty());
     writeScene(scene, folder / "again.json");
@@ -213,13 +214,28 @@ TEST(CameraResponse, ASceneIsRefusedWithPlaceAndReason) {
   const auto refused = [&](const std::string& response) {
     return inputErrorOf([&] { readScene(folder.write("scene.json", sceneWith(response))); });
   };
-  EXPECT_THAT(refused("sRGB"),
-              HasSubstr("scene.json: camera.response: 'sRGB' is neither srgb, linear, gamma:G, s-curve:S, nor a file"));
+  EXPECT_THAT(
+      refused("sRGB"),
+      HasSubstr("scene.json: camera.response: 'sRGB' is neither srgb, linear, gamma:G, s-curve:S, vignetting:K, nor a file"));
   EXPECT_THAT(refused("gamma:x"), HasSubstr("scene.json: camera.response: expected gamma:G"));
   EXPECT_THAT(refused("s-curve:1"), HasSubstr("scene.json: camera.response: expected s-curve:S with a number S from -0.95 to"));
+  EXPECT_THAT(refused("vignetting:1"),
+              HasSubstr("scene.json: camera.response: expected vignetting:K with a number K above 0, up to"));
+  EXPECT_THAT(refused("sepia, vignetting:0.3"), HasSubstr("vignetting:K follows srgb, linear, gamma:G or s-curve:S"));
   EXPECT_THAT(refused("../curve.csv"), HasSubstr("camera.response"));
   folder.write("curve.csv", "0 1\n255 0\n");
   EXPECT_THAT(refused("curve.csv"), HasSubstr("curve.csv: line 2: light must not fall"));
+}
+
+TEST(CameraResponse, VignettingIsUndoneUpToAFactorOfAllPixels) {
+  const CameraResponse response = *CameraResponse::named("gamma:2, vignetting:0.4", "f", "p");
+  EXPECT_EQ(response.kind(), Kind::Gamma);
+  // The same light, 0.5, in the middle and in a corner, which shows 0.6 of it; halfway out it shows 1 - 0.4 / 4.
+  EXPECT_DOUBLE_EQ(response.withoutVignetting(0.5, 100, 50, 201, 101), 0.3);
+  EXPECT_DOUBLE_EQ(response.withoutVignetting(0.3, 0, 100, 201, 101), 0.3);
+  EXPECT_DOUBLE_EQ(response.withoutVignetting(0.45, 150, 25, 201, 101), 0.3);
+  EXPECT_EQ(response.withoutVignetting(1, 100, 50, 201, 101), 1);  // clipped stays clipped
+  EXPECT_LT(response.withoutVignetting(0.999, 0, 0, 201, 101), 1);
 }
 
 TEST(CameraResponse, FramesWithACameraOfTheirOwnHaveTheirOwnResponse) {
@@ -244,7 +260,8 @@ TEST(CameraResponse, ASessionKeepsTheOption) {
       if (std::string(option.flag) == "--response") option.set(c, text);
     return c;
   };
-  for (const std::string& text : {std::string("srgb"), std::string("gamma:2.2"), std::string("s-curve:0.5"), curve.string()}) {
+  for (const std::string& text : {std::string("srgb"), std::string("gamma:2.2"), std::string("s-curve:0.5"),
+                                  std::string("linear, vignetting:0.3"), curve.string()}) {
     const InputChoices c = given(text);
     const std::string json = toJson(c, [&](const fs::path& p) { return p.lexically_relative(folder.path()).string(); }).dump();
     const InputChoices again = readInputChoices(JsonNode::parse(json, "s.glint"), folder.path());
@@ -252,9 +269,9 @@ TEST(CameraResponse, ASessionKeepsTheOption) {
     EXPECT_EQ(responseOf(again).text(), text);
   }
   EXPECT_THAT(inputErrorOf([&] { given("sRGB"); }),
-              HasSubstr("--response sRGB: is neither srgb, linear, gamma:G, s-curve:S, nor a file"));
+              HasSubstr("--response sRGB: is neither srgb, linear, gamma:G, s-curve:S, vignetting:K, nor a file"));
   EXPECT_THAT(inputErrorOf([&] { readInputChoices(JsonNode::parse(R"({"response": "curve.csv"})", "s.glint"), folder.path()); }),
-              HasSubstr("s.glint: response: must be srgb, linear, gamma:G or s-curve:S"));
+              HasSubstr("s.glint: response: must be srgb, linear, gamma:G, s-curve:S or vignetting:K"));
 }
 
 }  // namespace

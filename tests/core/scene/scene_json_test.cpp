@@ -160,6 +160,21 @@ INSTANTIATE_TEST_SUITE_P(
         BadCase{"no such frame", "\"surfaces\"",
                 "\"lights\": [{\"id\": \"l\", \"position\": [0, 0, 1], \"frame\": \"object\"}], \"surfaces\"",
                 "lights[0].frame: ", "must be \"world\" or \"camera\""},
+        BadCase{"known light of version 2", "\"surfaces\"",
+                "\"lights\": [{\"id\": \"l\", \"position\": [0, 0, 1], \"known\": true}], \"surfaces\"",
+                "lights[0].known: ", "version 2"},
+        BadCase{"known as text", "\"surfaces\"",
+                "\"lights\": [{\"id\": \"l\", \"position\": [0, 0, 1], \"known\": \"yes\"}], \"surfaces\"",
+                "lights[0].known: ", "must be true or false"},
+        BadCase{"uncertain without being known", "\"surfaces\"",
+                "\"lights\": [{\"id\": \"l\", \"position\": [0, 0, 1], \"sigma_m\": 1}], \"surfaces\"",
+                "lights[0].sigma_m: ", "belongs to a light that is known"},
+        BadCase{"an angle of a place", "\"surfaces\"",
+                "\"lights\": [{\"id\": \"l\", \"position\": [0, 0, 1], \"known\": true, \"sigma_deg\": 1}], \"surfaces\"",
+                "lights[0].sigma_deg: ", "belongs to a direction"},
+        BadCase{"a negative sigma", "\"surfaces\"",
+                "\"lights\": [{\"id\": \"l\", \"position\": [0, 0, 1], \"known\": true, \"sigma_m\": -1}], \"surfaces\"",
+                "lights[0].sigma_m: ", "must not be negative"},
         BadCase{"version of a wrong type", "\"glint_scene\": 1", "\"glint_scene\": \"1\"",
                 "glint_scene: ", "must be a finite number, is text"},
         BadCase{"no frames key", "\"frames\"", "\"farmes\"", "frames: ", "missing"},
@@ -255,7 +270,9 @@ TEST(ReadScene, WhatMovesIsReadAndWrittenAsVersion2) {
   std::string text = with(minimalScene(), "\"glint_scene\": 1", "\"glint_scene\": 2");
   text = with(text, "\"id\": \"a\"", "\"id\": \"a\", \"world_from_object\": [[0,-1,0,0.5],[1,0,0,0],[0,0,1,0],[0,0,0,1]]");
   text = with(text, "\"surfaces\"",
-              "\"lights\": [{\"id\": \"flash\", \"position\": [0.05, 0, 0], \"frame\": \"camera\"}], \"surfaces\"");
+              "\"lights\": [{\"id\": \"flash\", \"position\": [0.05, 0, 0], \"frame\": \"camera\"}, {\"id\": \"sun\", "
+              "\"direction\": [0, 0, 2], "
+              "\"known\": true, \"sigma_deg\": 0.3}], \"surfaces\"");
   const Scene scene = readScene(folder.write("scene.json", text));
   EXPECT_TRUE(scene.warnings.empty());
   EXPECT_LT((scene.frames[0].worldFromObject * Eigen::Vector3d(1, 0, 0) - Eigen::Vector3d(0.5, 1, 0)).norm(), 1e-15);
@@ -267,6 +284,9 @@ TEST(ReadScene, WhatMovesIsReadAndWrittenAsVersion2) {
   const Scene again = readScene(folder / "again.json");
   EXPECT_EQ(again.frames[0].worldFromObject.matrix(), scene.frames[0].worldFromObject.matrix());
   EXPECT_EQ(again.lights[0].frame, LightFrame::Camera);
+  EXPECT_FALSE(again.lights[0].known);
+  EXPECT_TRUE(again.lights[1].known);
+  EXPECT_EQ(again.lights[1].sigma, 0.3);
   EXPECT_EQ(inObject(again).frames[0].camera.camFromWorld.matrix(),
             (scene.frames[0].camera.camFromWorld * scene.frames[0].worldFromObject).matrix());
 }

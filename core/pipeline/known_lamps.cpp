@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/pipeline/known_lamps.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/base/number_text.h"
+#include "core/base/numeric.h"
+#include "core/light/estimate.h"
+#include "core/pipeline/training.h"
+#include "core/surface/posed_surface.h"
+
+namespace glint {
+namespace {
+
+constexpr double kFarthestMirror = 0.2;  // rad: wide lobes at slanted views shift the peak from the mirror point by less
+
+/// What carries coordinates in which one lamp stands somewhere to coordinates in which it stands where the other one does.
+Eigen::Isometry3d carriage(const Lamp& from, const Lamp& to, const Eigen::Vector3d& pivot) {
+  if (from.centre == to.centre) return Eigen::Isometry3d::Identity();
+  if (!from.atInfinity()) return Eigen::Isometry3d(Eigen::Translation3d(lightOf(to).position() - lightOf(from).position()));
+  const Eigen::Quaterniond turn =
+      Eigen::Quaterniond::FromTwoVectors(lightOf(from).directionFrom(pivot), lightOf(to).directionFrom(pivot));
+  return Eigen::Translation3d(pivot) * turn * Eigen::Translation3d(-pivot);
+}
+
+/// Three changes of L, homogeneous with |L| = 1, each for one standard deviation of the stated place or direction.
+Eigen::Matrix<double, 4, 3> statedColumns(const KnownLamp& known) {
+  Eigen::Matrix<double, 4, 3> columns = Eigen::Matrix<double, 4, 3>::Zero();
+  const Eigen::Vector4d l = lightOf(known.lamp).homogeneous();
+  if (known.lamp.atInfinity()) {
+    const Eigen::Vector3d d = l.head<3>(), across = d.unitOrthogonal();
+    columns.topRows<3>() << known.sigma * across, known.sigma * d.cross(across), Eigen::Vector3d::Zero();
+  } else {
+    columns.topRows<3>().diagonal().setConstant(known.sigma * l.w());
+    columns -= l * (l.transpose() * columns);
+  }
+  return columns;
+}
+
+}  // namespace
+
+std::optional<KnownLamp> knownLamp(const Scene& scene, const std::string& light) {
+  const auto stated =
+      std::find_if(scene.lights.begin(), scene.lights.end(), [&](const TrueLight& l) { return l.known && l.id == light; });
+  if (stated == scene.lights.end()) return std::nullopt;
+  return KnownLamp{stated->lamp, stated->lamp.atInfinity() ? radians(stated->sigma) : stated->sigma};
+}
+
+bool knowsAllLamps(const Scene& scene, const Frame& frame) {
+  if (scene.lights.empty()) return false;
+  if (frame.lightsOn.empty())
+    return std::all_of(scene.lights.begin(), scene.lights.end(), [](const TrueLight& l) { return l.known; });
+  return std::all_of(frame.lightsOn.begin(), frame.lightsOn.end(),
+                     [&](const std::string& id) { return knownLamp(scene, id).has_value(); });
+}
+
+bool shareMaterial(const KnownLamp& a, const KnownLamp& b) {
+  return a.lamp.atInfinity() == b.lamp.atInfinity() && a.lamp.shape == b.lamp.shape;
+}
+
+TrainingView carriedTo(const TrainingView& view, const KnownLamp& lamp, const Eigen::Vector3d& pivot) {
+  require(view.known.has_value(), "carriedTo: a view of a known lamp");
+  const Eigen::Isometry3d by = carriage(view.known->lamp, lamp.lamp, pivot);
+  TrainingView there = view;
+  there.known = lamp;
+  if (by.matrix() == Eigen::Isometry3d::Identity().matrix() || !view.surface) return there;
+  Camera camera = view.camera;
+  camera.camFromWorld = camera.camFromWorld * by.inverse();
+  there = seenAgain(there, camera, movedTo(by * poseOf(*view.surface), view.surface));
+  there.levels = view.levels;
+  there.pixels = view.pixels;
+  there.fromScene = by * view.fromScene;
+  return there;
+}
+
+std::vector<TrainingView> pooledViews(const std::vector<TrainingView>& views, const KnownLamp& lamp) {
+  std::vector<TrainingView> pooled;
+  std::optional<Eigen::Vector3d> pivot;
+  for (const TrainingView& v : views) {
+    if (!v.known || !shareMaterial(*v.known, lamp)) continue;
+    if (!pivot && v.seen) pivot = v.seen->brightest.point.position;
+    pooled.push_back(v);
+  }
+  std::stable_sort(pooled.begin(), pooled.end(), [](const TrainingView& a, const TrainingView& b) {
+    return std::pair(a.frame, a.highlight.light) < std::pair(b.frame, b.highlight.light);
+  });
+  for (TrainingView& v : pooled) v = carriedTo(v, lamp, pivot.value_or(Eigen::Vector3d::Zero()));
+  return pooled;
+}
+
+void describeKnownLamp(ModelFit& fit, const std::string& light, const KnownLamp& known, const std::vector<TrainingView>& pooled) {
+  std::vector<double> residuals;
+  std::vector<int> frames;
+  std::size_t used = 0;
+  for (const TrainingView& v : pooled) {
+    if (!v.seen || used >= fit.frames.size()) continue;
+    if (v.highlight.light == light) {
+      frames.push_back(v.frame);
+      if (used < fit.residualPx.size()) residuals.push_back(fit.residualPx[used]);
+    }
+    ++used;
+  }
+  fit.frames = std::move(frames);
+  fit.residualPx = std::move(residuals);
+  fit.hints.clear();  // they lie where other lamps' views were carried
+  if (!(known.sigma > 0) || fit.as<EllipsoidFit>()) return;
+  if (!known.lamp.atInfinity()) fit.lightCovariance = known.sigma * known.sigma * Eigen::Matrix3d::Identity();
+  if (!fit.uncertainty) return;
+  Eigen::MatrixXd& root = fit.uncertainty->root;
+  Eigen::MatrixXd wider = Eigen::MatrixXd::Zero(root.rows(), root.cols() + 3);
+  wider.leftCols(root.cols()) = root;
+  wider.topRightCorner<4, 3>() = statedColumns(known);
+  root = std::move(wider);
+}
+
+std::string knownLampDoubt(const std::vector<TrainingView>& views, const LightEstimate& light) {
+  std::string text;
+  for (const TrainingView& v : views) {
+    if (!v.seen || !v.known) continue;
+    const SurfacePoint& p = v.seen->brightest.point;
+    const Eigen::Vector3d toCamera = (v.camera.centreInWorld() - p.position).normalized();
+    const double alpha = incidentAngle(p.normal, lightOf(v.known->lamp).directionFrom(p.position), toCamera);
+    // Half of the lamp's own error turns the half vector.
+    const double stated =
+        v.known->lamp.atInfinity() ? v.known->sigma : v.known->sigma / (lightOf(v.known->lamp).position() - p.position).norm();
+    if (alpha < light.limitAngle + stated) continue;
+    text +=
+        (text.empty() ? "" : "; ") +
+        formatted("frame %s: the highlight lies %.2g\u00b0 from where the known lamp mirrors: its place or its name may be wrong",
+                  v.frameId.c_str(), degrees(alpha));
+  }
+  return text;
+}
+
+bool assignKnownLamps(const Scene& scene, std::vector<FrameEvidence>& evidence,
+                      const std::function<std::shared_ptr<const Surface>(int frame)>& surfaceOf) {
+  bool any = false;
+  for (FrameEvidence& e : evidence) {
+    if (e.frame < 0 || e.highlights.empty()) continue;
+    const Frame& frame = scene.frames[static_cast<std::size_t>(e.frame)];
+    if (frame.lightsOn.size() == 1 || !knowsAllLamps(scene, frame)) continue;
+    const std::shared_ptr<const Surface> surface = surfaceOf(e.frame);
+    if (!surface) continue;
+    any = true;
+    std::vector<std::string> on = frame.lightsOn;
+    if (on.empty())
+      for (const TrueLight& l : scene.lights) on.push_back(l.id);
+    for (Highlight& h : e.highlights) {
+      const Outcome<BrightestPoint> seen = observedBrightestPoint(*surface, frame.camera, h.peak);
+      if (!seen) continue;
+      const Eigen::Vector3d toCamera = (frame.camera.centreInWorld() - seen->point.position).normalized();
+      double least = kFarthestMirror;
+      h.light.clear();
+      for (const std::string& id : on) {
+        const Light light = lightOf(knownLamp(scene, id)->lamp);
+        const double alpha = incidentAngle(seen->point.normal, light.directionFrom(seen->point.position), toCamera);
+        if (alpha < least) least = alpha, h.light = id;
+      }
+    }
+  }
+  return any;
+}
+
+}  // namespace glint
