@@ -50,8 +50,8 @@ def limited(seconds):
 def command_of(glint, scene, truth, rung, model):
     """The band takes several fits: the one of auto is that of the model which it chose, and is taken from that model's row."""
     band = [] if model == "auto" else ["--set", "predict.band=true"]
-    return [str(glint), "evaluate", str(scene), "--source", "image", "--models", model, "--train", rung.train, "--truth", str(truth),
-            *band, "--json", "-"]
+    return [str(glint), "evaluate", str(scene), "--source", "image", "--models", model, "--train", rung.train,
+            "--truth", str(truth), *band, "--json", "-"]
 
 
 def run(command, limit):

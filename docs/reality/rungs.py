@@ -159,7 +159,7 @@ RENDERED = [
     Rung("dome-mesh", "the same over a mesh with broad waves", KNOWN, "known lamps", render=dict(DOME, waves=0.08), train="0-11"),
     Rung("known-flash", "known lamp fixed to the camera", KNOWN, "known lamps", render={"lamps": [FLASH]}),
     Rung("dome-three", "three known distant lamps in each photograph, still camera", KNOWN, "known lamps", train="0-11",
-         render=dict(BALL, on=[[k, (k + 4) % 13, (k + 8) % 13] for k in range(13)])),
+         render=dict(BALL, on=[[k, (k + 1) % 13, (k + 7) % 13] for k in range(13)], roughness=[0.39, 0.39])),
 ]
 
 
