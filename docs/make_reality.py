@@ -28,7 +28,6 @@ from reality import rungs, scenes, verdict  # noqa: E402
 
 PAGE = DOCS / "reality.md"
 MODELS = ("limit-angle", "reflectance", "auto")
-TRAIN = "spread:6"
 LIMIT_S = 120  # of the processor, for one command
 WALL = 4  # times that limit, for a machine that others load
 MOST_SAID = 110  # characters of what the program said
@@ -48,11 +47,11 @@ def limited(seconds):
     return inside
 
 
-def command_of(glint, scene, truth, model):
+def command_of(glint, scene, truth, rung, model):
     """The band takes several fits: the one of auto is that of the model which it chose, and is taken from that model's row."""
     band = [] if model == "auto" else ["--set", "predict.band=true"]
-    return [str(glint), "evaluate", str(scene), "--source", "image", "--models", model, "--train", TRAIN, "--truth", str(truth),
-            *band, "--json", "-"]
+    return [str(glint), "evaluate", str(scene), "--source", "image", "--models", model, "--train", rung.train,
+            "--truth", str(truth), *band, "--json", "-"]
 
 
 def run(command, limit):
@@ -192,7 +191,7 @@ def evaluate(arguments, rung, newest):
         print(f"{rung.name}: not rendered", flush=True)
         return
     for model in due:
-        record = run(command_of(arguments.glint, *place, model), arguments.limit)
+        record = run(command_of(arguments.glint, *place, rung, model), arguments.limit)
         write(files[model], json.dumps(record))
         found = alone(rung, model, record)
         error = figure(found.error_pct, " %")

@@ -4,7 +4,8 @@
   blender -b --factory-startup -P docs/reality/render.py -- SPEC.json FOLDER
 
 FOLDER/light/ID.npy: light of the photograph, RGB. FOLDER/light/ID-K.npy: specular light of lamp K alone, on the body, grey, from
-which the true contours are traced. FOLDER/made.json: camera, poses, semi-axes. A frame whose arrays are there stays.
+which the true contours are traced. FOLDER/made.json: camera, poses, semi-axes, and which lamps are on. FOLDER/mesh.npz: the body,
+where it has waves. A frame whose arrays are there stays.
 """
 import json
 import math
@@ -17,7 +18,8 @@ import numpy as np
 
 LAMP = {"kind": "sphere", "position": [0.75, -0.55, 1.3], "radius": 0.01, "power": 30.0}
 DEFAULT = {"semi_axes": [0.15, 0.11, 0.09], "roughness": [0.42, 0.42], "size": [360, 270], "focal": 720, "views": 12,
-           "eye": 0.75, "lamps": [LAMP], "samples": 128, "shape_samples": 400}
+           "eye": 0.75, "lamps": [LAMP], "samples": 128, "shape_samples": 400, "waves": 0.0, "diffuse": [0.2, 0.26, 0.4]}
+WAVES = np.array([[3.1, -1.9, 1.7], [-1.2, 2.6, 2.9], [2.3, 2.8, -1.4]])  # three bulges to a turn: the body stays convex
 
 
 # Cameras.
@@ -31,7 +33,9 @@ def look_at(eye):
 
 
 def poses(spec):
-    """An arc of a third of a turn opposite and above the lamps; `eye` is the sine of the elevation."""
+    """An arc of a third of a turn opposite and above the lamps, or one still camera; `eye` is the sine of the elevation."""
+    if "on" in spec:
+        return [look_at(0.95 * np.array([0, -math.sqrt(1 - spec["eye"] ** 2), spec["eye"]]))] * len(spec["on"])
     out = []
     for k in range(spec["views"]):
         azimuth = math.radians(-110 + 120 * k / (spec["views"] - 1))
@@ -42,18 +46,28 @@ def poses(spec):
 
 
 # The scene.
-def body(axes, times=7):
+def level(points, spec):
+    """1 on the body, less inside; t times as large at t times the point."""
+    scaled = points / np.array(spec["semi_axes"])
+    radius = np.linalg.norm(scaled, axis=1)
+    return radius / (1 + spec["waves"] * np.sin(scaled / radius[:, None] @ WAVES.T).mean(1))
+
+
+def body(spec, folder, times=7):
     bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=times, radius=1)
     made = bpy.context.object
     mesh = made.data
-    points = np.array([v.co for v in mesh.vertices], float)
-    points /= np.linalg.norm(points, axis=1, keepdims=True)
-    normals = points / axes
+    points = np.array([v.co for v in mesh.vertices], float) * spec["semi_axes"]
+    points /= level(points, spec)[:, None]
+    normals = np.stack([level(points + step, spec) - level(points - step, spec) for step in 1e-6 * np.eye(3)], 1)
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-    mesh.vertices.foreach_set("co", (points * axes).ravel())
+    mesh.vertices.foreach_set("co", points.ravel())
     mesh.polygons.foreach_set("use_smooth", [True] * len(mesh.polygons))
     mesh.use_auto_smooth = True
     mesh.normals_split_custom_set_from_vertices(normals.tolist())
+    if spec["waves"]:
+        faces = np.array([list(p.vertices) for p in mesh.polygons])
+        np.savez(folder / "mesh.npz", vertices=points, faces=faces, normals=normals)
     return made
 
 
@@ -123,7 +137,7 @@ def material(spec):
         shader = node(tree, "ShaderNodeBsdfPrincipled", Roughness=spec["roughness"][0], Specular=spec["fresnel"])
         shader.inputs["Base Color"].default_value = (0.2, 0.2, 0.2, 1)
     else:
-        diffuse = node(tree, "ShaderNodeBsdfDiffuse", Color=(0.2, 0.26, 0.4, 1))
+        diffuse = node(tree, "ShaderNodeBsdfDiffuse", Color=(*spec["diffuse"], 1))
         if "texture" in spec:
             paint(tree, spec["texture"], diffuse)
         low, high = spec.get("coat") or spec["roughness"]
@@ -158,16 +172,18 @@ def lamp_object(lamp):
     if lamp["kind"] == "ring":
         made = emitter(lamp)
     else:
-        data = bpy.data.lights.new("lamp", "AREA" if lamp["kind"] == "area" else "POINT")
+        data = bpy.data.lights.new("lamp", {"area": "AREA", "sun": "SUN"}.get(lamp["kind"], "POINT"))
         data.energy = lamp["power"]
         if lamp["kind"] == "area":
             data.shape, (data.size, data.size_y) = "RECTANGLE", lamp["size"]
+        elif lamp["kind"] == "sun":
+            data.angle = 0
         else:
             data.shadow_soft_size = lamp["radius"]
             data.cycles.use_multiple_importance_sampling = False
         made = bpy.data.objects.new("lamp", data)
         bpy.context.collection.objects.link(made)
-    made.location = lamp["position"]
+    made.location = lamp.get("position") or lamp["direction"]
     made.rotation_mode = "QUATERNION"
     made.rotation_quaternion = (-made.location).to_track_quat("-Z", "Y")
     return made
@@ -184,7 +200,7 @@ def floor(depth):
     bpy.context.object.data.materials.append(white)
 
 
-def prepared(spec, scratch):
+def prepared(spec, folder, scratch):
     """The scene with its passes; File Output nodes write what a render gives to `scratch`."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     scene = bpy.context.scene
@@ -192,7 +208,7 @@ def prepared(spec, scratch):
     scene.world = bpy.data.worlds.new("black")
     scene.world.color = (0, 0, 0)
     scene.cycles.device, scene.cycles.use_denoising, scene.cycles.use_adaptive_sampling = "CPU", False, False
-    shaped = any(lamp["kind"] != "sphere" for lamp in spec["lamps"])
+    shaped = any(lamp["kind"] in ("area", "ring") for lamp in spec["lamps"])
     scene.cycles.samples = spec["shape_samples" if shaped else "samples"]
     bounces = 2 if spec.get("floor") else 0
     for name in ("max_bounces", "diffuse_bounces", "glossy_bounces"):
@@ -213,7 +229,7 @@ def prepared(spec, scratch):
     for name in ("Image", "GlossDir", "GlossCol"):
         output.file_slots.new(name + "-")
         tree.links.new(layers.outputs[name], output.inputs[name + "-"])
-    made = body(np.array(spec["semi_axes"]))
+    made = body(spec, folder)
     made.data.materials.append(material(spec))
     if spec.get("floor"):
         floor(spec["semi_axes"][2])
@@ -249,20 +265,23 @@ def main():
     scratch, out = folder / "scratch", folder / "light"
     for made in (scratch, out):
         made.mkdir(parents=True, exist_ok=True)
-    scene = prepared(spec, scratch)
+    scene = prepared(spec, folder, scratch)
     lamps = [lamp_object(lamp) for lamp in spec["lamps"]]
     turn = np.diag([1.0, -1, -1, 1])  # Blender's cameras look along -z, y up
     frames = []
     for k, pose in enumerate(poses(spec)):
         name = f"{k:04}"
-        frames.append({"id": name, "camera_from_world": pose.tolist()})
+        on = spec["on"][k] if "on" in spec else range(len(lamps))
+        frames.append({"id": name, "camera_from_world": pose.tolist(), "on": list(on)})
         if (out / f"{name}.npy").exists():
             continue
         scene.camera.matrix_world = (np.linalg.inv(pose) @ turn).T.tolist()
         photo = 0
-        for i in range(len(lamps)):
+        for i in on:
             for j, lamp in enumerate(lamps):
                 lamp.hide_render = i != j
+            if spec["lamps"][i].get("frame") == "camera":
+                lamps[i].location = (np.linalg.inv(pose) @ [*spec["lamps"][i]["position"], 1])[:3]
             image, specular = lights_of(scene, scratch, spec["size"], 100 * k + i)
             np.save(out / f"{name}-{i}.npy", specular)
             photo = photo + image

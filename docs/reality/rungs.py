@@ -11,6 +11,7 @@ MESH = r"mesh|bump|normals|noise of the surface"
 RESPONSE = r"response|gamma|tone curve|vignett|exposure"
 LAMPS = r"\blamps\b|\blights\b|another lamp"
 EXTENT = r"extent|size of the l|wide l|ring|panel|window"
+KNOWN = r"known|given|stated"
 
 
 @dataclasses.dataclass
@@ -26,6 +27,7 @@ class Rung:
     folder: str = ""  # of shared data
     file: str = "scene.json"
     truth: str = "contours"
+    train: str = "spread:6"
 
 
 EXACT = [
@@ -117,6 +119,22 @@ def around(count, radius, height):
             for k in range(count)]
 
 
+def dome(count=13):
+    """Known distant lamps on a spiral from near the zenith to 17 degrees above the horizon; the last is a lamp of the middle."""
+    out = []
+    for k in range(count):
+        spiral = (k + (count + 1) // 2) % count
+        height, turn = 0.96 - 0.67 * spiral / (count - 1), spiral * math.pi * (3 - math.sqrt(5))
+        level = math.sqrt(1 - height * height)
+        out.append({"kind": "sun", "id": f"dome-{k + 1:02}", "frame": "world", "power": 3.0, "known": True, "sigma_deg": 0.1,
+                    "direction": [level * math.cos(turn), level * math.sin(turn), height]})
+    return out
+
+
+FLASH = dict(LAMP, id="flash", frame="camera", position=[0.3, -0.12, 0.05], known=True, sigma_m=0.001)
+DOME = {"lamps": dome(), "on": [[k] for k in range(13)], "eye": 0.995, "roughness": [0.45, 0.45], "diffuse": [0.02, 0.02, 0.02]}
+BALL = dict(DOME, semi_axes=[0.13, 0.13, 0.13])
+
 # Each: material {lobe, roughness, ...}, lamps, floor; what is not said is the default of docs/reality/render.py.
 RENDERED = [
     Rung("plain", "nothing hard", render={}),
@@ -136,6 +154,12 @@ RENDERED = [
     Rung("ring", "ring lamp", EXTENT, "lamps with a shape",
          render={"lamps": [dict(AREA, kind="ring", radius=0.4)], "roughness": MIRRORING}),
     Rung("white-floor", "white floor, two bounces", r"floor|bounce|reflect", "Fresnel and bounces", render={"floor": True}),
+    Rung("dome-ball", "13 known distant lamps, one in each photograph, still camera", KNOWN, "known lamps", render=BALL,
+         train="0-11"),
+    Rung("dome-mesh", "the same over a mesh with broad waves", KNOWN, "known lamps", render=dict(DOME, waves=0.08), train="0-11"),
+    Rung("known-flash", "known lamp fixed to the camera", KNOWN, "known lamps", render={"lamps": [FLASH]}),
+    Rung("dome-three", "three known distant lamps in each photograph, still camera", KNOWN, "known lamps", train="0-11",
+         render=dict(BALL, on=[[k, (k + 1) % 13, (k + 7) % 13] for k in range(13)], roughness=[0.39, 0.39])),
 ]
 
 

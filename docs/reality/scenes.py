@@ -11,6 +11,7 @@ import numpy as np
 from reality import contours, pictures, rungs, variants
 
 RENDER = pathlib.Path(__file__).parent / "render.py"
+KNOWN = ("id", "frame", "direction", "position", "known", "sigma_deg", "sigma_m")  # what a scene says of a lamp that is given
 LAMP_WITH_SHAPE = ("area", "ring")  # sampled at random: their noise is smoothed before contours are traced
 
 
@@ -55,12 +56,22 @@ def compose(rung, folder):
     for frame, photo in zip(made["frames"], photos):
         pictures.write(folder / "frames" / f"{frame['id']}.png", pictures.srgb_codes(variants.PEAK / top * photo))
         lamps = []
-        for k, kind in enumerate(made["lamps"]):
+        for k in frame["on"]:
             specular = np.load(folder / "light" / f"{frame['id']}-{k}.npy")
-            lamps.append(contours.smoothed(specular) if kind in LAMP_WITH_SHAPE else specular)
+            lamps.append(contours.smoothed(specular) if made["lamps"][k] in LAMP_WITH_SHAPE else specular)
         contours.write_truth(folder / "truth", frame["id"], contours.truth_of(lamps))
-    scene = {"glint_scene": 1, "name": rung.name, "units": "m", "camera": made["camera"],
-             "surfaces": {"body": {"analytic": {"type": "ellipsoid", "semi_axes": made["semi_axes"]}}},
-             "frames": [dict(f, surface="body", image=f"frames/{f['id']}.png") for f in made["frames"]]}
+    surface = {"analytic": {"type": "ellipsoid", "semi_axes": made["semi_axes"]}}
+    if (folder / "mesh.npz").exists():
+        mesh = np.load(folder / "mesh.npz")
+        variants.write_ply(folder / "mesh.ply", mesh["vertices"], mesh["faces"], mesh["normals"])
+        surface = {"mesh": "mesh.ply"}
+    lamps = rung.render.get("lamps", [])
+    given = [{key: lamp[key] for key in KNOWN if key in lamp} for lamp in lamps if lamp.get("known")]
+    scene = {"glint_scene": 2 if given else 1, "name": rung.name, "units": "m", "camera": made["camera"],
+             "surfaces": {"body": surface}, **({"lights": given} if given else {}), "frames": []}
+    for frame in made["frames"]:
+        on = frame.pop("on")
+        named = {"lights_on": [lamps[k]["id"] for k in on]} if given else {}
+        scene["frames"].append(dict(frame, surface="body", image=f"frames/{frame['id']}.png", **named))
     (folder / "scene.json.new").write_text(json.dumps(scene))
     os.replace(folder / "scene.json.new", folder / "scene.json")

@@ -70,13 +70,14 @@ def read_ply(path):
     return np.stack([vertices[c].astype(float) for c in "xyz"], 1), faces["v"].copy()
 
 
-def write_ply(path, vertices, faces):
-    """With vertex normals, means of the triangles around weighted by area."""
-    cross = np.cross(vertices[faces[:, 1]] - vertices[faces[:, 0]], vertices[faces[:, 2]] - vertices[faces[:, 0]])
-    normals = np.zeros_like(vertices)
-    for corner in range(3):
-        np.add.at(normals, faces[:, corner], cross)
-    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-30)  # an unused vertex has no normal
+def write_ply(path, vertices, faces, normals=None):
+    """With vertex normals: those that are given, or means of the triangles around weighted by area."""
+    if normals is None:
+        cross = np.cross(vertices[faces[:, 1]] - vertices[faces[:, 0]], vertices[faces[:, 2]] - vertices[faces[:, 0]])
+        normals = np.zeros_like(vertices)
+        for corner in range(3):
+            np.add.at(normals, faces[:, corner], cross)
+        normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-30)  # an unused vertex has no normal
     columns = "".join(f"property double {c}\n" for c in ("x", "y", "z", "nx", "ny", "nz"))
     head = (f"ply\nformat binary_little_endian 1.0\nelement vertex {len(vertices)}\n{columns}"
             f"element face {len(faces)}\nproperty list uchar int vertex_indices\nend_header\n")

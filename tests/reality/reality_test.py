@@ -13,7 +13,7 @@ import numpy as np
 
 root = pathlib.Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(root / "docs"))
-from reality import contours, pictures, rungs, variants, verdict  # noqa: E402
+from reality import contours, pictures, rungs, scenes, variants, verdict  # noqa: E402
 
 
 def lobe(shape, centre, axes, turn=0.0, height=1.0):
@@ -158,6 +158,43 @@ class Variants(unittest.TestCase):
             # the lobe's own peak stands where the moved camera says
             picture = pictures.read(folder / "cropped/frames/a.png")
             self.assertEqual(np.unravel_index(picture.argmax(), picture.shape)[0], 30 - (29.5 - own["cy"]))
+
+
+class KnownLamps(unittest.TestCase):
+    def testADomeSpreadsOverTheUpperHemisphere(self):
+        directions = np.array([lamp["direction"] for lamp in rungs.dome()])
+        self.assertLess(np.abs(np.linalg.norm(directions, axis=1) - 1).max(), 1e-12)
+        self.assertTrue((directions[:, 2] > 0.28).all())
+        between = directions @ directions.T - 2 * np.eye(13)
+        self.assertGreater(math.degrees(math.acos(between.max())), 25)  # an even spread over this cap has about 35
+        self.assertLess(np.linalg.norm(directions[:, :2].sum(0)), 1.5)  # on all sides
+
+    def composed(self, folder, lamps):
+        """A scene of two photographs, each with one of two lobes; Blender's part is played by arrays."""
+        (folder / "light").mkdir()
+        frames = [{"id": name, "camera_from_world": np.eye(4).tolist(), "on": [k]} for k, name in enumerate("ab")]
+        for k, frame in enumerate(frames):
+            light = lobe((60, 80), (25 + 30 * k, 30), (8, 6))
+            np.save(folder / f"light/{frame['id']}-{k}.npy", light)
+            np.save(folder / f"light/{frame['id']}.npy", np.repeat(light[..., None], 3, 2))
+        (folder / "made.json").write_text(json.dumps(
+            {"camera": {"width": 80}, "semi_axes": [1, 1, 1], "frames": frames, "lamps": ["sun", "sun"]}))
+        scenes.compose(rungs.Rung("r", "", render={"lamps": lamps}), folder)
+        return json.loads((folder / "scene.json").read_text())
+
+    def testEachPhotographNamesItsLampAndHasItsTruthAlone(self):
+        with tempfile.TemporaryDirectory() as name:
+            scene = self.composed(pathlib.Path(name), rungs.dome()[:2])
+            self.assertEqual((scene["glint_scene"], [f["lights_on"] for f in scene["frames"]]), (2, [["dome-01"], ["dome-02"]]))
+            self.assertEqual({k for light in scene["lights"] for k in light}, {"id", "frame", "direction", "known", "sigma_deg"})
+            for file, x in (("a", 25), ("b", 55)):
+                (found,) = json.loads((pathlib.Path(name) / f"truth/{file}.json").read_text())["levels"]["0.50"]
+                self.assertLess(away(found["points"], (x, 30), (8, 6)), 0.05)
+
+    def testLampsThatAreNotKnownStayUnsaid(self):
+        with tempfile.TemporaryDirectory() as name:
+            scene = self.composed(pathlib.Path(name), [rungs.LAMP, rungs.LAMP])
+        self.assertEqual((scene["glint_scene"], "lights" in scene, "lights_on" in scene["frames"][0]), (1, False, False))
 
 
 def evaluation(error_pct=0.1, error_px=0.2, status="ok", reason="", warnings=(), matched=8, missed=0, spurious=0,
