@@ -4,11 +4,11 @@
 triangles: poses of an orbit, one after the other, the first 20 not counted. Prints a Markdown row for each setting: the medians
 and the 99th percentiles.
 
-    bench/measure_stream.py build/release/bin/glint [--poses N] [--preset NAME]
+    bench/measure_stream.py build/release/bin/glint [--poses N] [--preset NAME] [--moving]
 
 The photographs are those of sessions/ellipsoid. The settings are what the preset `balanced` is in docs/tradeoff.md, of the mesh of a million
 triangles and of the vase, without and with standard deviations (predict.band); --preset measures the trade-off of this very scene first (minutes),
-and takes that preset. Exit code 1 when a median without them is above a millisecond."""
+and takes that preset. --moving turns the object by a degree before each pose. Exit code 1 when a median without them is above a millisecond."""
 import argparse
 import json
 import math
@@ -49,11 +49,19 @@ def percentile(values, share):
     return sorted(values)[min(len(values) - 1, int(share * len(values)))]
 
 
-def measure(program, session, more, poses):
+def turned(degrees):
+    """The object about the world's z axis."""
+    c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
+    return [[c, -s, 0, 0], [s, c, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
+
+
+def measure(program, session, more, poses, moving=False):
     glint = Glint(program, str(session), more)
     inside, outside, highlights = [], [], 0
     for n in range(WARM_UP + poses):
         pose = {"id": "live-%d" % n, "time": n / 30, "camera_from_world": looking_at_centre(FROM + (TO - FROM) * (n % 97) / 97)}
+        if moving:
+            pose["world_from_object"] = turned(n)
         start = time.perf_counter()
         answer = glint.answer(pose)
         seconds = time.perf_counter() - start
@@ -71,6 +79,7 @@ def main():
     parser.add_argument("glint")
     parser.add_argument("--poses", type=int, default=300)
     parser.add_argument("--preset")
+    parser.add_argument("--moving", action="store_true")
     arguments = parser.parse_args()
     slow = False
     with tempfile.TemporaryDirectory() as name:
@@ -92,7 +101,7 @@ def main():
         print("| settings | triangles | poses | highlights | line to contours, median us | 99 % us | through both pipes, median us | 99 % us |")
         print("|---|---|---|---|---|---|---|---|")
         for title, session, more in runs:
-            inside, outside, highlights = measure(arguments.glint, session, more, arguments.poses)
+            inside, outside, highlights = measure(arguments.glint, session, more, arguments.poses, arguments.moving)
             print("| %s | %d | %d | %d | %.0f | %.0f | %.0f | %.0f |" % (
                 title, 2 * ROWS * COLUMNS, len(inside), highlights, percentile(inside, 0.5), percentile(inside, 0.99),
                 percentile(outside, 0.5), percentile(outside, 0.99)))

@@ -35,7 +35,10 @@ Fault faultOf(const FrameComparison& c, const std::string& model) {
 
 /// The views of one fit, on their surfaces as given: of its light, and of its surface where models are per surface.
 std::vector<TrainingView> viewsOf(const Inspection& inspection, const Fault& fault) {
-  return inspection.viewsOf(inspection.keyFor(fault.frame, fault.light), true);
+  std::vector<TrainingView> views = inspection.viewsOf(inspection.keyFor(fault.frame, fault.light), true);
+  // The small scene has one lamp.
+  std::erase_if(views, [&](const TrainingView& v) { return v.highlight.light != fault.light; });
+  return views;
 }
 
 /// The answer of the model fitted to some of the views.

@@ -102,9 +102,12 @@ std::vector<double> Band::sigmaPx(const PredictedHighlight& highlight, const Cam
   if (shifts.cols() == 0 || shifts.rows() != Eigen::Index(n) || n < 3) return {};
   const std::vector<double> own = effects_.sigmaPx(
       shifts, contourShapes(outwardNormals(highlight.contour), arcOf(highlight.contour)), placeOf(highlight, camera, unit_));
+  const Eigen::MatrixXd stated =
+      stated_ ? model_.bandShiftsPx(*stated_, highlight, camera, surface, settings_) : Eigen::MatrixXd();
   std::vector<double> variance(n);
   for (std::size_t i = 0; i < n; ++i) {
     variance[i] = own[i] * own[i];
+    if (stated.rows() == shifts.rows()) variance[i] += stated.row(Eigen::Index(i)).squaredNorm();
     if (own_) variance[i] += shifts.row(Eigen::Index(i)).squaredNorm();
     if (clipped_) variance[i] += std::pow(kClippedShare * (highlight.contour.points[i] - highlight.brightest.pixel).norm(), 2);
   }

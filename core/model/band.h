@@ -36,6 +36,9 @@ class Band {
   /// The parameters' own covariance counts beside the residuals: it contains a part (a refined depth or normals) that no residual
   /// shows.
   void addOwnCovariance() { own_ = true; }
+  /// What the scene states of a known lamp: the parameters' changes count beside the residuals, of which they are no part.
+  /// @param fit  whose uncertainty is the stated one
+  void addStated(ModelFit fit) { stated_ = std::move(fit); }
 
   const ViewEffects& effects() const { return effects_; }
   double radiusPx() const { return radius_; }  ///< of the training contours, mean
@@ -55,6 +58,7 @@ class Band {
   ViewEffects effects_;
   std::vector<BandAlternative> alternatives_;
   bool own_ = false, clipped_ = false;
+  std::optional<ModelFit> stated_;
   double radius_ = 0, unit_ = 1;
 };
 

@@ -8,6 +8,7 @@
 #include "core/model/plausible.h"
 #include "core/model/reflectance_settings.h"
 #include "core/pipeline/fit_engine.h"
+#include "core/pipeline/known_lamps.h"
 #include "core/pipeline/training.h"
 
 namespace glint {
@@ -99,6 +100,8 @@ FittedBand bandOf(const HighlightModel& model, const ModelFit& fit, const FitInp
   // Beside a fit that explains its views, one that does not is no alternative.
   const PoorFits poor = fit.poor.empty() ? PoorFits::Refuse : PoorFits::Take;
   if (surfaceRefined) band->addOwnCovariance();
+  if (!input.views.empty() && input.views.front().known)
+    if (std::optional<ModelFit> stated = movedAsStated(fit, *input.views.front().known)) band->addStated(*std::move(stated));
 
   // Other lobes, or reflectance beside the limit angle. One that the evidence prefers is away by d for certain: uniform between
   // -d and d; several that it likes alike are a mixture, whose variance is d^2 times the share.

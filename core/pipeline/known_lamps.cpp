@@ -9,12 +9,15 @@
 #include "core/base/number_text.h"
 #include "core/base/numeric.h"
 #include "core/light/estimate.h"
+#include "core/model/models.h"
+#include "core/model/plausible.h"
 #include "core/pipeline/training.h"
 #include "core/surface/posed_surface.h"
 
 namespace glint {
 namespace {
 
+constexpr int kLimitPoints = 36;         // of a contour, for the angle that it reaches
 constexpr double kFarthestMirror = 0.2;  // rad: wide lobes at slanted views shift the peak from the mirror point by less
 
 /// What carries coordinates in which one lamp stands somewhere to coordinates in which it stands where the other one does.
@@ -38,6 +41,39 @@ Eigen::Matrix<double, 4, 3> statedColumns(const KnownLamp& known) {
     columns -= l * (l.transpose() * columns);
   }
   return columns;
+}
+
+/// How far a highlight lies from where its known lamp mirrors, as a half angle; nothing for a view without either.
+std::optional<double> missedAngle(const TrainingView& v) {
+  if (!v.seen || !v.known) return std::nullopt;
+  const SurfacePoint& p = v.seen->brightest.point;
+  const Eigen::Vector3d toCamera = (v.camera.centreInWorld() - p.position).normalized();
+  return incidentAngle(p.normal, lightOf(v.known->lamp).directionFrom(p.position), toCamera);
+}
+
+/// Further than that, the lamp and its highlight contradict each other. @param limit  that the contours reach, rad
+double mostMissed(const TrainingView& v, double limit) {
+  const KnownLamp& known = *v.known;
+  // The half vector turns by half of the lamp's own error: this is twice its standard deviation.
+  if (known.lamp.atInfinity()) return limit + known.sigma;
+  return limit + known.sigma / (lightOf(known.lamp).position() - v.seen->brightest.point.position).norm();
+}
+
+std::string missedText(double angle) {
+  return formatted("the highlight lies %.2g\u00b0 from where the known lamp mirrors: its place or its name may be wrong",
+                   degrees(angle));
+}
+
+/// Views that contradict their lamp are no evidence of the material. Most of them must be right.
+void dropContradictions(std::vector<TrainingView>& views, const KnownLamp& lamp) {
+  std::vector<double> limits;
+  for (const TrainingView& v : views)
+    if (v.seen) limits.push_back(medianContourAngle({v}, lightOf(lamp.lamp), kLimitPoints));
+  if (limits.empty()) return;
+  const double limit = upperMedian(limits);
+  for (TrainingView& v : views)
+    if (const std::optional<double> missed = missedAngle(v); missed && *missed > mostMissed(v, limit))
+      v.seen = Failure{Reason::NotSupported, missedText(*missed)};
 }
 
 }  // namespace
@@ -88,50 +124,46 @@ std::vector<TrainingView> pooledViews(const std::vector<TrainingView>& views, co
     return std::pair(a.frame, a.highlight.light) < std::pair(b.frame, b.highlight.light);
   });
   for (TrainingView& v : pooled) v = carriedTo(v, lamp, pivot.value_or(Eigen::Vector3d::Zero()));
+  if (pooled.size() > 2) dropContradictions(pooled, lamp);  // of two, nothing tells which one is wrong
   return pooled;
 }
 
-void describeKnownLamp(ModelFit& fit, const std::string& light, const KnownLamp& known, const std::vector<TrainingView>& pooled) {
+Outcome<ModelFit> fitOfKnownLamp(ModelFit fit, const std::string& light, const KnownLamp& known,
+                                 const std::vector<TrainingView>& pooled, double mostShare) {
   std::vector<double> residuals;
   std::vector<int> frames;
+  std::vector<UsedContour> own;
   std::size_t used = 0;
   for (const TrainingView& v : pooled) {
     if (!v.seen || used >= fit.frames.size()) continue;
     if (v.highlight.light == light) {
       frames.push_back(v.frame);
-      if (used < fit.residualPx.size()) residuals.push_back(fit.residualPx[used]);
+      if (used < fit.residualPx.size()) residuals.push_back(fit.residualPx[used]), own.push_back(usedContour(v));
     }
     ++used;
   }
   fit.frames = std::move(frames);
   fit.residualPx = std::move(residuals);
   fit.hints.clear();  // they lie where other lamps' views were carried
-  if (!(known.sigma > 0) || fit.as<EllipsoidFit>()) return;
-  if (!known.lamp.atInfinity()) fit.lightCovariance = known.sigma * known.sigma * Eigen::Matrix3d::Identity();
-  if (!fit.uncertainty) return;
-  Eigen::MatrixXd& root = fit.uncertainty->root;
-  Eigen::MatrixXd wider = Eigen::MatrixXd::Zero(root.rows(), root.cols() + 3);
-  wider.leftCols(root.cols()) = root;
-  wider.topRightCorner<4, 3>() = statedColumns(known);
-  root = std::move(wider);
+  if (!known.lamp.atInfinity() && known.sigma > 0) fit.lightCovariance = known.sigma * known.sigma * Eigen::Matrix3d::Identity();
+  // Others may have outvoted this lamp's own highlights.
+  if (own.empty() || !fit.poor.empty() || fit.as<EllipsoidFit>()) return fit;
+  return explaining(std::move(fit), own, true, mostShare);
+}
+
+std::optional<ModelFit> movedAsStated(const ModelFit& fit, const KnownLamp& known) {
+  if (!(known.sigma > 0) || !fit.uncertainty || fit.as<EllipsoidFit>()) return std::nullopt;
+  ModelFit moved = fit;
+  moved.uncertainty->root = Eigen::MatrixXd::Zero(fit.uncertainty->root.rows(), 3);
+  moved.uncertainty->root.topRows<4>() = statedColumns(known);
+  return moved;
 }
 
 std::string knownLampDoubt(const std::vector<TrainingView>& views, const LightEstimate& light) {
   std::string text;
-  for (const TrainingView& v : views) {
-    if (!v.seen || !v.known) continue;
-    const SurfacePoint& p = v.seen->brightest.point;
-    const Eigen::Vector3d toCamera = (v.camera.centreInWorld() - p.position).normalized();
-    const double alpha = incidentAngle(p.normal, lightOf(v.known->lamp).directionFrom(p.position), toCamera);
-    // Half of the lamp's own error turns the half vector.
-    const double stated =
-        v.known->lamp.atInfinity() ? v.known->sigma : v.known->sigma / (lightOf(v.known->lamp).position() - p.position).norm();
-    if (alpha < light.limitAngle + stated) continue;
-    text +=
-        (text.empty() ? "" : "; ") +
-        formatted("frame %s: the highlight lies %.2g\u00b0 from where the known lamp mirrors: its place or its name may be wrong",
-                  v.frameId.c_str(), degrees(alpha));
-  }
+  for (const TrainingView& v : views)
+    if (const std::optional<double> missed = missedAngle(v); missed && *missed > mostMissed(v, light.limitAngle))
+      text += (text.empty() ? "" : "; ") + ("frame " + v.frameId + ": ") + missedText(*missed);
   return text;
 }
 

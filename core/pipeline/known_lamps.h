@@ -29,13 +29,17 @@ bool shareMaterial(const KnownLamp& a, const KnownLamp& b);
 /// a place, by a turn about `pivot` for one at infinity.
 /// @param pivot  a point near the surface, world, m
 TrainingView carriedTo(const TrainingView& view, const KnownLamp& lamp, const Eigen::Vector3d& pivot);
-/// Those of the views whose lamps share the material of a known one, as views of that one, in order of frames and lights.
+/// Those of the views whose lamps share the material of a known one, as views of that one, in order of frames and lights. Where
+/// there are more than two, those that contradict their lamp by more than the contours reach get a failure.
 std::vector<TrainingView> pooledViews(const std::vector<TrainingView>& views, const KnownLamp& lamp);
 
-/// Brings a fit to pooled views to one of their lamps: frames and residuals are those of its own views, and the lamp's stated
-/// uncertainty joins that of the material.
-/// @param pooled  what was fitted to
-void describeKnownLamp(ModelFit& fit, const std::string& light, const KnownLamp& lamp, const std::vector<TrainingView>& pooled);
+/// A fit to pooled views as that of one of their lamps: frames and residuals are those of its own views, which it must explain.
+/// @param pooled     what was fitted to
+/// @param mostShare  fit.most_residual
+Outcome<ModelFit> fitOfKnownLamp(ModelFit fit, const std::string& light, const KnownLamp& lamp,
+                                 const std::vector<TrainingView>& pooled, double mostShare);
+/// The same fit with the lamp's stated uncertainty in place of its own; nothing where none is stated.
+std::optional<ModelFit> movedAsStated(const ModelFit& fit, const KnownLamp& lamp);
 
 /// Highlights that lie further from where a known lamp mirrors than the contours reach: the lamp, its name or its place may be
 /// wrong. "" without such highlights.

@@ -419,6 +419,9 @@ ModelResult::Fit StageRun::fitOf(const HighlightModel& model, const FitKey& key,
   const auto& [widths, merged, place] = doubts;
   const auto start = std::chrono::steady_clock::now();
   entry.fit = model.fit(input, r_.request.settings);
+  if (entry.fit && known)
+    entry.fit =
+        fitOfKnownLamp(*std::move(entry.fit), key.light, *known, input.views, r_.request.settings.number("fit.most_residual"));
   if (entry.fit && merged && merged->certain) entry.fit = Failure{Reason::NotConverged, merged->text};
   if (!entry.fit) {
     Failure why = entry.fit.failure();
@@ -436,7 +439,7 @@ ModelResult::Fit StageRun::fitOf(const HighlightModel& model, const FitKey& key,
   fit.model = model.id();
   fit.light = key.light;
   fit.surface = key.surface;
-  if (known) describeKnownLamp(fit, key.light, *known, input.views);
+  if (fit.poor.empty()) fit.poor = place;
   const auto add = [&](std::string remark) {
     if (!remark.empty()) fit.remarks.push_back(std::move(remark));
   };
@@ -448,7 +451,6 @@ ModelResult::Fit StageRun::fitOf(const HighlightModel& model, const FitKey& key,
   add(textureRemark(r_));
   add(takenOffRemark(r_));
   add(switchedRemark(r_, fit, [this](int frame) { return surfaceOf(frame); }));
-  add(place);
   add(widths);
   if (merged) add(merged->text);
   if (const auto doubt = r_.responseDoubts.find(key); doubt != r_.responseDoubts.end()) add(doubt->second);

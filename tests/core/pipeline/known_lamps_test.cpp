@@ -94,7 +94,8 @@ TEST(KnownLamps, TwelveLampsPredictTheThirteenth) {
     const ModelResult::Fit* const fit = fitOfLamp(in, "limit-angle", domeName(12));
     ASSERT_TRUE(fit && fit->fit) << (fit ? fit->failure()->message() : "no fit");
     EXPECT_EQ(fit->fit->poor, "");
-    EXPECT_NEAR(*fit->fit->limitAngle(), kLimitAngle, 1e-5);  // the contours were made with it
+    // The contours were made with it; their chords lie up to 5e-3 px inside of some 30 px.
+    EXPECT_NEAR(*fit->fit->limitAngle(), kLimitAngle, kLimitAngle * 2e-4);
     EXPECT_LT(heldOutPct(in, "limit-angle"), 0.01);
     EXPECT_TRUE(fit->fit->frames.empty());
     EXPECT_EQ(in.lights.at({domeName(0)})->solver, "known");
@@ -105,7 +106,7 @@ TEST(KnownLamps, AnotherUnitChangesNothing) {
   for (const double at : {0.0, 2.5}) {
     const Inspection metres = inspect(domeScene(13, at), domeRequest()), far = inspect(domeScene(13, at, 1000), domeRequest());
     EXPECT_NEAR(heldOutPct(metres, "limit-angle"), heldOutPct(far, "limit-angle"), 1e-3);
-    EXPECT_NEAR(*fitOfLamp(far, "limit-angle", domeName(3))->fit->limitAngle(), kLimitAngle, 1e-5);
+    EXPECT_NEAR(*fitOfLamp(far, "limit-angle", domeName(3))->fit->limitAngle(), kLimitAngle, kLimitAngle * 2e-4);
   }
 }
 
@@ -131,17 +132,21 @@ TEST(KnownLamps, AWrongLampIsNamed) {
   const Inspection in = inspect(scene, domeRequest());
   const ModelResult::Fit* const wrong = fitOfLamp(in, "limit-angle", domeName(2));
   ASSERT_NE(wrong, nullptr);
-  if (wrong->fit)
-    EXPECT_THAT(wrong->fit->remarks, testing::Contains(AllOf(HasSubstr("frame v2"), HasSubstr("known lamp mirrors"))));
-  else
-    EXPECT_THAT(wrong->failure()->message(), AllOf(HasSubstr("frame v2"), HasSubstr("known lamp mirrors")));
-  EXPECT_TRUE(!wrong->fit || !wrong->fit->poor.empty());
+  ASSERT_TRUE(wrong->fit);
+  EXPECT_THAT(wrong->fit->poor, AllOf(HasSubstr("frame v2"), HasSubstr("known lamp mirrors")));
+  // It has no say in what the others share.
+  const ModelResult::Fit* const right = fitOfLamp(in, "limit-angle", domeName(3));
+  ASSERT_TRUE(right && right->fit);
+  EXPECT_EQ(right->fit->poor, "");
+  EXPECT_LT(heldOutPct(in, "limit-angle"), 0.01);
 }
 
 TEST(KnownLamps, ALampBehindItsHighlightIsRefused) {
   const std::shared_ptr<Scene> scene = domeScene(2);
   for (TrueLight& l : scene->lights) l.lamp = lampTowards(Vector3d(-1, 0.2, -0.5));
-  const Inspection in = inspect(scene, domeRequest());
+  InspectionRequest request = domeRequest();
+  request.train = "first:2";
+  const Inspection in = inspect(scene, request);
   for (const ModelResult::Fit& fit : in.models.at("limit-angle").fits) EXPECT_FALSE(fit.fit);
 }
 
