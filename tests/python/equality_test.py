@@ -99,3 +99,31 @@ def test_conventions(program):
 def test_replay():
     replay = glint.open(SOURCE / "sessions/plane/plane.glint").replay()
     assert replay.differences == [] and replay.compared > 10
+
+
+def test_an_object_that_turns_under_known_lamps(program, tmp_path):
+    spec = {"camera": {"width": 320, "height": 240, "fx": 400, "fy": 400, "cx": 159.5, "cy": 119.5},
+            "surfaces": {"body": {"analytic": {"type": "ellipsoid", "semi_axes": [0.5, 0.4, 0.35]}}},
+            "lights": [{"id": "flash", "frame": "camera", "position": [0.05, -0.02, 0.01], "known": True, "sigma_m": 0.002}],
+            "object": {"turn": {"axis": [0, 1, 0], "through": [0, 0, 0], "from": 0, "to": 1.2, "count": 5}},
+            "contour": "limit-angle", "limit_angle_deg": 4,
+            "path": {"cameras": [[[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 2], [0, 0, 0, 1]]]}}
+    (tmp_path / "spec.json").write_text(json.dumps(spec), encoding="utf-8")
+    made = subprocess.run([program, "synth", tmp_path / "spec.json", "-o", tmp_path / "made"], capture_output=True, text=True, check=False)
+    assert made.returncode == 0, made.stderr
+    scene = tmp_path / "made" / "scene.json"
+    stated = json.loads(scene.read_text(encoding="utf-8"))
+    opened = glint.open(scene)
+    for frame, theirs in zip(opened.frames, stated["frames"]):
+        assert np.array_equal(frame.world_from_object, theirs.get("world_from_object", np.eye(4)))
+    light = opened.lights[0]
+    assert (light["frame"], light["known"], light["sigma_m"]) == ("camera", True, 0.002)
+    inspection = glint.inspect(opened, models=["limit-angle", "reflectance"], train="0-2")
+    assert inspection.light_frame == "camera"
+    theirs = without_times(command_line(program, "evaluate", scene, "--models", "limit-angle,reflectance", "--train", "0-2", "--json", "-"))
+    assert without_times(json.loads(glint.report(inspection))) == theirs
+    # The known lamp stays where it is, and its photographs are predicted.
+    assert np.allclose(theirs["models"]["limit-angle"]["fits"][0]["light_position"], [0.05, -0.02, 0.01, 1], atol=1e-15)
+    assert theirs["models"]["limit-angle"]["summary"]["contour_error_pct"]["max"] < 0.1
+    again = glint.Frame("0", glint.Camera(320, 240, 400, 400, 159.5, 119.5), world_from_object=opened.frames[1].world_from_object)
+    assert np.array_equal(again.world_from_object, opened.frames[1].world_from_object)
