@@ -113,8 +113,8 @@ bool reweighted(std::vector<ContourEvidence>& points, Attempt& a, bool atInfinit
         problem.SetManifold(a.light.data(), new ceres::SphereManifold<3>());
       else
         problem.SetManifold(a.light.data(), new ceres::SphereManifold<4>());
-      // Down to round-off: only then do invariances hold to 1e-9.
       if (options.holdLight) problem.SetParameterBlockConstant(a.light.data());
+      // Down to round-off: only then do invariances hold to 1e-9.
       solution = solveDense(problem, already + options.maxIterations - a.iterations, 1e-12);
     }
     a.iterations += solution.iterations;

@@ -30,7 +30,8 @@ struct RefinedNormals {
 Outcome<std::optional<RefinedNormals>> refineNormals(const std::vector<TrainingView>& views, const LightEstimate& light,
                                                      const std::string& surface, const Settings& settings);
 
-/// A training view on another surface, which stands where the scene has it: brightest point, tangent plane and pixels anew. `canonical` is left to the caller.
+/// A training view on another surface, which stands where the scene has it: brightest point, tangent plane and pixels anew.
+/// `canonical` is left to the caller.
 TrainingView onSurface(const TrainingView& view, std::shared_ptr<const Surface> surface);
 
 }  // namespace glint

@@ -33,7 +33,8 @@ TrainingView trainingView(const FrameEvidence& evidence, int highlight, const Ca
 /// The highlight of a view as another camera or surface would have it. Pixels and contours at other levels are not carried over.
 TrainingView seenAgain(const TrainingView& view, const Camera& camera, std::shared_ptr<const Surface> surface);
 
-/// The light of some views of one light (method.md section 4): the known one, where all views have the same; else triangulated, then bundled when `light.solver` says so.
+/// The light of some views of one light (method.md section 4): the known one, where all views have the same; else triangulated,
+/// then bundled when `light.solver` says so.
 /// TooFewViews; LightBehindSurface; what the bundle reports. A bundle that fails falls back to nothing: its reason is returned.
 Outcome<LightEstimate> estimateLight(const std::vector<TrainingView>& views, const Settings& settings);
 

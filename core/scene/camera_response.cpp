@@ -287,7 +287,8 @@ CameraResponse readResponseJson(const JsonNode& camera, const fs::path& folder, 
   if (std::optional<CameraResponse> known = CameraResponse::named(text, node->file(), node->place())) return *known;
   const fs::path file = resolveInside(folder, text, rights, node->file(), node->place());
   std::error_code ignored;  // a file that cannot be looked at counts as missing
-  if (!fs::is_regular_file(file, ignored)) node->fail("'" + text + "' is neither srgb, linear, gamma:G, s-curve:S, vignetting:K, nor a file");
+  if (!fs::is_regular_file(file, ignored))
+    node->fail("'" + text + "' is neither srgb, linear, gamma:G, s-curve:S, vignetting:K, nor a file");
   return CameraResponse::ofFile(file);
 }
 

@@ -62,8 +62,8 @@ class CameraResponse {
   double lightOf(double code, int channel, bool isLinear = false) const;
   /// Code of a light; both are clamped to [0, 1]. The inverse of `lightOf`; the smallest code where several have this light.
   double codeOf(double light, int channel, bool isLinear = false) const;
-  /// "srgb", "linear", "gamma:2.2", "s-curve:0.5, vignetting:0.3", or the path of a table's file as it stands in `file`; "" where nothing is
-  /// stated.
+  /// "srgb", "linear", "gamma:2.2", "s-curve:0.5, vignetting:0.3", or the path of a table's file as it stands in `file`; ""
+  /// where nothing is stated.
   std::string text() const;
   /// For people: "the sRGB curve", "code to the power of 2.2", "the curve in response.csv".
   std::string words(bool isLinear = false) const;

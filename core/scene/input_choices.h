@@ -28,7 +28,7 @@ struct InputChoices {
   std::filesystem::path poses;                 ///< of a folder of images or a video: TUM or JSON lines; absolute; "" = none
   bool posesByOrder = false;                   ///< the n-th pose is that of the n-th picture; only because a person says so
   std::string
-      response;  ///< of the images: "srgb", "linear", "gamma:G", "s-curve:S", "vignetting:K", or the absolute path of a file; "" = by file type
+      response;  ///< of the images: as CameraResponse::named() takes it, or the absolute path of a file; "" = by file type
   bool none() const { return *this == InputChoices{}; }
   friend bool operator==(const InputChoices&, const InputChoices&) = default;
 };
