@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "core/advise/known_lamp_check.h"
 #include "core/advise/likely_mistakes.h"
 #include "core/base/number_text.h"
 #include "core/base/numeric.h"
@@ -19,7 +20,6 @@
 #include "core/pipeline/fit_engine.h"
 #include "core/pipeline/light_frame_choice.h"
 #include "core/pipeline/training.h"
-#include "core/scene/convention_report.h"
 #include "core/surface/mesh_policy.h"
 
 namespace glint {
@@ -563,8 +563,7 @@ class Check {
       result_.correction = focalLengthCorrection(std::exp(longer.logFocal));
       result_.findings.push_back(formatted(
           "the focal length is wrong: the highlights of %d frames fit one light to %.2g px with one that is %.2g %% %s; as "
-          "given, "
-          "only to %.2g px (a wrong scale of the surface looks much the same)",
+          "given, only to %.2g px (a wrong scale of the surface looks much the same)",
           result_.views, atFocal->rmsPx, std::abs(*result_.focalPct), *result_.focalPct > 0 ? "longer" : "shorter", given.rmsPx));
     }
   }
@@ -590,7 +589,8 @@ ConventionReport fullReport(const Scene& scene, const ProgressFn& progress) {
   const auto seeing = std::count_if(report.frames.begin(), report.frames.end(), [](const auto& f) { return f.seesSurface; });
   // Where a mistake is known, highlights have nothing to add; where few see it, only what the mistake is.
   if (report.everyFrameSeesSurface() || report.corrections.empty()) {
-    CameraCheck check = checkCameras(scene, progress);
+    std::optional<CameraCheck> known = checkKnownLamps(scene, progress);
+    CameraCheck check = known ? *std::move(known) : checkCameras(scene, progress);
     if (2 * seeing > std::ssize(report.frames) || check.correction) report.take(std::move(check));
   }
   placeMesh(scene, progress, report);

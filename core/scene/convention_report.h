@@ -25,6 +25,8 @@ std::optional<CoordinateGrid> coordinateGrid(const std::vector<Eigen::Vector3d>&
 /// What the highlights say about images and intrinsics that cannot be seen in a single frame: mirrored images, a principal point
 /// that is half a pixel off (programs that put (0, 0) at a corner of the first pixel, not at its centre), a wrong focal length.
 struct CameraCheck {
+  /// The first hypothesis of known lamps, whose rmsPx are degrees (core/advise/known_lamp_check.h).
+  static constexpr const char* kAsStated = "as stated";
   /// The light and lobe that explain the contours best if the images or cameras were changed so.
   struct Hypothesis {
     std::string change;           ///< "as given", "images mirrored left-right", ...

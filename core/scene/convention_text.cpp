@@ -29,6 +29,9 @@ std::string lightLines(const ConventionReport& r) {
 /// What the highlights say about the cameras.
 std::string cameraLines(const CameraCheck& check) {
   if (check.hypotheses.empty()) return "\n  cameras   not checked with highlights: " + check.whyNot + "\n";
+  if (check.hypotheses.front().change == std::string(CameraCheck::kAsStated))
+    return formatted("\n  lamps     %s: the highlights of %d frames lie %.2g degrees from where they mirror\n",
+                     check.lightFrame.c_str(), check.views, check.missDeg.value_or(0));
   std::string out = check.lightFrame.empty() ? "" : "\n  lamp      " + check.lightFrame;
   out += formatted("\n  cameras   from the highlights of %d frames: mirrored rays pass one lamp by %s; contours fit one light ",
                    check.views, check.missDeg ? formatted("%.2g degrees", *check.missDeg).c_str() : "more than can be measured");
@@ -54,7 +57,7 @@ std::string toText(const ConventionReport& r) {
   std::string out = r.file + ": " + r.recognisedAs + "\n";
   out += "  name      " + r.name + "\n";
   out += formatted("  frames    %zu\n", r.frames.size());
-  out += formatted("  lights    %d (truth, for comparison only)\n", r.lights);
+  out += formatted("  lights    %d (for comparison only, unless they are known)\n", r.lights);
   out += "  axes      cameras x right, y down, z forward; right-handed world, metres\n";
   for (const auto& s : r.surfaces)
     out += "  surface   " + s.id +
