@@ -23,6 +23,7 @@
 #include "core/pipeline/stage_inputs.h"
 #include "core/pipeline/training.h"
 #include "core/pipeline/vignetting_check.h"
+#include "core/reflectance/other_lamps.h"
 #include "core/reflectance/pixel_fit.h"
 #include "core/surface/posed_surface.h"
 
@@ -120,10 +121,12 @@ void fitLobe(Inspection& r, const FitKey& key, const std::vector<TrainingView>& 
       key, std::make_shared<const UnexplainedPixels>(UnexplainedPixels{views, light, settings, fit.failure()}));
 }
 
+using Groups = std::map<FitKey, std::vector<TrainingView>>;
+
 /// One group in place of those of all known lamps that share a material: that of the first of them. @return who shares it
-std::map<FitKey, std::vector<FitKey>> poolKnownLamps(const Inspection& r, std::map<FitKey, std::vector<TrainingView>>& groups) {
+std::map<FitKey, std::vector<FitKey>> poolKnownLamps(const Inspection& r, Groups& groups) {
   std::map<FitKey, std::vector<FitKey>> pools;
-  std::map<FitKey, std::vector<TrainingView>> pooled;
+  Groups pooled;
   for (const auto& [key, views] : groups) {
     const std::optional<KnownLamp> lamp = knownLamp(*r.scene, key.light);
     if (!lamp) {
@@ -159,6 +162,95 @@ void shareLobe(Inspection& r, const FitKey& of, const std::vector<FitKey>& share
     }
     if (const auto doubt = r.responseDoubts.find(of); doubt != r.responseDoubts.end()) r.responseDoubts[key] = doubt->second;
   }
+}
+
+/// Takes the light of the other lamps off the pixels of each, where their lobes are known and reach there.
+/// @return  whose pixels changed
+std::set<FitKey> takeOtherLampsOff(Inspection& r, Groups& groups) {
+  std::map<int, std::map<FitKey, std::vector<TrainingView*>>> byFrame;
+  for (auto& [key, views] : groups)
+    if (const auto fit = r.pixelFits.find(key); fit != r.pixelFits.end() && fit->second)
+      for (TrainingView& v : views) byFrame[v.frame][key].push_back(&v);
+  std::set<FitKey> changed;
+  for (const auto& [frame, own] : byFrame) {
+    std::vector<LampInFrame> lamps;
+    for (const auto& [key, views] : own) {
+      const PixelFit& fit = **r.pixelFits.at(key);
+      lamps.push_back({{}, fit.model, fit.background});
+      for (const TrainingView* v : views) lamps.back().patches.push_back(v->pixels.get());
+    }
+    const TrainingView& any = *own.begin()->second.front();
+    const std::vector<std::vector<LampLight>> others = lightOfOthers(lamps, *any.surface, any.camera);
+    std::size_t lamp = 0;
+    for (const auto& [key, views] : own) {
+      const std::vector<LampLight>& light = others[lamp++];
+      if (light.empty()) continue;
+      changed.insert(key);
+      for (TrainingView* v : views) {
+        const auto left =
+            std::make_shared<PixelPatch>(withoutLight(*v->pixels, lightOn(*v->pixels, light, *any.surface, any.camera)));
+        for (auto p = r.patches.lower_bound({frame, 0}); p != r.patches.end() && p->first.first == frame; ++p)
+          if (p->second == v->pixels) p->second = left;
+        v->pixels = left;
+      }
+    }
+  }
+  return changed;
+}
+
+/// Fits the lobes of lamps; known ones that share a material as one.
+/// @param only  those whose pixels changed; null = all
+void fitGroups(Inspection& r, const Groups& own, const std::set<FitKey>* only, const ProgressFn& progress) {
+  Groups groups = own;
+  const std::map<FitKey, std::vector<FitKey>> pools = poolKnownLamps(r, groups);
+  int done = 0;
+  const auto goesOn = [&](const StageEvent&) { return report(progress, {"lobe", done, static_cast<int>(groups.size())}); };
+  for (const auto& [key, views] : groups) {
+    if (!goesOn({})) throw Stopped{};
+    const auto pool = pools.find(key);
+    const std::vector<FitKey> sharers = pool == pools.end() ? std::vector{key} : pool->second;
+    ++done;
+    if (only && std::none_of(sharers.begin(), sharers.end(), [&](const FitKey& k) { return only->count(k) > 0; })) continue;
+    fitLobe(r, key, views, goesOn);
+    shareLobe(r, key, sharers);
+  }
+}
+
+/// All lamps; then once more those into whose pixels others reach, without the light of these.
+void fitLobesOf(Inspection& r, Groups own, const ProgressFn& progress) {
+  const std::map<FitKey, std::string> doubts = r.responseDoubts;
+  fitGroups(r, own, nullptr, progress);
+  const std::set<FitKey> changed = takeOtherLampsOff(r, own);
+  for (const FitKey& key : changed) {
+    r.responseDoubts.erase(key);
+    if (const auto before = doubts.find(key); before != doubts.end()) r.responseDoubts.insert(*before);
+  }
+  if (!changed.empty()) fitGroups(r, own, &changed, progress);
+}
+
+/// For each light of a frame with a known lobe, the light of the other ones where it shows.
+std::map<std::string, std::vector<LampLight>> otherLampsIn(const Inspection& lobes, const LinearPixels& pixels,
+                                                           const FrameEvidence& detected, const Camera& camera,
+                                                           const Surface& surface) {
+  std::vector<PixelPatch> patches;
+  patches.reserve(detected.highlights.size());
+  std::map<std::string, LampInFrame> lamps;
+  for (const Highlight& h : detected.highlights) {
+    const auto fit = lobes.pixelFits.find(lobes.keyFor(detected.frame, h.light));
+    if (h.light.empty() || fit == lobes.pixelFits.end() || !fit->second) continue;
+    Outcome<PixelPatch> patch = pixelPatch(pixels, camera, surface, detected.frame, h, ofOthers(detected, h.light));
+    if (!patch) continue;
+    LampInFrame& lamp =
+        lamps.try_emplace(h.light, LampInFrame{{}, (*fit->second)->model, (*fit->second)->background}).first->second;
+    lamp.patches.push_back(&patches.emplace_back(*std::move(patch)));
+  }
+  std::map<std::string, std::vector<LampLight>> others;
+  std::vector<LampInFrame> all;
+  for (const auto& [light, lamp] : lamps) all.push_back(lamp);
+  std::vector<std::vector<LampLight>> found = lightOfOthers(all, surface, camera);
+  std::size_t n = 0;
+  for (const auto& [light, lamp] : lamps) others[light] = std::move(found[n++]);
+  return others;
 }
 
 bool isPhotograph(const Frame& frame, FrameSource source) {
@@ -268,22 +360,14 @@ void fitLobes(Inspection& r, const SurfaceOfFrame& surfaceOf, bool together, con
         }
       },
       progress, "pixels");
-  std::map<FitKey, std::vector<TrainingView>> groups;
+  Groups groups;
   for (const Seen& s : seen)
     for (std::size_t i = 0; i < s.views.size(); ++i) {
       r.patches[s.ids[i]] = s.views[i].pixels;
       groups[r.keyFor(s.views[i].frame, s.views[i].highlight.light)].push_back(s.views[i]);
     }
   addVignetting(r, frames, surfaceOf);
-  const std::map<FitKey, std::vector<FitKey>> pools = poolKnownLamps(r, groups);
-  int done = 0;
-  const auto goesOn = [&](const StageEvent&) { return report(progress, {"lobe", done, static_cast<int>(groups.size())}); };
-  for (const auto& [key, views] : groups) {
-    if (!goesOn({})) throw Stopped{};
-    fitLobe(r, key, views, goesOn);
-    if (const auto pool = pools.find(key); pool != pools.end()) shareLobe(r, key, pool->second);
-    ++done;
-  }
+  fitLobesOf(r, std::move(groups), progress);
 }
 
 std::map<FitKey, CutUse> useOfCut(const Inspection& r, CutUse few) {
@@ -312,6 +396,8 @@ std::optional<FrameEvidence> contouredAgain(const Inspection& lobes, const Scene
   if (!pixels) return std::nullopt;
   std::map<std::string, std::vector<std::size_t>> byLight;
   for (std::size_t h = 0; h < detected.highlights.size(); ++h) byLight[detected.highlights[h].light].push_back(h);
+  std::map<std::string, std::vector<LampLight>> others;
+  if (byLight.size() > 1) others = otherLampsIn(lobes, *pixels, detected, frame.camera, *surface);
   std::optional<FrameEvidence> again;
   for (const auto& [light, indices] : byLight) {
     const auto fit = lobes.pixelFits.find(lobes.keyFor(f, light));
@@ -321,7 +407,7 @@ std::optional<FrameEvidence> contouredAgain(const Inspection& lobes, const Scene
     for (const std::size_t h : indices) found.push_back(detected.highlights[h]);
     Outcome<std::vector<Highlight>> traced =
         contourWithLobe(*pixels, frame.camera, *surface, f, found, ofOthers(detected, light), lobe.model, lobe.background,
-                        detectOptionsFor(frame, in.source, in.detect));
+                        detectOptionsFor(frame, in.source, in.detect), others[light]);
     if (!traced) continue;
     if (!again) again = detected;
     for (std::size_t k = 0; k < indices.size(); ++k) again->highlights[indices[k]] = std::move((*traced)[k]);

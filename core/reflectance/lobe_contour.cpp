@@ -6,6 +6,7 @@
 
 #include "core/geometry/camera.h"
 #include "core/highlight/clipped_flank.h"
+#include "core/reflectance/other_lamps.h"
 #include "core/reflectance/pixel_fit.h"
 #include "core/reflectance/radiance_field.h"
 
@@ -174,15 +175,18 @@ void placeBeyond(Highlight& h, const std::vector<RadiancePeak>& peaks, double va
 Outcome<std::vector<Highlight>> contourWithLobe(const LinearPixels& pixels, const Camera& camera, const Surface& surface,
                                                 int frame, const std::vector<Highlight>& found,
                                                 const std::vector<Highlight>& others, const LobeModel& model,
-                                                BackgroundKind background, const DetectOptions& options) {
+                                                BackgroundKind background, const DetectOptions& options,
+                                                const std::vector<LampLight>& alsoLit) {
   std::vector<PixelPatch> patches;
+  std::vector<std::vector<double>> ofOthers;
   PatchOptions around;
   around.cells = kEvidenceCells;
   around.blurPx = model.blurPx();
   for (const Highlight& h : found) {
     Outcome<PixelPatch> patch = pixelPatch(pixels, camera, surface, frame, h, others, around);
     if (!patch) return patch.failure();
-    patches.push_back(*std::move(patch));
+    ofOthers.push_back(lightOn(*patch, alsoLit, surface, camera));
+    patches.push_back(alsoLit.empty() ? *std::move(patch) : withoutLight(*std::move(patch), ofOthers.back()));
   }
   std::vector<const PixelPatch*> pointers;
   for (const PixelPatch& p : patches) pointers.push_back(&p);
@@ -211,7 +215,9 @@ Outcome<std::vector<Highlight>> contourWithLobe(const LinearPixels& pixels, cons
   again.minRelativePeak = 0;
   again.clipValue = 0;  // the values have lost their background
   const auto trace = [&](std::size_t k) -> std::optional<Highlight> {
-    Corrected c = corrected(pixels, patches[k], (*solved)[k].background);
+    std::vector<double> under = (*solved)[k].background;
+    for (std::size_t i = 0; i < under.size(); ++i) under[i] += ofOthers[k][i];
+    Corrected c = corrected(pixels, patches[k], under);
     evenOut(c, pixels, patches[k], (*solved)[k].lobe);
     again.reference = reference;
     Outcome<std::vector<Highlight>> traced = detectHighlights(c.value, &c.mask, again);

@@ -35,6 +35,12 @@ struct LobeModel {
   double blurPx() const { return std::sqrt(std::max(0.0, blurVariance)); }
 };
 
+/// A lamp's light in one frame: I = exp(logStrength) x the lobe's radiance, before the blur.
+struct LampLight {
+  LobeModel model;
+  double logStrength = 0;
+};
+
 /// The linear part of a patch under a lobe: I = strength x S + b.
 struct PatchSolution {
   double strength = 0;             ///< of S = I / I(topPoint), before the blur; >= 0
@@ -108,12 +114,14 @@ bool explainsClearlyBetter(const PixelFit& larger, const PixelFit& smaller);
 /// is returned, with the level at which it really lies.
 /// @param found      of one light, ideal pixels, as detected
 /// @param others     of other lights in this frame
+/// @param alsoLit    what other lamps add to these pixels is no part of the highlights (core/reflectance/other_lamps.h)
 /// @param options    as they were detected with (level, smallest area, contrast)
 /// @return           the same highlights in the same order, each contoured again. NoBrightestPoint where the lobe does not reach
 ///                   them; NotConverged where it does not explain the frame; TooFewPoints.
 Outcome<std::vector<Highlight>> contourWithLobe(const LinearPixels& pixels, const Camera& camera, const Surface& surface,
                                                 int frame, const std::vector<Highlight>& found,
                                                 const std::vector<Highlight>& others, const LobeModel& model,
-                                                BackgroundKind background, const DetectOptions& options);
+                                                BackgroundKind background, const DetectOptions& options,
+                                                const std::vector<LampLight>& alsoLit = {});
 
 }  // namespace glint
