@@ -120,6 +120,7 @@ std::map<std::string, Fold> wholeFolds(const Inspection& inspection, const std::
     if (!isNew) continue;
     Fold& all = at->second;
     all.light.reset();
+    all.fits.clear();
     all.canonicalTried = false;
     all.others.clear();
     for (std::size_t v = 0; v < inspection.views.size(); ++v)
@@ -143,15 +144,12 @@ double differencePct(const std::vector<PredictedHighlight>& a, const std::vector
   return sum / double(count);
 }
 
-Outlook lookAhead(const HighlightModel& model, std::map<std::string, Fold>& whole, const std::vector<Fold>& folds,
-                  const std::vector<Answer>& answers, const std::vector<ViewToPredict>& views, const Settings& settings,
-                  PoorFits poor, const ProgressFn& progress) {
+Outlook lookAhead(const HighlightModel& model, std::map<std::string, Outcome<ModelFit>> fits,
+                  const std::map<std::string, Fold>& whole, const std::vector<Fold>& folds, const std::vector<Answer>& answers,
+                  const std::vector<ViewToPredict>& views, const Settings& settings, const ProgressFn& progress) {
   Outlook outlook;
   const Clock::time_point start = Clock::now();
-  for (auto& [light, fold] : whole) {
-    if (!report(progress, {"look ahead " + model.id(), 0, static_cast<int>(views.size())})) throw Stopped{};
-    outlook.fits.emplace(light, fitFold(fold, model, settings, poor, progress));
-  }
+  outlook.fits = std::move(fits);
   outlook.predictions.resize(views.size());
   outlook.spreadPct.assign(views.size(), kNoPredictionPct);
   parallelFor(

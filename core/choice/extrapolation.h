@@ -49,10 +49,10 @@ struct Outlook {
   double timeUs = 0;
 };
 
-/// @param answers  one per fold, with their fits.
-Outlook lookAhead(const HighlightModel& model, std::map<std::string, Fold>& whole, const std::vector<Fold>& folds,
-                  const std::vector<Answer>& answers, const std::vector<ViewToPredict>& views, const Settings& settings,
-                  PoorFits poor, const ProgressFn& progress);
+/// @param fits  by light, to all views of `whole`. @param answers  one per fold, with their fits.
+Outlook lookAhead(const HighlightModel& model, std::map<std::string, Outcome<ModelFit>> fits,
+                  const std::map<std::string, Fold>& whole, const std::vector<Fold>& folds, const std::vector<Answer>& answers,
+                  const std::vector<ViewToPredict>& views, const Settings& settings, const ProgressFn& progress);
 
 /// Distance between two predictions of one view as `contour_error_pct` (method.md section 10), of the first one's diameter; a
 /// highlight that only one of them has counts kNoPredictionPct, and no pair counts more. NaN when neither has one.

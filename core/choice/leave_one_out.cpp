@@ -89,9 +89,13 @@ Outcome<std::shared_ptr<const Surface>> Fold::surfaceOf(int frame, const Highlig
                           model.needsLight() && light ? light->correction : none, meshPolicy(inspection->request.settings));
 }
 
-Outcome<ModelFit> fitFold(Fold& fold, const HighlightModel& model, const Settings& settings, PoorFits poor,
-                          const ProgressFn& progress) {
-  if (!model.needsLight()) return accepted(fitModel(model, fold.others, std::nullopt, settings, fold.pixels, progress), poor);
+bool isSmoothedAlone(const SurfaceCorrection& correction) {
+  return correction.smoothed && !correction.depth && !correction.normals;
+}
+
+namespace {
+Outcome<ModelFit> newFit(Fold& fold, const HighlightModel& model, const Settings& settings, const ProgressFn& progress) {
+  if (!model.needsLight()) return fitModel(model, fold.others, std::nullopt, settings, fold.pixels, progress);
   if (!fold.light) {
     fold.light = fitLight(fold.others, *fold.inspection->scene, *fold.inspection->surfaces, settings,
                           fold.inspection->chosenFor(fold.inspection->keyFor(fold.left.frame, fold.left.highlight.light)));
@@ -102,9 +106,20 @@ Outcome<ModelFit> fitFold(Fold& fold, const HighlightModel& model, const Setting
   }
   if (model.needsCanonicalContours() && fold.light->light && !std::exchange(fold.canonicalTried, true))
     for (TrainingView& v : fold.light->views) addCanonicalContour(v, fold.light->light->light, settings);
-  return accepted(fitModel(model, fold.light->views, fold.light->light, settings,
-                           fold.light->correction ? KnownPixels{} : fold.pixels, progress),
-                  poor);
+  const SurfaceCorrection& correction = fold.light->correction;
+  return fitModel(model, fold.light->views, fold.light->light, settings,
+                  isSmoothedAlone(correction) ? fold.onSmoothed
+                  : correction                ? KnownPixels{}
+                                              : fold.pixels,
+                  progress);
+}
+}  // namespace
+
+Outcome<ModelFit> fitFold(Fold& fold, const HighlightModel& model, const Settings& settings, PoorFits poor,
+                          const ProgressFn& progress) {
+  auto made = fold.fits.find(model.id());
+  if (made == fold.fits.end()) made = fold.fits.emplace(model.id(), newFit(fold, model, settings, progress)).first;
+  return accepted(made->second, poor);
 }
 
 PoorFits poorFitsFor(const ModelResult& result) {

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <limits>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -24,6 +25,9 @@ struct Fold {
   bool canonicalTried = false;
   std::shared_ptr<const Surface> leftSurface;  ///< of the left-out view, corrected by what the others say
   KnownPixels pixels;                          ///< what the fit to the pixels of all views has said
+  KnownPixels onSmoothed;                      ///< the same on the mesh that all views smooth
+  /// Those made, by model, poor ones too. They are of one choice of settings.
+  std::map<std::string, Outcome<ModelFit>> fits;
   /// The surface on which a model predicts in some frame. The failures of correctedSurface().
   Outcome<std::shared_ptr<const Surface>> surfaceOf(int frame, const HighlightModel& model) const;
 };
@@ -47,8 +51,10 @@ struct Answer {
 enum class LeaveOut { Frame, Place };
 /// One per left-out view: at most kMostLeftOut, evenly spread. Valid as long as the inspection.
 std::vector<Fold> foldsOf(const Inspection& inspection, LeaveOut together);
-/// Fits the model to the fold's other views. Fills what is missing in the fold. The model's and the light's failures;
-/// NotConverged for a poor fit where those do not serve.
+/// The correction is the smoothed mesh and nothing else.
+bool isSmoothedAlone(const SurfaceCorrection& correction);
+/// The fit of the model to the fold's other views, made once. Fills what is missing in the fold. The model's and the light's
+/// failures; NotConverged for a poor fit where those do not serve.
 Outcome<ModelFit> fitFold(Fold& fold, const HighlightModel& model, const Settings& settings, PoorFits poor = PoorFits::Refuse,
                           const ProgressFn& progress = {});
 /// Fits the model to the other views, predicts the left-out one and compares. Fills what is missing in the fold.

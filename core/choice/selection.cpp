@@ -7,7 +7,8 @@
 #include <set>
 
 #include "core/base/number_text.h"
-#include "core/choice/extrapolation.h"
+#include "core/base/stage_times.h"
+#include "core/choice/choice_ground.h"
 #include "core/choice/surface_assumption.h"
 
 namespace glint {
@@ -27,6 +28,15 @@ bool predictsOtherSurfaces(const Inspection& inspection) {
 
 double atLeastNegligible(double pct) { return std::max(kNegligiblePct, pct); }
 
+/// A candidate whose fit to all views failed.
+Candidate untried(const HighlightModel& model, int views) {
+  Candidate c;
+  c.model = model.id();
+  c.views = views;
+  c.meanPct = c.standardErrorPct = c.predictUs = std::nan("");
+  return c;
+}
+
 /// Where the chosen model has to predict: at most this many views tell.
 constexpr std::size_t kViewsShown = 8;
 
@@ -34,12 +44,12 @@ constexpr std::size_t kViewsShown = 8;
 class Search {
  public:
   /// @param poor  whether fits that explain their views badly count as answers: the choice is then poor
-  Search(const Inspection& inspection, const std::optional<double>& goodEnoughPct, PoorFits poor, const ProgressFn& progress)
-      : inspection_(inspection),
+  Search(ChoiceGround& ground, const std::optional<double>& goodEnoughPct, PoorFits poor, const ProgressFn& progress)
+      : ground_(ground),
         goodEnough_(goodEnoughPct),
         poor_(poor),
         progress_(progress),
-        settings_(inspection.request.settings) {}
+        settings_(ground.inspection.request.settings) {}
 
   Selection run();
 
@@ -48,19 +58,21 @@ class Search {
     const HighlightModel* model = nullptr;
     std::vector<Answer> answers;
     bool bound = false, eligible = false;
-    std::optional<Outlook> outlook;
-    bool ellipsoid = false;        ///< of one shape; not traced on the surface
-    std::string contradiction;     ///< by the surface, in words
-    bool confirmed = false;        ///< by the surface: the assumption holds as far as contours resolve
-    std::vector<double> aheadPct;  ///< per view to predict: spread and disagreement; NaN where nothing predicts
+    std::map<std::string, Outcome<ModelFit>> fits;  ///< by light, to all training views
+    std::optional<Outlook> outlook;                 ///< see lookAt()
+    bool ellipsoid = false;                         ///< of one shape; not traced on the surface
+    std::string contradiction;                      ///< by the surface, in words
+    bool confirmed = false;                         ///< by the surface: the assumption holds as far as contours resolve
+    std::vector<double> aheadPct;                   ///< per view to predict: spread and disagreement; NaN where nothing predicts
   };
 
   double mostPct() const { return poor_ == PoorFits::Take ? kLargestPoorPct : kLargestExpectedPct; }
   double ranked(std::size_t m) const { return rankedPct(tried_[m].answers, known_.possible); }
   std::string errorText(std::size_t m) const;
   void tryNext(const HighlightModel& model);
+  std::optional<Failure> fitWhole(Tried& t);
   void lookAt(std::size_t m);
-  SurfaceShape shapeUnder(std::size_t m) const;
+  SurfaceShape shapeUnder(std::size_t m);
   bool meetsTolerance(std::size_t m);
   std::vector<std::vector<PredictedHighlight>> witness();
   void checkAssumption(std::size_t m, const SurfaceShape& shape);
@@ -88,15 +100,15 @@ class Search {
   std::string whyChosen(const Decision& d) const;
   void decide();
 
-  const Inspection& inspection_;
+  ChoiceGround& ground_;
   const std::optional<double>& goodEnough_;
   const PoorFits poor_;
   const ProgressFn& progress_;
   const Settings& settings_;
+  const Inspection& inspection_ = ground_.inspection;
+  std::vector<Fold>& folds_ = ground_.folds;
+  const std::vector<ViewToPredict>& views_ = ground_.views;
   Selection s_;
-  std::vector<Fold> folds_;
-  std::map<std::string, Fold> whole_;
-  std::vector<ViewToPredict> views_;
   SurfaceShape trained_;  ///< under the training highlights
   std::vector<Tried> tried_;
   RankingSoFar known_;
@@ -126,19 +138,42 @@ std::string Search::whereText() const {
       s_.outside, s_.toPredict, farthest, tested);
 }
 
+/// Fits the model to all views where there are views to predict. @return why one fit failed: then it cannot be chosen
+std::optional<Failure> Search::fitWhole(Tried& t) {
+  if (t.model->needsLight()) ground_.findLights(progress_);
+  if (t.model->takesPixels()) ground_.fitPixels(progress_);
+  if (views_.empty()) return std::nullopt;
+  const std::string stage = "leave one out " + t.model->id();
+  const ProgressFn goOn = [&](const StageEvent&) { return report(progress_, {stage, 0, s_.leftOut}); };
+  for (auto& [light, fold] : ground_.whole) {
+    if (!goOn({})) throw Stopped{};
+    const Outcome<ModelFit>& fit = t.fits.emplace(light, fitFold(fold, *t.model, settings_, poor_, goOn)).first->second;
+    if (!fit) return fit.failure();
+    t.ellipsoid = t.ellipsoid || fit->as<EllipsoidFit>();
+  }
+  return std::nullopt;
+}
+
 void Search::tryNext(const HighlightModel& model) {
   const std::size_t m = tried_.size();
   tried_.emplace_back();
   Tried& t = tried_.back();
   t.model = &model;
-  s_.candidates.push_back(tryModel(inspection_, model, folds_, t.answers, known_, poor_, progress_));
+  t.answers.resize(folds_.size());
+  const Clock::time_point start = Clock::now();
+  const std::optional<Failure> failure = fitWhole(t);
+  s_.candidates.push_back(failure ? untried(model, s_.leftOut)
+                                  : tryModel(inspection_, model, folds_, t.answers, known_, poor_, progress_));
   Candidate& c = s_.candidates.back();
+  c.timeUs = microsecondsSince(start);
   t.bound = predictsOtherSurfaces(inspection_) &&
             std::any_of(t.answers.begin(), t.answers.end(), [](const Answer& a) { return a.boundToSurface; });
   t.eligible = !t.bound && c.answered > 0 && c.tried == c.views;
   for (std::size_t i = 0; i < folds_.size(); ++i)
     if (t.answers[i].errorPct) known_.possible[i] = 1;
-  if (t.bound)
+  if (failure)
+    c.remark = "no view was left out, as the fit to all of them fails: " + failure->message();
+  else if (t.bound)
     c.remark =
         "not eligible: frames to predict show surfaces that no training view shows, and its ellipsoid belongs to the surface "
         "it was fitted on";
@@ -153,26 +188,19 @@ void Search::tryNext(const HighlightModel& model) {
       const double error = s_.candidates[e].standardErrorPct;
       known_.best = std::min(known_.best, ranked(e) + atLeastNegligible(std::isfinite(error) ? error : 0));
     }
-  if (t.eligible) lookAt(m);
 }
 
+/// What an eligible model says of the views to predict. That takes as long as its fits, so only who asks pays for it.
 void Search::lookAt(std::size_t m) {
   Tried& t = tried_[m];
   if (views_.empty() || t.outlook) return;
-  t.outlook = lookAhead(*t.model, whole_, folds_, t.answers, views_, settings_, poor_, progress_);
+  t.outlook = lookAhead(*t.model, t.fits, ground_.whole, folds_, t.answers, views_, settings_, progress_);
   s_.candidates[m].timeUs += t.outlook->timeUs;
-  for (const auto& [light, fit] : t.outlook->fits) {
-    if (fit) {
-      t.ellipsoid = t.ellipsoid || fit->as<EllipsoidFit>();
-    } else {
-      t.eligible = false;
-      s_.candidates[m].remark = "from all training views: " + fit.failure().message();
-    }
-  }
 }
 
 /// The surface under the training highlights and under those that this model predicts.
-SurfaceShape Search::shapeUnder(std::size_t m) const {
+SurfaceShape Search::shapeUnder(std::size_t m) {
+  lookAt(m);
   std::vector<HighlightOnSurface> highlights;
   for (const Fold& f : folds_) highlights.push_back({f.left.camera, f.leftSurface, f.left.highlight.contour});
   if (const std::optional<Outlook>& outlook = tried_[m].outlook)
@@ -201,7 +229,7 @@ void Search::checkAssumption(std::size_t m, const SurfaceShape& shape) {
 std::vector<std::vector<PredictedHighlight>> Search::witness() {
   std::vector<std::vector<PredictedHighlight>> predictions(views_.size());
   const HighlightModel& levelSet = levelSetModel();
-  for (auto& [light, fold] : whole_)
+  for (auto& [light, fold] : ground_.whole)
     if (const Outcome<ModelFit> fit = fitFold(fold, levelSet, settings_, poor_))
       for (std::size_t v = 0; v < views_.size(); ++v)
         if (views_[v].light == light)
@@ -214,6 +242,7 @@ bool Search::meetsTolerance(std::size_t m) {
   const Candidate& c = s_.candidates[m];
   Tried& t = tried_[m];
   if (!t.eligible || c.answered < c.views || !(c.meanPct <= *goodEnough_)) return false;
+  lookAt(m);
   if (s_.outside == 0) return true;
   const auto levelSet = t.ellipsoid ? witness() : std::vector<std::vector<PredictedHighlight>>(views_.size());
   double sum = 0;
@@ -240,6 +269,7 @@ bool Search::meetsTolerance(std::size_t m) {
 void Search::compareOutlooks(const std::vector<std::size_t>& plausible) {
   // Contours traced on the surface assume least. Where no such model explains the training views, the best one is all there is.
   std::vector<std::size_t> references;
+  for (const std::size_t m : plausible) lookAt(m);
   for (const std::size_t r : plausible)
     if (!tried_[r].ellipsoid) references.push_back(r);
   if (references.empty())
@@ -319,7 +349,6 @@ void Search::expect(std::size_t m) {
 }
 
 Selection Search::run() {
-  folds_ = foldsOf(inspection_, LeaveOut::Place);
   s_.leftOut = static_cast<int>(folds_.size());
   double noise = 0;
   for (const Fold& f : folds_) noise += contourNoisePct(f.left.highlight.contour) / double(folds_.size());
@@ -328,8 +357,6 @@ Selection Search::run() {
   std::vector<HighlightOnSurface> observed;
   for (const Fold& f : folds_) observed.push_back({f.left.camera, f.leftSurface, f.left.highlight.contour});
   trained_ = surfaceShape(observed);
-  views_ = viewsToPredict(inspection_, folds_, kViewsShown);
-  whole_ = wholeFolds(inspection_, folds_);
   s_.toPredict = static_cast<int>(views_.size());
   for (const ViewToPredict& v : views_) s_.outside += v.outside;
   known_.possible.assign(folds_.size(), 0);
@@ -408,8 +435,7 @@ bool Search::heedContradictions(Decision& d) {
   // The surface under the training views and where the least assuming model that answered sees the highlights to come.
   std::size_t seen = d.best;
   for (std::size_t m = 0; m < tried_.size(); ++m)
-    if (tried_[m].eligible && !tried_[m].ellipsoid && tried_[m].outlook && (tried_[seen].ellipsoid || ranked(m) < ranked(seen)))
-      seen = m;
+    if (tried_[m].eligible && !tried_[m].ellipsoid && (tried_[seen].ellipsoid || ranked(m) < ranked(seen))) seen = m;
   const SurfaceShape shape = shapeUnder(seen);
   for (std::size_t m = 0; m < tried_.size(); ++m)
     if (tried_[m].eligible) checkAssumption(m, shape);
@@ -540,9 +566,13 @@ double expectedPctOf(const Selection& s) {
 }  // namespace
 
 Selection selectModel(const Inspection& inspection, const std::optional<double>& goodEnoughPct, const ProgressFn& progress) {
-  Selection good = Search(inspection, goodEnoughPct, PoorFits::Refuse, progress).run();
+  ChoiceGround ground(inspection, kViewsShown);
+  Selection good = Search(ground, goodEnoughPct, PoorFits::Refuse, progress).run();
   if (!good.model.empty() || good.leftOut == 0) return good;
-  Selection poor = Search(inspection, goodEnoughPct, PoorFits::Take, progress).run();
+  Selection poor = Search(ground, goodEnoughPct, PoorFits::Take, progress).run();
+  // The fits were made in the first search.
+  for (std::size_t m = 0; m < poor.candidates.size() && m < good.candidates.size(); ++m)
+    poor.candidates[m].timeUs += good.candidates[m].timeUs;
   if (!poor.model.empty())
     poor.why = formatted(
                    "Poor: no model explains its training views and is expected to be off by less than %g %%; this is the "
@@ -558,27 +588,6 @@ InspectionRequest chosenRequest(InspectionRequest request, const Selection& sele
   if (selection.patches)
     request.settings.set("predict.query", std::string(selection.patches->goodEnough ? "local-quadric" : "exact"));
   return request;
-}
-
-std::string selectionTable(const Selection& s) {
-  std::string out = "candidate     views   leave-one-out %   std. error %   ahead %  expected %  us/frame  seconds  remark\n";
-  double slowest = 0, all = 0;
-  std::string slowestModel;
-  for (const Candidate& c : s.candidates) {
-    const std::string views = std::to_string(c.answered) + "/" + std::to_string(c.tried);
-    out += formatted("%-12s %6s %17.4g %14.4g %9.3g %11.3g %9.3g %8.2f  ", c.model.c_str(), views.c_str(), c.meanPct,
-                     c.standardErrorPct, c.outlookPct, c.expectedPct, c.predictUs, c.timeUs * 1e-6) +
-           c.remark + "\n";
-    all += c.timeUs;
-    if (c.timeUs > slowest) slowest = c.timeUs, slowestModel = c.model;
-  }
-  if (s.candidates.size() > 1 && all > slowest) {
-    out += formatted("%s makes the search %.2g times as long.\n", slowestModel.c_str(), all / (all - slowest));
-  }
-  if (s.leftOut < s.trainingViews)
-    out += std::to_string(s.leftOut) + " of " + std::to_string(s.trainingViews) +
-           " training views were left out one at a time, evenly spread.\n";
-  return out + s.why + "\n" + (s.patches ? s.patches->why + "\n" : "");
 }
 
 }  // namespace glint

@@ -14,7 +14,7 @@ namespace glint {
 struct Candidate {
   std::string model;
   int views = 0;                ///< training views to leave out one at a time
-  int tried = 0;                ///< of those: fewer than `views` where it was clear that the model cannot be the best
+  int tried = 0;                ///< of those: fewer where it cannot be the best, none where its fit to all views fails
   int answered = 0;             ///< of those, predicted, overlapping the observed contour and off by less than kNoPredictionPct
   double meanPct = 0;           ///< leave-one-view-out contour error, % of the equivalent diameter; NaN when none was answered
   double standardErrorPct = 0;  ///< of that mean; NaN with fewer than two views
@@ -95,7 +95,8 @@ inline constexpr double kAsGood = 1.1;
 /// counts for none.
 /// Where frames to predict show a surface that no training view shows, `primal` and `dual` are not eligible: their ellipsoid
 /// belongs to the surface it was seen on.
-/// The light and the canonical contours without a view are computed once for all models that need them.
+/// Where there are views to predict, a model whose fit to all training views fails is not tried view by view, and only models that
+/// can still be chosen look ahead. Lights, canonical contours and fits are computed once (core/choice/choice_ground.h).
 /// Then, for a model that walks: local quadrics are good enough where the curvature varies little over the highlights of the
 /// left-out views and of some frames to predict (kLargestVariation, core/model/star.h), where they answer the left-out views
 /// with the same highlights and an error that the rule would still take, and are faster. Each condition is checked

@@ -16,7 +16,10 @@ class LightFitter {
       : scene_(scene), surfaces_(surfaces), settings_(settings), policy_(meshPolicy(settings)) {}
 
   LightFit run(std::vector<TrainingView> views, const SurfaceCorrection* chosen) const {
-    LightFit fit{estimateLight(views, settings_), std::move(views), {}};
+    // The light of the mesh as given only tells whether to smooth it.
+    const bool smooth = chosen && chosen->smoothed && settings_.text("light.smooth_mesh") != "off" && oneMesh(views);
+    LightFit fit{
+        smooth ? Outcome<LightEstimate>(Failure{Reason::NoLight, ""}) : estimateLight(views, settings_), std::move(views), {}};
     smoothMesh(fit, chosen);
     if (fit.light && settings_.flag("light.refine_depth")) refineDepth(fit);
     if (fit.light && settings_.flag("light.refine_normals")) refineNormals(fit);

@@ -191,6 +191,22 @@ int fitsToPixels(const SolverTrace& trace) {
                                         [](const SolverRun& run) { return run.what.find("from pixels") != std::string::npos; }));
 }
 
+// What a search that refuses poor fits has fitted serves one that takes them.
+TEST(FitFold, APoorFitIsMadeOnce) {
+  Inspection inspection = extrapolationEvidence(exactScene(cylinder(0.4), 6), "0-5");
+  inspection.request.settings.set("fit.most_residual", 0.01);
+  std::vector<Fold> folds = foldsOf(inspection, LeaveOut::Place);
+  const auto fit = [&](PoorFits poor) { return fitFold(folds[0], modelByName("primal"), inspection.request.settings, poor); };
+  const SolverTrace first;
+  EXPECT_FALSE(fit(PoorFits::Refuse));
+  EXPECT_GE(first.runs().size(), 1u);
+  const SolverTrace again;
+  const Outcome<ModelFit> poor = fit(PoorFits::Take);
+  ASSERT_TRUE(poor) << poor.failure().message();
+  EXPECT_NE(poor->poor, "");
+  EXPECT_TRUE(again.runs().empty());
+}
+
 std::shared_ptr<const Scene> cyclesIfAny(const char* name) {
   const std::filesystem::path file = std::filesystem::path(GLINT_SHARED_DIR) / "data" / "cycles" / name / "scene.json";
   return std::filesystem::exists(file) ? std::make_shared<const Scene>(readScene(file.string())) : nullptr;

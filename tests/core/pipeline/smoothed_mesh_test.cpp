@@ -9,7 +9,7 @@
 #include <random>
 
 #include "core/app/session.h"
-#include "core/choice/leave_one_out.h"
+#include "core/choice/choice_ground.h"
 #include "core/pipeline/summary.h"
 #include "tests/core/model/bumpy_mesh.h"
 #include "tests/core/pipeline/exact_scene.h"
@@ -81,6 +81,26 @@ TEST_F(SmoothedMeshTest, AScanAnswersAndSaysItsNoise) {
   // Results that are taken over are those of a fresh run.
   EXPECT_EQ(digestOf(inspect(scene, request("auto"), {}, &plain)), digestOf(smooth));
   EXPECT_EQ(digestOf(inspect(scene, request("off"), {}, &smooth)), digestOf(plain));
+}
+
+// The automatic choice starts from evidence alone. It smooths the scan once, for all views.
+TEST_F(SmoothedMeshTest, AChoiceSmoothsOnce) {
+  const auto scene = scanned(0.002);
+  InspectionRequest evidence = request("auto");
+  evidence.models.clear();
+  ChoiceGround ground(inspect(scene, evidence), 4);
+  for (int i = 0; i < 2; ++i) ground.findLights({});
+  EXPECT_EQ(ground.inspection.work.lights, 1);
+  ASSERT_EQ(ground.inspection.corrections.count({"lamp"}), 1u);
+  const SmoothedMesh& mesh = *ground.inspection.corrections.at({"lamp"}).smoothed;
+  EXPECT_EQ(mesh.radius, inspect(scene, request("auto")).corrections.at({"lamp"}).smoothed->radius) << "as a model alone";
+  ASSERT_EQ(ground.folds.size(), 6u);
+  for (const std::size_t i : {0u, 5u}) {
+    ASSERT_TRUE(fitFold(ground.folds[i], modelByName("limit-angle"), evidence.settings));
+    EXPECT_EQ(ground.folds[i].leftSurface, mesh.mesh);
+  }
+  ASSERT_EQ(ground.views.size(), 4u);
+  for (const ViewToPredict& view : ground.views) EXPECT_EQ(view.surface, mesh.mesh);
 }
 
 TEST_F(SmoothedMeshTest, WhatTheHighlightsDoNotContradictStays) {
