@@ -123,7 +123,8 @@ std::map<std::string, Fold> wholeFolds(const Inspection& inspection, const std::
     all.fits.clear();
     all.canonicalTried = false;
     all.others.clear();
-    for (std::size_t v = 0; v < inspection.views.size(); ++v)
+    if (f.left.known) all.others = inspection.viewsOf({light, {}}, true);  // of other lamps, too
+    for (std::size_t v = 0; v < inspection.views.size() && !f.left.known; ++v)
       if (inspection.views[v].seen && inspection.views[v].highlight.light == light)
         all.others.push_back(inspection.viewAsGiven(static_cast<int>(v)));
     all.pixels = knownPixelsOf(inspection, {light, {}});
