@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What `glint evaluate` and `glint predict` wrote, checked, as plain numbers. No bpy here."""
+import math
 import os
 
-from . import linear, scene_file
+from . import linear, scene_file, views
 from .failures import InputError
 
 MOST_POINTS = 1_000_000  # of one contour
@@ -112,8 +113,7 @@ def read(scene_path, evaluation_path=None, predictions_path=None):
                 index = check_index(row, results.frames, predictions_path, place)
                 found = [checked_highlight(h, predictions_path, f"{place}.highlights[{j}]")
                          for j, h in enumerate(objects(row.get("highlights", []), predictions_path, f"{place}.highlights"))]
-                if any(fit["frame"] == "camera" for fit in results.fits.get(name, [])):
-                    to_world(found, results.frames[index]["pose"])
+                to_world(found, results.frames[index])
                 results.predictions[name].append({"index": index, "light": str(row.get("light", "")), "status": row.get("status"),
                                                   "reason": str(row.get("reason", "")), "highlights": found})
     points = [h["brightest_point"] for rows in results.predictions.values() for r in rows for h in r["highlights"]
@@ -124,12 +124,17 @@ def read(scene_path, evaluation_path=None, predictions_path=None):
     return results
 
 
-def to_world(highlights, pose):
-    """Highlights that are in the coordinates of a camera, in the world."""
-    back = linear.inverse_rigid(pose)
+def to_world(highlights, frame):
+    """Moves those into the world that are in the coordinates of the camera, as under a lamp that it carries. Their file does not say so, but there their
+    points are seen at their peaks."""
+    back = linear.inverse_rigid(frame["pose"])
     for h in highlights:
-        h["brightest_point"] = linear.transformed(back, h["brightest_point"]) if h["brightest_point"] else None
-        h["normal"] = linear.product(linear.block3(back), h["normal"]) if h["normal"] else None
+        if h["peak"] and h["brightest_point"] and h["normal"]:
+            off = [math.dist(pixel, h["peak"]) if pixel else math.inf for pixel in
+                   (views.project(frame["camera"], pose, h["brightest_point"]) for pose in (frame["pose"], linear.identity()))]
+            if off[1] < off[0]:
+                h["brightest_point"] = linear.transformed(back, h["brightest_point"])
+                h["normal"] = linear.product(linear.block3(back), h["normal"])
 
 
 def check_index(row, frames, file, place):

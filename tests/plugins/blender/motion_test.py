@@ -340,6 +340,15 @@ class Results(unittest.TestCase):
             (lamp, _), = self.made("light", model)
             self.assertEqual(lamp.parent, bpy.context.scene.camera)
 
+    def test_predictions_alone(self):
+        """Their file does not say in whose coordinates it is."""
+        scene, _, predictions = self.shown("moving", "ONE")
+        bpy.ops.glint.clear_results()
+        path = os.path.join(host.FOLDER, "moving", "predictions", "predictions.json")
+        self.assertEqual(bpy.ops.glint.import_results(filepath=path, kinds={"PLANES", "CONTOURS"}, overlays=False), {"FINISHED"})
+        for row in predictions["models"]["limit-angle"]:
+            self.check_frame(row["index"], scene["frames"][row["index"]], "limit-angle", row["highlights"][0], scene)
+
     def test_a_lamp_on_the_cameras_of_all_frames(self):
         self.check("moving", "EACH")
 
