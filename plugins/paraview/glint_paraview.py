@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Glint in ParaView: a reader of sessions (*.glint) and scenes (scene.json), and a filter that predicts highlights on a mesh.
 
-What is shown is made by glint_paraview_blocks.py, which must lie in the same folder.
+What is shown is made by glint_paraview_blocks.py with glint_paraview_vtk.py, which must lie in the same folder.
 
 Load it under Tools > Manage Plugins, or with LoadPlugin("glint_paraview.py"); with a server, on the server. All numbers are those of the Python
 module glint, which must be installed where the server runs. docs/paraview.md describes the blocks, arrays and units.
@@ -14,6 +14,7 @@ import importlib.util
 import math
 import os
 import re
+import sys
 import threading
 import weakref
 from xml.sax.saxutils import quoteattr
@@ -47,10 +48,12 @@ def _beside(name):
     """A module of the plugin's own folder, where ParaView does not look for modules."""
     spec = importlib.util.spec_from_file_location(name, os.path.join(os.path.dirname(os.path.abspath(__file__)), name + ".py"))
     module = importlib.util.module_from_spec(spec)
+    sys.modules[name] = module  # where the next one finds it
     spec.loader.exec_module(module)
     return module
 
 
+_beside("glint_paraview_vtk")
 blocks = _beside("glint_paraview_blocks")
 
 
@@ -124,17 +127,6 @@ def _settings_of(text):
     return out
 
 
-class _Answers:
-    """An inspection, with what is asked of it often."""
-
-    def __init__(self, inspection, failure):
-        self.inspection, self.failure = inspection, failure
-        self.comparisons = collections.defaultdict(list)
-        for model, result in inspection.models.items():
-            for c in result.frames:
-                self.comparisons[model, c.frame].append(c)
-
-
 def _inspected(given, models, train, level, settings, progress):
     key = (given, None if models is None else tuple(models), train, level, tuple(sorted(settings.items())))
     before = next((a.inspection for (i, *_), a in reversed(_inspections.items()) if i is given), None)
@@ -143,11 +135,11 @@ def _inspected(given, models, train, level, settings, progress):
         try:
             found = glint.inspect(given.session or given.scene, models, train=train or None, level=level or None, previous=before,
                                   progress=progress, **settings)
-            return _Answers(found, "")
+            return blocks.Answers(found, "", given.scene)
         except glint.CannotAnswer as error:
             if getattr(error, "inspection", None) is None:
                 raise
-            return _Answers(error.inspection, str(error))
+            return blocks.Answers(error.inspection, str(error), given.scene)
 
     return _remembered(_inspections, key, make)
 
@@ -428,14 +420,14 @@ class GlintReader(_Algorithm):
         parts = set(_ticked(self.parts))
         frame = self.frame_at(outInfo, given)
         answers = self.inspected(given) if parts & NEED_INSPECTION else None
-        scene = answers.inspection.scene if answers else given.scene
+        scene = answers.scene if answers else given.scene
         try:
             surface, lost = scene.surface(frame, **(answers.inspection.request.settings if answers else {})), None
         except glint.CannotAnswer as error:
             surface, lost = None, str(error)
             self.warn(f"frame {scene.frames[frame].id}: {lost}")
         middle, distance, depth = self.scale(given, surface)
-        view = blocks.View(scene, frame, surface, depth, self.length("TangentPlaneSide"))
+        view = blocks.View(scene, frame, surface, depth, self.length("TangentPlaneSide"), answers.places[frame] if answers else np.eye(4))
         tree = self.tree(given, answers, parts, view, lost, middle, distance)
         root = vtkMultiBlockDataSet.GetData(outInfo, 0)
         blocks.fill(root, tree)
@@ -454,8 +446,8 @@ class GlintReader(_Algorithm):
         makers = {
             "Surface": lambda: self.surface_block(given, view, lost, middle, distance),
             "Cameras": lambda: blocks.cameras(scene, frame, view.depth, set(train), set(held_out)),
-            "Lights": lambda: blocks.lights(answers, scene, frame, key, middle, distance),
-            "Ellipsoids": lambda: blocks.ellipsoids(answers, key) or {"none": blocks.empty("no model with an ellipsoid was asked for")},
+            "Lights": lambda: blocks.lights(answers, frame, key, middle, distance),
+            "Ellipsoids": lambda: blocks.ellipsoids(answers, frame, key) or {"none": blocks.empty("no model with an ellipsoid was asked for")},
             "Training": lambda: blocks.training(answers, view),
             "Photograph": lambda: self.photograph_block(view),
             "Observed": lambda: blocks.observed(answers, view),
@@ -478,7 +470,8 @@ class GlintReader(_Algorithm):
         if box:
             self.warn("the surface has no end; a part of it is drawn")
         cells = self.given["SurfaceCells"]
-        key = (view.scene.frames[view.frame].surface or f"frame {view.frame}", cells)
+        frame = view.scene.frames[view.frame]
+        key = (frame.surface or f"frame {view.frame}", frame.world_from_object.tobytes(), cells)
         if key not in given.tessellations:
             while len(given.tessellations) >= 64:  # surfaces of a sequence; each is small beside the surface that Glint keeps
                 given.tessellations.pop(next(iter(given.tessellations)))
@@ -506,7 +499,7 @@ class GlintPredictHighlights(_Algorithm):
 
     def __init__(self):
         super().__init__(nInputPorts=1, nOutputPorts=1, inputType="vtkPolyData", outputType="vtkMultiBlockDataSet")
-        self.mesh = (None, None)  # what it was made of, surface
+        self.meshes = collections.OrderedDict()  # by what they were made of
 
     def FillInputPortInformation(self, port, info):
         info.Set(vtkAlgorithm.INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData")
@@ -525,11 +518,12 @@ class GlintPredictHighlights(_Algorithm):
             out["surface.normals"] = self.given["Normals"]
         return out
 
-    def surface_of(self, data, settings):
-        """The input as a surface of Glint; the same one while neither changes."""
-        key = (data.GetMTime(), tuple(sorted((k, str(v)) for k, v in settings.items() if k.startswith("surface."))))
-        if self.mesh[0] == key:
-            return self.mesh[1]
+    def surface_of(self, data, settings, place):
+        """The input as a surface of Glint in the coordinates `place` (4x4, from the world); the same one while nothing changes."""
+        key = (data.GetMTime(), tuple(sorted((k, str(v)) for k, v in settings.items() if k.startswith("surface."))), place.tobytes())
+        return _remembered(self.meshes, key, lambda: self.made_of(data, settings, place))
+
+    def made_of(self, data, settings, place):
         triangles = vtkTriangleFilter()
         triangles.PassVertsOff()
         triangles.PassLinesOff()
@@ -540,10 +534,8 @@ class GlintPredictHighlights(_Algorithm):
             raise Refused("the input has no triangles or polygons: a mesh is needed")
         ids = vtk_to_numpy(mesh.GetPolys().GetConnectivityArray()).reshape(-1, 3)
         normals = mesh.GetPointData().GetNormals()
-        surface = glint.mesh(vtk_to_numpy(mesh.GetPoints().GetData()), ids, None if normals is None else vtk_to_numpy(normals),
-                             **settings)
-        self.mesh = (key, surface)
-        return surface
+        return glint.mesh(blocks.moved(place, vtk_to_numpy(mesh.GetPoints().GetData())), ids,
+                          None if normals is None else vtk_to_numpy(normals) @ place[:3, :3].T, **settings)
 
     def produce(self, inInfo, outInfo):
         given = self.opened()
@@ -559,21 +551,21 @@ class GlintPredictHighlights(_Algorithm):
         for text in answers.inspection.warnings:
             self.warn(text)
         settings = answers.inspection.request.settings
-        surface = self.surface_of(data, settings)
-        scene = answers.inspection.scene
+        surface, scene, place = self.surface_of(data, settings, np.eye(4)), answers.scene, answers.places[frame]
         middle, distance, depth = self.scale(given, surface)
-        view = blocks.View(scene, frame, surface, depth, self.length("TangentPlaneSide"))
-        out = self.predict(answers, view, model, settings)
+        view = blocks.View(scene, frame, surface, depth, self.length("TangentPlaneSide"), place)
+        out = self.predict(answers, view, model, settings, surface if view.still else self.surface_of(data, settings, np.linalg.inv(place)))
         key = scene.frames[frame].surface
         root = vtkMultiBlockDataSet.GetData(outInfo, 0)
-        blocks.fill(root, {**out.tree(), "Ellipsoids": blocks.ellipsoids(answers, key) or {"none": blocks.empty(f"{model} has no ellipsoid")},
-                     "Lights": blocks.lights(answers, scene, frame, key, middle, distance),
+        blocks.fill(root, {**out.tree(), "Ellipsoids": blocks.ellipsoids(answers, frame, key) or {"none": blocks.empty(f"{model} has no ellipsoid")},
+                     "Lights": blocks.lights(answers, frame, key, middle, distance),
                      "Cameras": blocks.cameras(scene, frame, depth, set(answers.inspection.train), set(answers.inspection.held_out))})
         blocks.note(root, **blocks.camera_numbers(scene, frame), model=model, warnings=list(self.messages))
         root.GetInformation().Set(vtkDataObject.DATA_TIME_STEP(), float(frame))
 
-    def predict(self, answers, view, model, settings):
-        """Asks every fit that serves this frame: of its surface where fits are of one, and of the lamps that are on where it says which."""
+    def predict(self, answers, view, model, settings, surface):
+        """Asks every fit that serves this frame: of its surface where fits are of one, and of the lamps that are on where it says which. surface: in
+        the coordinates of the fits."""
         out, asked = blocks.Predicted(view, model), view.scene.frames[view.frame]
         failures = []
         for f in blocks.fits_of(answers, model, asked.surface):
@@ -583,7 +575,7 @@ class GlintPredictHighlights(_Algorithm):
             if asked.lights_on and f.light not in asked.lights_on:
                 continue
             try:
-                prediction = glint.predict(f.fit, view.camera, view.surface, **settings)
+                prediction = glint.predict(f.fit, answers.inspection.scene.frames[view.frame].camera, surface, **settings)
             except glint.CannotAnswer as error:
                 failures.append(f"light {f.light}, frame {asked.id}: {error}")
                 continue

@@ -7,9 +7,9 @@ import collections
 import math
 
 import numpy as np
-from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
-from vtkmodules.vtkCommonCore import vtkPoints, vtkStringArray
-from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkMultiBlockDataSet, vtkPolyData, vtkStructuredGrid
+from glint_paraview_vtk import UNITS, Parts, array, fill, note, vtk_points
+from vtkmodules.util.numpy_support import numpy_to_vtkIdTypeArray
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkStructuredGrid
 
 try:
     import glint
@@ -20,105 +20,9 @@ OFF_PLANE = 1e-3  # curves in the image lie this fraction of the depth before th
 OUTLINE_STEPS = 8  # segments of a side of a frustum: a distorted lens bends it
 ELLIPSE_STEPS = 72  # points of a drawn ellipse, one every 5 degrees
 SPHERE_STEPS = 48  # meridians of a drawn ellipsoid
-UNITS = "lengths: world units of the scene, metres where its file says nothing else; pixels: ideal, (0, 0) is the centre of the first pixel"
 METRICS = ("contour_error_pct", "contour_error_px", "hausdorff_px", "iou", "centre_offset_px", "axis_ratio_error",
            "angle_error_deg",
            "peak_offset_px")
-
-
-# ---- what VTK takes ----------------------------------------------------------------------------------------------------------------------
-
-def _array(name, values):
-    """A vtkDataArray or vtkStringArray with a copy of the values: Glint's arrays are views of memory that it may free."""
-    if len(values) and isinstance(values[0], str):
-        out = vtkStringArray()
-        for text in values:
-            out.InsertNextValue(text)
-    else:
-        given = np.asarray(values)
-        given = given.astype(np.int32) if given.dtype.kind in "bi" and given.dtype != np.uint8 else given
-        given = given.reshape(len(given), -1) if given.ndim > 1 else given
-        out = numpy_to_vtk(np.ascontiguousarray(given), deep=True)
-    out.SetName(name)
-    return out
-
-
-def _points(coordinates):
-    out = vtkPoints()
-    out.SetDataTypeToDouble()
-    out.SetData(numpy_to_vtk(np.ascontiguousarray(coordinates, dtype=np.float64).reshape(-1, 3), deep=True))
-    return out
-
-
-def _cells(runs):
-    offsets = np.concatenate([[0], np.cumsum([len(r) for r in runs])]).astype(np.int64)
-    ids = np.concatenate(runs).astype(np.int64) if runs else np.zeros(0, np.int64)
-    out = vtkCellArray()
-    out.SetData(numpy_to_vtkIdTypeArray(offsets, deep=True), numpy_to_vtkIdTypeArray(ids, deep=True))
-    return out
-
-
-def note(data, **fields):
-    """Field data: texts, numbers and matrices (row by row). None is left out."""
-    for name, value in fields.items():
-        if value is None:
-            continue
-        if isinstance(value, (list, tuple)) and not value:
-            continue
-        data.GetFieldData().AddArray(_array(name,
-                                            [value] if np.ndim(value) == 0 else value if np.ndim(value) == 1
-                                            else np.ravel(value)))
-    return data
-
-
-class Parts:
-    """Pieces of one block: cells of one kind ("verts", "lines", "polys") with numbers and texts for every point and cell."""
-
-    def __init__(self, kind):
-        self.kind, self.points, self.cells, self.of_points, self.of_cells, self.reasons = kind, [], [], {}, {}, []
-        self.count = 0
-
-    def add(self, points, runs=None, of_points=None, **of_cells):
-        """(n, 3) points; runs: lists of their indices, by default one cell of all; of_points: name -> n rows; of_cells: one value for each cell."""
-        points = np.asarray(points, dtype=np.float64).reshape(-1, 3)
-        runs = [np.arange(len(points))] if runs is None else [np.asarray(r) for r in runs]
-        self.points.append(points)
-        self.cells += [r + self.count for r in runs]
-        self.count += len(points)
-        for name, rows in (of_points or {}).items():
-            self.of_points.setdefault(name, []).append(np.asarray(rows))
-        for name, value in of_cells.items():
-            self.of_cells.setdefault(name, []).extend([value] * len(runs))
-
-    def missing(self, reason):
-        self.reasons.append(reason)
-
-    def data(self, **fields):
-        out = vtkPolyData()
-        out.SetPoints(_points(np.concatenate(self.points) if self.points else np.zeros((0, 3))))
-        if self.cells:
-            {"verts": out.SetVerts, "lines": out.SetLines, "polys": out.SetPolys}[self.kind](_cells(self.cells))
-        for name, rows in self.of_points.items():
-            joined = np.concatenate(rows)
-            if len(joined) == self.count:  # else not every piece has it
-                out.GetPointData().AddArray(_array(name, joined))
-                if name == "normals":
-                    out.GetPointData().SetActiveNormals(name)
-        for name, values in self.of_cells.items():
-            if len(values) == len(self.cells):
-                out.GetCellData().AddArray(_array(name, values))
-        return note(out, units=UNITS, reasons=list(dict.fromkeys(self.reasons)), **fields)
-
-
-def fill(block, tree):
-    """Named blocks from nested dictionaries."""
-    for i, (name, part) in enumerate(tree.items()):
-        if isinstance(part, dict):
-            child = vtkMultiBlockDataSet()
-            fill(child, part)
-            part = child
-        block.SetBlock(i, part)
-        block.GetMetaData(i).Set(vtkMultiBlockDataSet.NAME(), name)
 
 
 # ---- geometry ----------------------------------------------------------------------------------------------------------------------------
@@ -227,6 +131,11 @@ def _ball(world_from_ball):
     return points, quads, normals / np.maximum(np.linalg.norm(normals, axis=1), 1e-300)[:, None]
 
 
+def moved(place, points):
+    """Points where a rigid 4 x 4 matrix carries them."""
+    return points @ place[:3, :3].T + place[:3, 3]
+
+
 # ---- blocks ------------------------------------------------------------------------------------------------------------------------------
 
 def _colour(model):
@@ -234,12 +143,37 @@ def _colour(model):
     return np.array([int(text[i:i + 2], 16) for i in (1, 3, 5)], np.uint8)
 
 
-class View:
-    """One frame with its camera, surface and sizes of what is drawn."""
+class Answers:
+    """An inspection, with what is asked of it often. scene: in the world. given: as it was read."""
 
-    def __init__(self, scene, frame, surface, depth, plane_size):
+    def __init__(self, inspection, failure, given):
+        self.inspection, self.failure, self.given = inspection, failure, given
+        carried = inspection.light_frame == "camera"
+        self.scene = given if carried else inspection.scene
+        self.cameras = [np.linalg.inv(f.camera.camera_from_world) for f in given.frames]
+        # World from the coordinates in which the lights stand still: those of fits, views and predictions.
+        self.places = self.cameras if carried else [np.eye(4)] * len(given.frames)
+        self.comparisons = collections.defaultdict(list)
+        for model, result in inspection.models.items():
+            for c in result.frames:
+                self.comparisons[model, c.frame].append(c)
+
+
+class View:
+    """One frame with its camera, surface and sizes of what is drawn. place: world from the coordinates of fits and predictions."""
+
+    def __init__(self, scene, frame, surface, depth, plane_size, place):
         self.scene, self.frame, self.surface, self.depth, self.plane_size = scene, frame, surface, depth, plane_size
-        self.camera = scene.frames[frame].camera
+        self.camera, self.place, self.still = scene.frames[frame].camera, place, np.array_equal(place, np.eye(4))
+
+    def in_world(self, plane):
+        """A plane of a fit or prediction."""
+        return plane if self.still else glint.Plane(moved(self.place, -plane.offset * plane.normal), self.place[:3, :3] @ plane.normal)
+
+    def draw_point(self, out, point, **of_cells):
+        """A brightest point of a fit or prediction, with the angle there."""
+        out.add([moved(self.place, point.position)], None, {"normals": [self.place[:3, :3] @ point.normal], "pixel": [point.pixel],
+                                                            "alpha_deg": [math.degrees(point.alpha)]}, **of_cells)
 
     def hits(self, pixels):
         """(positions (n, 3), hit (n,)) of the rays through pixels."""
@@ -294,18 +228,18 @@ def part_of(surface, middle, distance):
             "upper": np.where(np.isfinite(upper), upper, middle + distance / 2)}
 
 
-def _draw_mirror(view, planes, cameras, camera, plane, point, contour, **of_cells):
-    planes.add(_square(plane, point.position, view.size_of(contour), camera.camera_from_world[0, :3]),
+def _draw_mirror(view, planes, cameras, camera, plane, position, contour, **of_cells):
+    planes.add(_square(plane, position, view.size_of(contour), camera.camera_from_world[0, :3]),
                normal=plane.normal, offset=plane.offset, **of_cells)
     around, lines = _frustum(camera, view.depth)
     cameras.add(_mirrored(plane, around), lines, projection=camera.virtual(plane).ravel(), **of_cells)
 
 
-def _draw_canonical(out, camera, plane, canonical, **of_cells):
+def _draw_canonical(view, out, camera, plane, canonical, **of_cells):
     if canonical is None:
         out.missing("a highlight has no canonical contour")
         return
-    points = np.array(canonical.on_tangent_plane)
+    points = moved(view.place, np.array(canonical.on_tangent_plane).reshape(-1, 3))
     if len(points) > 1:
         out.add(points, [np.append(np.arange(len(points)), 0)], of="points", **of_cells)
     if canonical.ellipse is None:
@@ -327,14 +261,15 @@ def training(answers, view):
                 block.missing(f"frame {answers.inspection.scene.frames[v.frame].id}: {v.failure or 'no tangent plane'}")
             continue
         try:
-            surface = answers.inspection.scene.surface(v.frame)
+            surface = answers.scene.surface(v.frame)
         except glint.CannotAnswer:
             surface = None
-        own = View(answers.inspection.scene, v.frame, surface, view.depth, view.plane_size)
-        _draw_mirror(own, planes, cameras, v.camera, v.tangent_plane, v.brightest_point, v.highlight.contour, **where)
-        _draw_canonical(ellipses, v.camera, v.tangent_plane, v.canonical, **where)
-        b = v.brightest_point
-        points.add([b.position], None, {"normals": [b.normal], "pixel": [b.pixel], "alpha_deg": [math.degrees(b.alpha)]}, **where)
+        own = View(answers.scene, v.frame, surface, view.depth, view.plane_size, answers.places[v.frame])
+        camera = v.camera if own.still else v.camera.at(v.camera.camera_from_world @ np.linalg.inv(own.place))
+        plane = own.in_world(v.tangent_plane)
+        _draw_mirror(own, planes, cameras, camera, plane, moved(own.place, v.brightest_point.position), v.highlight.contour, **where)
+        _draw_canonical(own, ellipses, camera, plane, v.canonical, **where)
+        own.draw_point(points, v.brightest_point, **where)
     return {"VirtualCameras": cameras.data(), "TangentPlanes": planes.data(), "CanonicalEllipses": ellipses.data(),
             "BrightestPoints": points.data()}
 
@@ -357,7 +292,7 @@ def observed(answers, view):
             continue
         b = seen.brightest_point
         points.add([b.position], None, {"normals": [b.normal], "pixel": [b.pixel]}, **where)
-        _draw_mirror(view, planes, cameras, view.camera, seen.tangent_plane, b, h.contour, **where)
+        _draw_mirror(view, planes, cameras, view.camera, seen.tangent_plane, b.position, h.contour, **where)
     return {"ContoursInImage": image.data(), "ContoursOnSurface": on_surface.data(), "BrightestPoints": points.data(),
             "TangentPlanes": planes.data(), "VirtualCameras": cameras.data()}
 
@@ -381,16 +316,14 @@ class Predicted:
         sigma = np.array(highlight.sigma_px)
         self.view.draw_contour(self.image, self.on_surface, highlight.contour, highlight.gaps,
                                {"sigma_px": sigma} if len(sigma) == len(highlight.contour) else {}, **numbers)
-        b = highlight.brightest_point
-        self.points.add([b.position], None, {"normals": [b.normal], "pixel": [b.pixel], "alpha_deg": [math.degrees(b.alpha)]},
-                        **where)
+        self.view.draw_point(self.points, highlight.brightest_point, **where)
         if highlight.tangent_plane is None:
             for block in self.planes, self.cameras, self.ellipses:
                 block.missing(f"{self.model} has no tangent planes")
             return
-        _draw_mirror(self.view, self.planes, self.cameras, self.view.camera, highlight.tangent_plane, b, highlight.contour,
-                     **where)
-        _draw_canonical(self.ellipses, self.view.camera, highlight.tangent_plane, highlight.canonical, **where)
+        plane, position = self.view.in_world(highlight.tangent_plane), moved(self.view.place, highlight.brightest_point.position)
+        _draw_mirror(self.view, self.planes, self.cameras, self.view.camera, plane, position, highlight.contour, **where)
+        _draw_canonical(self.view, self.ellipses, self.view.camera, plane, highlight.canonical, **where)
 
     def tree(self):
         named = {"model": self.model}
@@ -422,8 +355,8 @@ def _drawn(answers, *roles):
     return [thing for thing in answers.inspection.drawing() if thing["role"] in roles]
 
 
-def ellipsoids(answers, surface_key):
-    tree = {}
+def ellipsoids(answers, frame, surface_key):
+    tree, place = {}, answers.places[frame]
     bodies = {(t["model"], t["light"], t["surface"]): t for t in _drawn(answers, "ellipsoid")}
     for model in answers.inspection.models:
         for f in fits_of(answers, model, surface_key):
@@ -435,14 +368,15 @@ def ellipsoids(answers, surface_key):
             elif body["world_from_ball"] is None:
                 out.missing(f"{model}, light {f.light}: {body['problem']}")
             else:
-                points, quads, normals = _ball(body["world_from_ball"])
+                points, quads, normals = _ball(place @ body["world_from_ball"])
                 out.add(points, list(quads), {"normals": normals}, colour=_colour(model))
-            numbers = {} if fit is None else dict(q_dual=fit.q_dual, gap_ratio=fit.gap_ratio, condition=fit.condition,
+            numbers = {} if fit is None else dict(q_dual=None if fit.q_dual is None else place @ fit.q_dual @ place.T,
+                                                  gap_ratio=fit.gap_ratio, condition=fit.condition,
                                                   residual_px=fit.residual_px,
                                                   frames=fit.frames, solver=fit.solver, warnings=list(fit.warnings))
             if fit is not None and fit.ellipsoid is not None:
-                numbers.update(centre=fit.ellipsoid.centre, semi_axes=fit.ellipsoid.semi_axes,
-                               world_from_ellipsoid=fit.ellipsoid.world_from_ellipsoid)
+                numbers.update(centre=moved(place, fit.ellipsoid.centre), semi_axes=fit.ellipsoid.semi_axes,
+                               world_from_ellipsoid=place @ fit.ellipsoid.world_from_ellipsoid)
             tree["-".join([model, f.light]
                           + ([f.surface] if f.surface else []))] = out.data(model=model, light=f.light, **numbers)
     return tree
@@ -457,7 +391,20 @@ def _draw_light(points, lines, middle, reach, light_id, homogeneous, **of_cells)
     lines.add([middle, place], light=light_id, at_infinity=int(infinite))
 
 
-def lights(answers, scene, frame, surface_key, middle, reach):
+def _true_lamps(answers, frame):
+    """Id and homogeneous place of each true light in the world of a frame: those that the picture has, then those that stand still in the other
+    coordinates."""
+    drawn = {t["light"]: answers.places[frame] @ t["place"] for t in _drawn(answers, "true-lamp")}
+    for light in answers.given.lights:
+        middle = np.mean(light["segment"], axis=0) if "segment" in light else light.get("position")
+        place = np.append(light["direction"], 0) if middle is None else np.append(middle, 1)
+        drawn.setdefault(light["id"], (answers.cameras[frame] if light["frame"] == "camera" else np.eye(4)) @ place)
+    return drawn
+
+
+def lights(answers, frame, surface_key, middle, reach):
+    place = answers.places[frame]
+    turn = place[:3, :3]
     estimated, true, lamps, lines = Parts("verts"), Parts("verts"), Parts("verts"), Parts("lines")
     outlines = Parts("lines")
     for light, estimate in sorted(answers.inspection.lights(frame).items()):
@@ -465,8 +412,8 @@ def lights(answers, scene, frame, surface_key, middle, reach):
             estimated.missing(f"light {light}: {estimate}")
             continue
         c = estimate.covariance
-        c = np.full((3, 3), np.nan) if c is None else np.array(c)
-        _draw_light(estimated, lines, middle, reach, light, estimate.light.homogeneous, covariance=c.ravel(),
+        c = np.full((3, 3), np.nan) if c is None else turn @ c @ turn.T
+        _draw_light(estimated, lines, middle, reach, light, place @ estimate.light.homogeneous, covariance=c.ravel(),
                     sigma=np.sqrt(np.diag(c)),
                     limit_angle_deg=math.degrees(estimate.limit_angle), rms_px=estimate.rms_px, solver=estimate.solver)
     for model in answers.inspection.models:
@@ -474,19 +421,19 @@ def lights(answers, scene, frame, surface_key, middle, reach):
             if f.fit is None or f.fit.light_estimate is None:
                 continue
             angle, radius = f.fit.limit_angle, f.fit.light_radius
-            _draw_light(lamps, Parts("lines"), middle, reach, f.light, f.fit.light_estimate.homogeneous, model=model,
+            _draw_light(lamps, Parts("lines"), middle, reach, f.light, place @ f.fit.light_estimate.homogeneous, model=model,
                         colour=_colour(model),
                         limit_angle_deg=math.nan if angle is None else math.degrees(angle),
                         light_radius=math.nan if radius is None else radius)
-    radii = {light["id"]: light["radius"] for light in scene.lights}
+    radii = {light["id"]: light["radius"] for light in answers.given.lights}
     for thing in _drawn(answers, "fitted-lamp", "true-lamp"):
         if thing["surface"] not in (None, surface_key):
             continue
         for chain in thing["chains"]:
-            outlines.add(chain, model=thing["model"] or "truth", light=thing["light"])
-        if thing["role"] == "true-lamp":
-            _draw_light(true, Parts("lines"), middle, reach, thing["light"], thing["place"], light_radius=radii[thing["light"]])
-    if not scene.lights:
+            outlines.add(moved(place, chain), model=thing["model"] or "truth", light=thing["light"])
+    for light, homogeneous in _true_lamps(answers, frame).items():
+        _draw_light(true, Parts("lines"), middle, reach, light, homogeneous, light_radius=radii[light])
+    if not answers.given.lights:
         true.missing("the scene states no true lights")
     return {"Estimated": estimated.data(), "OfModels": lamps.data(), "True": true.data(), "LongLamps": outlines.data(),
             "FromObject": lines.data()}
@@ -536,8 +483,8 @@ def photograph(scene, frame, depth, largest):
         else np.stack([x.ravel(), y.ravel()], axis=1)
     grid = vtkStructuredGrid()
     grid.SetDimensions(len(columns) + 1, len(rows) + 1, 1)
-    grid.SetPoints(_points(_at_depth(camera, _ideal(camera, corners), depth)))
-    colours = _array("photograph", rgb.reshape(-1, 3))
+    grid.SetPoints(vtk_points(_at_depth(camera, _ideal(camera, corners), depth)))
+    colours = array("photograph", rgb.reshape(-1, 3))
     grid.GetCellData().SetScalars(colours)
     numbers = camera_numbers(scene, frame)
     return note(grid, pixels_per_cell=step, **numbers)
@@ -592,6 +539,6 @@ def errors(table, inspection):
                         ["no prediction" if f is None else (f[1].failure or f[0].prediction.failure or "") for f in found]))
     for name, values in columns:
         if keys:
-            table.AddColumn(_array(name, values))
+            table.AddColumn(array(name, values))
     note(table, units="px, percent (pct) of the observed equivalent diameter, degrees (deg); iou and coverage: 0 to 1; nan: not measured",
           models=models, reasons=None if keys else ["no held-out highlight was observed"])

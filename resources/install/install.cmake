@@ -82,7 +82,8 @@ if(TARGET glint_python)
   install(TARGETS glint_python LIBRARY DESTINATION ${glint_python_packages} COMPONENT python)
   install(FILES plugins/python/glint/__init__.py plugins/python/glint/_glint.pyi plugins/python/glint/py.typed DESTINATION ${glint_python_packages} COMPONENT python)
   # ParaView is told the place of the plugin; it looks nowhere by itself.
-  install(FILES plugins/paraview/glint_paraview.py plugins/paraview/glint_paraview_blocks.py plugins/paraview/setup_paraview.py
+  install(FILES plugins/paraview/glint_paraview.py plugins/paraview/glint_paraview_blocks.py plugins/paraview/glint_paraview_vtk.py
+    plugins/paraview/setup_paraview.py
     DESTINATION ${CMAKE_INSTALL_DATADIR}/glint/paraview COMPONENT paraview)
 endif()
 

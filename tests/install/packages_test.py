@@ -22,7 +22,8 @@ HOLDS = {  # package -> patterns of files that it must contain
                         r"metainfo/glint-inspector\.metainfo\.xml", r"icons/hicolor/scalable/apps/glint\.svg"],
 }
 PYTHON = [r"dist-packages/glint/_glint\..*\.so$", r"dist-packages/glint/__init__\.py$", r"dist-packages/glint/py\.typed$"]
-PARAVIEW = [r"share/glint/paraview/glint_paraview\.py$", r"share/glint/paraview/glint_paraview_blocks\.py$", r"share/glint/paraview/setup_paraview\.py$"]
+PARAVIEW = [r"share/glint/paraview/glint_paraview\.py$", r"share/glint/paraview/glint_paraview_blocks\.py$", r"share/glint/paraview/glint_paraview_vtk\.py$",
+            r"share/glint/paraview/setup_paraview\.py$"]
 EVERY = [r"share/doc/{name}/copyright", r"share/doc/{name}/changelog\.gz"]
 
 

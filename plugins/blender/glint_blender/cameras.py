@@ -125,10 +125,16 @@ def blender_matrix(pose, world):
     return mathutils.Matrix(views.matrix_world_of(pose, world))
 
 
-def decomposed(pose, world):
-    """location (3) and quaternion (w x y z) of the same."""
-    place, turn, _ = blender_matrix(pose, world).decompose()
-    return place, turn
+def keyed(object_, matrices, numbers):
+    """Keys of an object's location and rotation: its matrix in each frame."""
+    object_.rotation_mode, previous = "QUATERNION", None
+    for matrix, number in zip(matrices, numbers):
+        object_.location, turn, _ = matrix.decompose()
+        if previous is not None:
+            turn.make_compatible(previous)
+        object_.rotation_quaternion = previous = turn
+        for path in ("location", "rotation_quaternion"):
+            object_.keyframe_insert(path, frame=number)
 
 
 def largest_rounding_px(pose, view, rounded_pose, rounded_view, points):

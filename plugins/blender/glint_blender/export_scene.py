@@ -6,7 +6,7 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper, orientation_helper
 
-from . import cameras, images, lamps, meshes, scene_file
+from . import cameras, images, lamps, linear, meshes, scene_file
 from .failures import InputError
 from .properties import world_from
 
@@ -72,7 +72,8 @@ class Collected:
 
     def __init__(self):
         self.frames, self.rows, self.surfaces, self.lights, self.moved = [], [], {}, {}, set()
-        self.distinct = meshes.Surfaces()
+        self.carried, self.loose = {}, set()  # lamps as the camera sees them, names of those that do not move with it
+        self.distinct, self.stand = meshes.Surfaces(), None  # stand: matrices of the objects in the first frame
         self.exact = 0
 
 
@@ -92,13 +93,18 @@ def collect_frame(scene, request, pictures, folder, found, warnings):
         entry[images.key_for(picture)] = images.put_into(folder, picture, f"{folder.stem}_frames/{len(found.frames):04d}")
     elif request.pictures != "NONE":
         warnings.append(f"frame {frame}: {missing}")
-    number, data = found.distinct.number_of(request.objects, depsgraph, request.world)
+    now = [linear.rows(o.evaluated_get(depsgraph).matrix_world) for o in request.objects]
+    found.stand = found.stand or now
+    motion = meshes.motion(found.stand, now)
+    number, data = found.distinct.number_of(request.objects, depsgraph, request.world, now if motion is None else found.stand)
     name = f"surface_{number:04d}"
     if data is not None:
         found.surfaces[name] = f"{folder.stem}_meshes/{name}.ply"
         with open(folder.path(found.surfaces[name]), "wb") as file:
             file.write(data)
     entry["surface"] = name
+    if motion not in (None, linear.identity()):
+        entry["world_from_object"] = request.world.motion_to_glint(motion)
     if request.lights:
         collect_lamps(scene, depsgraph, request.world, entry, found, warnings)
     found.frames.append(entry)
@@ -106,18 +112,22 @@ def collect_frame(scene, request, pictures, folder, found, warnings):
 
 
 def collect_lamps(scene, depsgraph, world, entry, found, warnings):
-    """Lamps that are on in this frame. Glint's lamps stand still: one that moves is left out, by name."""
+    """Lamps that are on in this frame. Glint's lamps stand still, in the world or before the camera: any other is left out, by name."""
     on = []
     for lamp in lamps.lamp_objects(scene):
         if "glint_result" in lamp or not lamps.shines(lamp, depsgraph):
             continue
         said = []
         light = lamps.light_of(lamp, depsgraph, world, said)
+        carried, far = lamps.seen_from(light, entry["camera_from_world"]), linear.length(linear.column(entry["camera_from_world"], 3))
         if lamp.name not in found.lights:
-            found.lights[lamp.name] = light
+            found.lights[lamp.name], found.carried[lamp.name] = light, carried
             warnings.extend(said)
-        elif not lamps.same_light(found.lights[lamp.name], light):
-            found.moved.add(lamp.name)
+        else:
+            if not lamps.same_light(found.lights[lamp.name], light):
+                found.moved.add(lamp.name)
+            if not lamps.same_light(found.carried[lamp.name], carried, max(far, 1.0)):
+                found.loose.add(lamp.name)
         on.append(lamp.name)
     entry["lights_on"] = on
 
@@ -133,15 +143,20 @@ def shared_camera(frames):
 
 
 def document_of(scene, found, request, warnings):
-    lights = [light for name, light in found.lights.items() if name not in found.moved]
-    for name in sorted(found.moved):
-        warnings.append(f"{name}: moves from frame to frame; Glint's lamps stand still, so it is left out of the truth")
+    left_out = found.moved & found.loose
+    lights = [{**found.carried[name], "frame": "camera"} if name in found.moved else light
+              for name, light in found.lights.items() if name not in left_out]
+    for name in sorted(left_out):
+        warnings.append(f"{name}: moves from frame to frame, and not with the camera: Glint has no such lamps, so it is left out of the truth")
     for f in found.frames:
         if "lights_on" in f:
             # Without a name of every lamp that is on, nothing is stated: Glint then tells lamps apart itself.
-            if found.moved & set(f["lights_on"]) or not f["lights_on"]:
+            if left_out & set(f["lights_on"]) or not f["lights_on"]:
                 del f["lights_on"]
-    document = {"glint_scene": 1, "name": scene.name, "units": "m"}
+    moving = any("world_from_object" in f for f in found.frames)
+    for f in found.frames if moving else ():
+        f.setdefault("world_from_object", linear.identity())
+    document = {"glint_scene": 2 if moving or found.moved - left_out else 1, "name": scene.name, "units": "m"}
     shared = shared_camera(found.frames)
     if shared:
         document["camera"] = shared

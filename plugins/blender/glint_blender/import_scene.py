@@ -162,6 +162,9 @@ class Importer:
                     if len(value) < 2:
                         raise InputError(self.path, f"{place}.{key}", "must be two points or more")
                     row["points"] = [scene_file.vector(p, 3, self.path, f"{place}.{key}") for p in value]
+            row["frame"] = light.get("frame", "world")
+            if row["frame"] not in ("world", "camera"):
+                raise InputError(self.path, f"{place}.frame", "must be world or camera")
             if len([k for k in ("position", "direction", "points") if k in row]) != 1:
                 raise InputError(self.path, place, "must have a position, a direction or the points of its shape")
             rows.append(row)
@@ -187,11 +190,16 @@ class Importer:
         cameras.set_image(self.scene, self.frames[0]["camera"])
         self.scene.frame_start, self.scene.frame_end, self.scene.frame_step = self.numbers[0], self.numbers[-1], 1
         self._link_surfaces(surfaces, root)
+        rows = self._one_camera(root, pictures) if self.one_camera else self._camera_for_each(root, pictures)
+        poses = [f["pose"] for f in self.frames]
         for light in self.lights:
-            object_ = lamps.blender_light(light["id"] or "light", light, self.world, [0.0, 0.0, 0.0])
+            carried, middle = light["frame"] == "camera", [0.0, 0.0, 0.0]
+            object_ = lamps.blender_light(light["id"] or "light", light, self.world.of_cameras() if carried else self.world,
+                                          linear.transformed(poses[0], middle) if carried else middle)
             object_["glint_truth"] = True
             root.objects.link(object_)
-        rows = self._one_camera(root, pictures) if self.one_camera else self._camera_for_each(root, pictures)
+            if carried:
+                lamps.carry(object_, [bpy.data.objects[row["camera"]] for row in rows], poses, self.numbers, self.world)
         self.scene.glint.set_frames(rows, os.path.abspath(self.path))
         self.scene.glint.origin = "FILE"
         return root
@@ -207,10 +215,14 @@ class Importer:
 
     def _link_surfaces(self, surfaces, root):
         only = next(iter(surfaces)) if len(surfaces) == 1 else None
+        places = [Matrix(self.world.motion_to_blender(f["place"])) for f in self.frames]
+        moves = any(p != Matrix.Identity(4) for p in places)
         for name, objects in surfaces.items():
             seen = [n for n, f in zip(self.numbers, self.frames) if (f["surface"] or only) == name]
             for object_ in objects:
                 root.objects.link(object_)
+                if moves:
+                    cameras.keyed(object_, places, self.numbers)
                 if len(surfaces) > 1:
                     show.show_only_in(object_, seen, self.numbers)
 
@@ -251,19 +263,11 @@ class Importer:
     def _one_camera(self, root, pictures):
         data = bpy.data.cameras.new("Glint camera")
         camera = bpy.data.objects.new("Glint camera", data)
-        camera.rotation_mode = "QUATERNION"
         self._small(data)
         root.objects.link(camera)
-        previous = None
+        cameras.keyed(camera, [cameras.blender_matrix(f["pose"], self.world) for f in self.frames], self.numbers)
         for frame, number in zip(self.frames, self.numbers):
             cameras.set_lens(data, frame["camera"])
-            place, turn = cameras.decomposed(frame["pose"], self.world)
-            if previous is not None:
-                turn.make_compatible(previous)
-            previous = turn.copy()
-            camera.location, camera.rotation_quaternion = place, turn
-            for path in ("location", "rotation_quaternion"):
-                camera.keyframe_insert(path, frame=number)
             for path in ("lens", "shift_x", "shift_y"):
                 data.keyframe_insert(path, frame=number)
         self.scene.camera = camera

@@ -3,7 +3,7 @@
 import bpy
 from mathutils import Matrix
 
-from . import linear
+from . import cameras, linear
 
 LONG = 4.0  # an area light at least this many times as long as wide is exported as a tube
 
@@ -40,8 +40,15 @@ def light_of(object_, depsgraph, world, warnings):
     return {"id": object_.name, "position": place, "radius": (sides[0] * sides[1] / linear.math.pi) ** 0.5}
 
 
-def same_light(a, b):
-    """Whether two entries are the same lamp at the same place, to single precision."""
+def seen_from(light, pose):
+    """An entry of `lights` in the coordinates of a camera."""
+    moved = {"direction": lambda v: linear.product(linear.block3(pose), v), "position": lambda v: linear.transformed(pose, v),
+             "segment": lambda v: [linear.transformed(pose, p) for p in v]}
+    return {key: moved[key](value) if key in moved else value for key, value in light.items()}
+
+
+def same_light(a, b, size=1.0):
+    """Whether two entries are the same lamp at the same place, to single precision at places so far (m) from the origin."""
     def flat(value):
         return [v for part in value for v in flat(part)] if isinstance(value, list) else [value]
     if set(a) != set(b):
@@ -49,7 +56,7 @@ def same_light(a, b):
     for key in a:
         if key != "id":
             for x, y in zip(flat(a[key]), flat(b[key])):
-                if abs(x - y) > 1e-6 * max(1.0, abs(x)):
+                if abs(x - y) > 1e-6 * max(size, abs(x)):
                     return False
     return True
 
@@ -111,3 +118,16 @@ def blender_light(name, light, world, towards):
     else:
         object_ = point_light(name, light["position"], radius, world)
     return object_
+
+
+def carry(object_, carriers, poses, numbers, world):
+    """Moves an object that was made in World.of_cameras() with the cameras of the frames: as the child of the one camera, else by keys. carriers:
+    camera object of each frame, None where it is gone. numbers: Blender's frames."""
+    if len(set(carriers)) == 1 and carriers[0] is not None:
+        object_.parent = carriers[0]
+        # A camera's own scale does not count.
+        object_.matrix_parent_inverse = Matrix.Diagonal((*carriers[0].matrix_world.to_scale(), 1.0)).inverted_safe()
+    else:
+        local = object_.matrix_basis.copy()
+        cameras.keyed(object_, [cameras.blender_matrix(pose, world) @ local for pose in poses], numbers)
+        bpy.context.scene.frame_set(bpy.context.scene.frame_current)

@@ -9,6 +9,7 @@ import numpy
 from . import linear
 from .failures import InputError
 
+SINGLE = 4e-6  # of a size: single precision leaves 1e-7 of it in a matrix, more where an object is stretched along one side
 KINDS = {"MESH", "CURVE", "SURFACE", "META", "FONT"}  # what Blender can turn into a mesh
 
 
@@ -23,8 +24,28 @@ def corner_normals(mesh):
     return normals.reshape(-1, 3).astype(numpy.float64)
 
 
-def triangles_of(object_, depsgraph, world):
-    """Vertices (n, 3), normals (n, 3) and triangles (m, 3) of an object with its modifiers applied, in Glint's world, in double precision.
+def motion(before, now):
+    """The rigid 4x4 that carries every one of some objects from its matrix `before` to the one it has `now` (Blender's world); None where no single
+    one does."""
+    if before == now:
+        return linear.identity()
+    b, n = numpy.array(before), numpy.array(now)
+    try:
+        u, _, v = numpy.linalg.svd(n[0, :3, :3] @ numpy.linalg.inv(b[0, :3, :3]))
+    except numpy.linalg.LinAlgError:  # a scale of 0
+        return None
+    m = numpy.eye(4)
+    m[:3, :3] = u @ v
+    m[:3, 3] = n[0, :3, 3] - m[:3, :3] @ b[0, :3, 3]
+    size = numpy.abs(n[:, :3]).max(axis=1)  # of each column
+    size = numpy.concatenate([size[:, :3].max(axis=1, keepdims=True).repeat(3, axis=1), size[:, 3:].clip(1e-3)], axis=1)
+    fits = (numpy.abs(m @ b - n)[:, :3] <= SINGLE * size[:, None]).all()
+    return m.tolist() if fits and numpy.linalg.det(m) > 0 else None
+
+
+def triangles_of(object_, depsgraph, world, matrix):
+    """Vertices (n, 3), normals (n, 3) and triangles (m, 3) of an object with its modifiers applied, where `matrix` puts it, in Glint's world, in
+    double precision.
 
     A vertex whose corners have different normals (flat faces, sharp edges) becomes one vertex for each normal."""
     shown = object_.evaluated_get(depsgraph)
@@ -42,7 +63,7 @@ def triangles_of(object_, depsgraph, world):
         normals = corner_normals(mesh)
     finally:
         shown.to_mesh_clear()
-    matrix = numpy.array(linear.rows(shown.matrix_world))
+    matrix = numpy.array(matrix)
     turn = numpy.array(world.axes)
     places = places.reshape(-1, 3).astype(numpy.float64)
     places = (places @ matrix[:3, :3].T + matrix[:3, 3]) @ turn.T * world.scale
@@ -88,9 +109,9 @@ class Surfaces:
     def __init__(self):
         self.known = []  # (SHA-256 of vertices and triangles, normals in single precision)
 
-    def number_of(self, objects, depsgraph, world):
-        """The number of the surface that these objects are together now, and its PLY where it is a new one, else None."""
-        vertices, normals, triangles = joined([triangles_of(o, depsgraph, world) for o in objects])
+    def number_of(self, objects, depsgraph, world, matrices):
+        """The number of the surface that these objects are together where `matrices` put them, and its PLY where it is a new one, else None."""
+        vertices, normals, triangles = joined([triangles_of(o, depsgraph, world, m) for o, m in zip(objects, matrices)])
         if not len(triangles):
             raise InputError(", ".join(o.name for o in objects), "", "has no faces")
         if not (numpy.isfinite(vertices).all() and numpy.isfinite(normals).all()):

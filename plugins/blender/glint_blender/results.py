@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What `glint evaluate` and `glint predict` wrote, checked, as plain numbers. No bpy here."""
+import math
 import os
 
-from . import scene_file
+from . import linear, scene_file, views
 from .failures import InputError
 
 MOST_POINTS = 1_000_000  # of one contour
@@ -30,7 +31,7 @@ def objects(value, file, place):
 
 
 def frames_of(document, file):
-    """Id, pose, camera and surface of every frame of a scene document."""
+    """Id, pose, camera, surface and its place of every frame of a scene document."""
     frames = []
     for i, frame in enumerate(objects(document.get("frames"), file, "frames")):
         place = f"frames[{i}]"
@@ -40,6 +41,8 @@ def frames_of(document, file):
         frames.append({"id": frame["id"],
                        "pose": scene_file.pose(frame.get("camera_from_world"), file, f"{place}.camera_from_world"),
                        "camera": scene_file.camera(own, file, f"{place}.camera"), "surface": frame.get("surface"),
+                       "place": scene_file.pose(frame["world_from_object"], file, f"{place}.world_from_object")
+                       if frame.get("world_from_object") is not None else linear.identity(),
                        "image": frame.get("image"),
                        "radiance": frame.get("radiance")})
     if not frames:
@@ -65,6 +68,7 @@ def checked_fit(fit, file, place):
         result[key] = scene_file.number(fit[key], file, f"{place}.{key}") if fit.get(key) is not None else None
     segment = fit.get("light_segment")
     result["light_segment"] = [scene_file.vector(p, 3, file, f"{place}.light_segment") for p in segment] if segment else None
+    result["frame"] = "camera" if fit.get("frame") == "camera" else "world"  # whose coordinates the fit has
     result["lobe"] = fit.get("lobe") if isinstance(fit.get("lobe"), str) else None
     return result
 
@@ -109,6 +113,7 @@ def read(scene_path, evaluation_path=None, predictions_path=None):
                 index = check_index(row, results.frames, predictions_path, place)
                 found = [checked_highlight(h, predictions_path, f"{place}.highlights[{j}]")
                          for j, h in enumerate(objects(row.get("highlights", []), predictions_path, f"{place}.highlights"))]
+                to_world(found, results.frames[index])
                 results.predictions[name].append({"index": index, "light": str(row.get("light", "")), "status": row.get("status"),
                                                   "reason": str(row.get("reason", "")), "highlights": found})
     points = [h["brightest_point"] for rows in results.predictions.values() for r in rows for h in r["highlights"]
@@ -117,6 +122,19 @@ def read(scene_path, evaluation_path=None, predictions_path=None):
         results.middle = [sum(p[i] for p in points) / len(points) for i in range(3)]
     assert count == len(results.frames)
     return results
+
+
+def to_world(highlights, frame):
+    """Moves those into the world that are in the coordinates of the camera, as under a lamp that it carries. Their file does not say so, but there their
+    points are seen at their peaks."""
+    back = linear.inverse_rigid(frame["pose"])
+    for h in highlights:
+        if h["peak"] and h["brightest_point"] and h["normal"]:
+            off = [math.dist(pixel, h["peak"]) if pixel else math.inf for pixel in
+                   (views.project(frame["camera"], pose, h["brightest_point"]) for pose in (frame["pose"], linear.identity()))]
+            if off[1] < off[0]:
+                h["brightest_point"] = linear.transformed(back, h["brightest_point"])
+                h["normal"] = linear.product(linear.block3(back), h["normal"])
 
 
 def check_index(row, frames, file, place):

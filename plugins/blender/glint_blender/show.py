@@ -169,6 +169,16 @@ class Shower:
                for f in self.found.frames[:8] for p in points[:8]]
         return 0.1 * sorted(far)[len(far) // 2] if far else 0.1
 
+    def _world_of(self, fit):
+        return self.world.of_cameras() if fit["frame"] == "camera" else self.world
+
+    def _put_fit(self, object_, kind, fit, numbers, render=False):
+        """What stands still where the fit's light does: in the world, or before the camera."""
+        self._put(object_, kind, {"light": fit["light"], "frame": fit["frame"], **numbers}, render=render)
+        if fit["frame"] == "camera":
+            carriers = [bpy.data.objects.get(f.camera) for f in self.scene.glint.frames]
+            lamps.carry(object_, carriers, [f["pose"] for f in self.found.frames], self.frame_numbers, self.world)
+
     def _put(self, object_, kind, numbers, frame=None, render=False):
         placed(object_, self.home, kind, self.model, numbers, render)
         self.made.append(object_)
@@ -182,27 +192,27 @@ class Shower:
             if e is None:
                 continue
             vertices, faces = meshes.ball(e["semi_axes"], 48)
-            object_ = meshes.mesh_object(f"Ellipsoid {fit['light']}", vertices, faces, self.world, e["world_from_ellipsoid"])
+            object_ = meshes.mesh_object(f"Ellipsoid {fit['light']}", vertices, faces, self._world_of(fit), e["world_from_ellipsoid"])
             object_.data.materials.append(materials.plain("Glint ellipsoid", COLOURS["ellipsoid"]))
-            self._put(object_, "ellipsoid", {"light": fit["light"], "surface": fit["surface"], "ellipsoid": e})
+            self._put_fit(object_, "ellipsoid", fit, {"surface": fit["surface"], "ellipsoid": e})
 
     def lights(self, power=10.0):
         for fit in self.found.fits.get(self.model, []):
             place = fit["light_position"]
             if place is None:
                 continue
-            name = f"Lamp {fit['light']}"
-            numbers = {"light": fit["light"], "light_position": place, "light_radius": fit["light_radius"],
-                       "light_segment": fit["light_segment"]}
+            name, world, middle = f"Lamp {fit['light']}", self._world_of(fit), self.found.middle
+            numbers = {"light_position": place, "light_radius": fit["light_radius"], "light_segment": fit["light_segment"]}
             if fit["light_segment"]:
-                object_ = lamps.tube(name, fit["light_segment"], fit["light_radius"] or 0.0, self.world, self.found.middle)
+                seen = linear.transformed(self.found.frames[0]["pose"], middle) if fit["frame"] == "camera" else middle
+                object_ = lamps.tube(name, fit["light_segment"], fit["light_radius"] or 0.0, world, seen)
             elif abs(place[3]) < 1e-12:  # a light at infinity; Glint writes 0 or 1
-                object_ = lamps.sun(name, place[:3], self.world)
+                object_ = lamps.sun(name, place[:3], world)
             else:
-                object_ = lamps.point_light(name, linear.scaled(place[:3], 1 / place[3]), fit["light_radius"] or 0.0, self.world)
+                object_ = lamps.point_light(name, linear.scaled(place[:3], 1 / place[3]), fit["light_radius"] or 0.0, world)
             if object_.data.type != "SUN":
                 object_.data.energy = power
-            self._put(object_, "light", numbers, render=True)
+            self._put_fit(object_, "light", fit, numbers, render=True)
 
     def _each_highlight(self):
         for row in self.found.predictions.get(self.model, []):
@@ -235,7 +245,9 @@ class Shower:
             ellipse = None
             # The ellipsoid of the model `primal` is seen by the cameras themselves: it has no outline in a tangent plane.
             if fit is not None and fit["q_dual"] is not None and self.model != "primal":
-                ellipse = views.canonical_ellipse(frame["pose"], point, normal, fit["q_dual"])
+                to_fit = linear.inverse_rigid(frame["pose"]) if fit["frame"] == "camera" else linear.identity()
+                q_dual = linear.product(linear.product(to_fit, fit["q_dual"]), linear.transposed(to_fit))
+                ellipse = views.canonical_ellipse(frame["pose"], point, normal, q_dual)
             half = 1.5 * linear.length(ellipse[1]) if ellipse else self.size
             u, v = linear.frame_around(normal)
             corners = [[point[i] + half * (a * u[i] + b * v[i]) for i in range(3)]
@@ -255,7 +267,7 @@ class Shower:
 
     def contours(self):
         before, missed = self.scene.frame_current, 0
-        plays = len(self.found.surfaces) > 1 or any(f["surface"] is None for f in self.found.frames)
+        plays = len(self.found.surfaces) > 1 or any(f["surface"] is None or f["place"] != linear.identity() for f in self.found.frames)
         caster = Caster(self.scene, self.world, self.objects_of)
         for row in self.found.predictions.get(self.model, []):
             frame = self.found.frames[row["index"]]

@@ -135,6 +135,19 @@ class World:
     def direction_to_blender(self, vector):
         return linear.product(linear.transposed(self.axes), vector)
 
+    def motion_to_glint(self, motion):
+        """A rigid 4x4 of Blender's world, in Glint's."""
+        turn = linear.product(linear.product(self.axes, linear.block3(motion)), linear.transposed(self.axes))
+        return linear.with_translation(turn, self.to_glint(linear.column(motion, 3)))
+
+    def motion_to_blender(self, motion):
+        turn = linear.product(linear.product(linear.transposed(self.axes), linear.block3(motion)), self.axes)
+        return linear.with_translation(turn, self.to_blender(linear.column(motion, 3)))
+
+    def of_cameras(self):
+        """The same for the axes of a camera in place of the world's: where things are that a camera carries."""
+        return World(linear.block3(FLIP), self.scale)
+
     def as_matrix(self):
         """4x4, Blender from Glint."""
         return [linear.scaled(row, 1 / self.scale) + [0.0] for row in linear.transposed(self.axes)] + [[0.0, 0.0, 0.0, 1.0]]

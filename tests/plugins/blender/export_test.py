@@ -91,9 +91,9 @@ class Meshes(unittest.TestCase):
 
     def test_what_comes_back_to_the_same_shape_is_written_once(self):
         cube = host.mesh("Cube", CUBE, CUBE_FACES)
-        for frame, x in ((1, 0.0), (2, 1.0), (3, 0.0), (4, 1.0)):
-            cube.location.x = x
-            cube.keyframe_insert("location", frame=frame)
+        for frame, x in ((1, 1.0), (2, 2.0), (3, 1.0), (4, 2.0)):
+            cube.scale.x = x
+            cube.keyframe_insert("scale", frame=frame)
         host.select(cube)
         document, _ = export("twice")
         self.assertEqual([f["surface"] for f in document["frames"]], ["surface_0000", "surface_0001"] * 2)

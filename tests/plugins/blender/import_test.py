@@ -262,7 +262,7 @@ class Refusals(unittest.TestCase):
         values = [None, True, -1, 0, 1e300, float("nan"), "", "x", "../x", [], {}, [[]], [1, 2, 3], "é\u0000", 2**70]
         right = scene_with({"s": {"analytic": {"type": "sheet", "curvature": 1.0, "length": 1, "width": 1, "world_from_surface": PLACE}},
                             "m": {"mesh": "none.ply"}}, Lamps.LIGHTS)
-        right["frames"][0]["image"] = "a.png"
+        right["frames"][0].update(image="a.png", world_from_object=PLACE)
 
         def places(value):
             found = []
