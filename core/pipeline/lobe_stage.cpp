@@ -30,7 +30,8 @@ namespace glint {
 
 namespace {
 
-constexpr int kEnoughWhole = 3;  // training highlights that determine every model's light; a cut one adds little to them
+constexpr int kRoundsWithoutOthers = 2;  // each divides what the other lamps left in a lobe by about ten
+constexpr int kEnoughWhole = 3;          // training highlights that determine every model's light; a cut one adds little to them
 
 bool trains(const Inspection& r, int frame) {
   return std::binary_search(r.train.frames.begin(), r.train.frames.end(), frame) &&
@@ -99,12 +100,14 @@ void addDoubt(Inspection& r, const FitKey& key, const std::string& doubt) {
 }
 
 /// One light's. What fails is kept with its question.
-void fitLobe(Inspection& r, const FitKey& key, const std::vector<TrainingView>& views, const ProgressFn& goesOn) {
+/// @param near  see fitViewsPixels()
+void fitLobe(Inspection& r, const FitKey& key, const std::vector<TrainingView>& views, const PixelFit* near,
+             const ProgressFn& goesOn) {
   // The start is the same whatever the settings of the light are: they do not matter to where the fit ends.
   const Outcome<LightEstimate> estimate = estimateLight(views, Settings{});
   const std::optional<LightEstimate> light = estimate ? std::optional(*estimate) : std::nullopt;
   const Settings settings = anyLobe(r.request.settings);
-  Outcome<PixelFit> fit = fitViewsPixels(views, light, settings, goesOn);
+  Outcome<PixelFit> fit = fitViewsPixels(views, light, settings, goesOn, near);
   ++r.work.pixelFits;
   const std::optional<LobeModel> start = fit     ? asksForResponse(*fit) ? std::optional(fit->model) : std::nullopt
                                          : light ? startOf(views, light->light)
@@ -156,23 +159,28 @@ std::set<FitKey> takeOtherLampsOff(Inspection& r, Groups& groups) {
   return changed;
 }
 
-/// All lamps; then once more those into whose pixels others reach, without the light of these.
-void fitLobesOf(Inspection& r, Groups groups, const ProgressFn& progress) {
+/// All lamps; then again those into whose pixels others reach, without the light of these: from scratch, since tails may have
+/// passed for a background, and from there once more with the better lobes.
+void fitLobesOf(Inspection& r, const Groups& seen, const ProgressFn& progress) {
   int done = 0;
-  const auto goesOn = [&](const StageEvent&) { return report(progress, {"lobe", done, static_cast<int>(groups.size())}); };
+  const auto goesOn = [&](const StageEvent&) { return report(progress, {"lobe", done, static_cast<int>(seen.size())}); };
   const std::map<FitKey, std::string> doubts = r.responseDoubts;
-  for (const auto& [key, views] : groups) {
-    if (!goesOn({})) throw Stopped{};
-    fitLobe(r, key, views, goesOn);
-    ++done;
-  }
-  done = 0;
-  for (const FitKey& key : takeOtherLampsOff(r, groups)) {
+  const auto fit = [&](const FitKey& key, const std::vector<TrainingView>& views, const PixelFit* near) {
     if (!goesOn({})) throw Stopped{};
     r.responseDoubts.erase(key);
     if (const auto before = doubts.find(key); before != doubts.end()) r.responseDoubts.insert(*before);
-    fitLobe(r, key, groups.at(key), goesOn);
+    fitLobe(r, key, views, near, goesOn);
     ++done;
+  };
+  for (const auto& [key, views] : seen) fit(key, views, nullptr);
+  const std::map<std::pair<int, int>, std::shared_ptr<const PixelPatch>> patches = r.patches;
+  for (int round = 0; round < kRoundsWithoutOthers; ++round) {
+    done = 0;
+    Groups left = seen;
+    r.patches = patches;
+    const auto before = r.pixelFits;
+    for (const FitKey& key : takeOtherLampsOff(r, left))
+      fit(key, left.at(key), round > 0 && before.at(key) ? before.at(key)->get() : nullptr);
   }
 }
 
@@ -313,7 +321,7 @@ void fitLobes(Inspection& r, const SurfaceOfFrame& surfaceOf, bool together, con
       groups[r.keyFor(s.views[i].frame, s.views[i].highlight.light)].push_back(s.views[i]);
     }
   addVignetting(r, frames, surfaceOf);
-  fitLobesOf(r, std::move(groups), progress);
+  fitLobesOf(r, groups, progress);
 }
 
 std::map<FitKey, CutUse> useOfCut(const Inspection& r, CutUse few) {
