@@ -179,8 +179,11 @@ void fitLobesOf(Inspection& r, const Groups& seen, const ProgressFn& progress) {
     Groups left = seen;
     r.patches = patches;
     const auto before = r.pixelFits;
-    for (const FitKey& key : takeOtherLampsOff(r, left))
-      fit(key, left.at(key), round > 0 && before.at(key) ? before.at(key)->get() : nullptr);
+    for (const FitKey& key : takeOtherLampsOff(r, left)) {
+      PixelFit near = **before.at(key);
+      near.model.blurVariance = 1;  // asks for a blur, which the other lamps may have hidden
+      fit(key, left.at(key), round > 0 ? &near : nullptr);
+    }
   }
 }
 

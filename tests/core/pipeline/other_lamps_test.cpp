@@ -104,10 +104,8 @@ TEST(OtherLamps, LongTailsOfFourLampsTakeNothingFromEachOther) {
   const TemporaryFolder one, four;
   const Shown alone = shownUnder(one, 1), together = shownUnder(four, 4);
   const Inspection a = inspectedLamps(alone), b = inspectedLamps(together);
-  std::printf("limit-angle %.4f %.4f reflectance %.4f %.4f\n", offPct(alone, a, "limit-angle"),
-              offPct(together, b, "limit-angle"), offPct(alone, a, "reflectance"), offPct(together, b, "reflectance"));
-  EXPECT_LT(offPct(together, b, "reflectance"), 0.1) << "alone " << offPct(alone, a, "reflectance");
-  EXPECT_LT(offPct(together, b, "limit-angle"), 0.25) << "alone " << offPct(alone, a, "limit-angle");
+  EXPECT_LT(offPct(together, b, "reflectance"), 0.02) << "alone " << offPct(alone, a, "reflectance");
+  EXPECT_LT(offPct(together, b, "limit-angle"), 0.2) << "alone " << offPct(alone, a, "limit-angle");
 }
 
 TEST(OtherLamps, AtAThousandTimesTheSizeTheSame) {
@@ -144,8 +142,8 @@ TEST(OtherLamps, ShortTailsChangeNothing) {
 }
 
 /// The level sets of this path-traced scene carry the noise of its few rays per pixel: 0.07 px along a contour, by which exact
-/// contours under the true lamps miss them, too (0.375 % in the mean). It does not enlarge or shift a contour: sizes and places
-/// tell what the prediction adds.
+/// contours under the true lamps miss them, too, by 0.375 % in the mean, with their centroids 0.2 % aside. A prediction is right
+/// where it does not miss them by more.
 TEST(OtherLamps, FourEqualLampsAtTheirSizesAndPlaces) {
   GLINT_NEEDS_SHARED_DATA();
   const std::filesystem::path folder = std::filesystem::path(GLINT_SHARED_DIR) / "data/ladder/ceiling";
@@ -171,10 +169,9 @@ TEST(OtherLamps, FourEqualLampsAtTheirSizesAndPlaces) {
       }
     }
     EXPECT_EQ(count, 32) << name;
-    std::printf("%s larger %.4f aside %.4f missed %.4f\n", name.c_str(), larger / count, aside / count, missed / count);
-    EXPECT_NEAR(larger / count, 0, 0.2) << name;
-    EXPECT_LT(aside / count, 0.2) << name;
-    EXPECT_LT(missed / count, 0.4) << name;
+    EXPECT_NEAR(larger / count, 0, 0.15) << name;
+    EXPECT_LT(aside / count, 0.25) << name;
+    EXPECT_LT(missed / count, 0.375) << name;
   }
 }
 
