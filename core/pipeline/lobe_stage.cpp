@@ -31,7 +31,8 @@ namespace glint {
 
 namespace {
 
-constexpr int kEnoughWhole = 3;  // training highlights that determine every model's light; a cut one adds little to them
+constexpr int kRoundsWithoutOthers = 2;  // each divides what the other lamps left in a lobe by about ten
+constexpr int kEnoughWhole = 3;          // training highlights that determine every model's light; a cut one adds little to them
 
 bool trains(const Inspection& r, int frame) {
   return std::binary_search(r.train.frames.begin(), r.train.frames.end(), frame) &&
@@ -100,12 +101,14 @@ void addDoubt(Inspection& r, const FitKey& key, const std::string& doubt) {
 }
 
 /// One light's. What fails is kept with its question.
-void fitLobe(Inspection& r, const FitKey& key, const std::vector<TrainingView>& views, const ProgressFn& goesOn) {
+/// @param near  see fitViewsPixels()
+void fitLobe(Inspection& r, const FitKey& key, const std::vector<TrainingView>& views, const PixelFit* near,
+             const ProgressFn& goesOn) {
   // The start is the same whatever the settings of the light are: they do not matter to where the fit ends.
   const Outcome<LightEstimate> estimate = estimateLight(views, Settings{});
   const std::optional<LightEstimate> light = estimate ? std::optional(*estimate) : std::nullopt;
   const Settings settings = anyLobe(r.request.settings);
-  Outcome<PixelFit> fit = fitViewsPixels(views, light, settings, goesOn);
+  Outcome<PixelFit> fit = fitViewsPixels(views, light, settings, goesOn, near);
   ++r.work.pixelFits;
   const std::optional<LobeModel> start = fit     ? asksForResponse(*fit) ? std::optional(fit->model) : std::nullopt
                                          : light ? startOf(views, light->light)
@@ -198,9 +201,13 @@ std::set<FitKey> takeOtherLampsOff(Inspection& r, Groups& groups) {
   return changed;
 }
 
+using PixelFits = std::map<FitKey, Outcome<std::shared_ptr<const PixelFit>>>;
+
 /// Fits the lobes of lamps; known ones that share a material as one.
-/// @param only  those whose pixels changed; null = all
-void fitGroups(Inspection& r, const Groups& own, const std::set<FitKey>* only, const ProgressFn& progress) {
+/// @param own   each lamp's views. @param only  those whose pixels changed; null = all
+/// @param near  where their fits start; null = they search
+void fitGroups(Inspection& r, const Groups& own, const std::set<FitKey>* only, const PixelFits* near,
+               const ProgressFn& progress) {
   Groups groups = own;
   const std::map<FitKey, std::vector<FitKey>> pools = poolKnownLamps(r, groups);
   int done = 0;
@@ -211,21 +218,34 @@ void fitGroups(Inspection& r, const Groups& own, const std::set<FitKey>* only, c
     const std::vector<FitKey> sharers = pool == pools.end() ? std::vector{key} : pool->second;
     ++done;
     if (only && std::none_of(sharers.begin(), sharers.end(), [&](const FitKey& k) { return only->count(k) > 0; })) continue;
-    fitLobe(r, key, views, goesOn);
+    std::optional<PixelFit> start;
+    if (const auto found = near ? near->find(key) : PixelFits::const_iterator(); near && found != near->end() && found->second) {
+      start = **found->second;
+      start->model.blurVariance = 1;  // asks for a blur, which the other lamps may have hidden
+    }
+    fitLobe(r, key, views, start ? &*start : nullptr, goesOn);
     shareLobe(r, key, sharers);
   }
 }
 
-/// All lamps; then once more those into whose pixels others reach, without the light of these.
-void fitLobesOf(Inspection& r, Groups own, const ProgressFn& progress) {
+/// All lamps; then again those into whose pixels others reach, without the light of these: from scratch, since tails may have
+/// passed for a background, and from there once more with the better lobes.
+void fitLobesOf(Inspection& r, const Groups& seen, const ProgressFn& progress) {
   const std::map<FitKey, std::string> doubts = r.responseDoubts;
-  fitGroups(r, own, nullptr, progress);
-  const std::set<FitKey> changed = takeOtherLampsOff(r, own);
-  for (const FitKey& key : changed) {
-    r.responseDoubts.erase(key);
-    if (const auto before = doubts.find(key); before != doubts.end()) r.responseDoubts.insert(*before);
+  fitGroups(r, seen, nullptr, nullptr, progress);
+  const std::map<std::pair<int, int>, std::shared_ptr<const PixelPatch>> patches = r.patches;
+  for (int round = 0; round < kRoundsWithoutOthers; ++round) {
+    Groups left = seen;
+    r.patches = patches;
+    const PixelFits before = r.pixelFits;
+    const std::set<FitKey> changed = takeOtherLampsOff(r, left);
+    if (changed.empty()) return;
+    for (const FitKey& key : changed) {
+      r.responseDoubts.erase(key);
+      if (const auto own = doubts.find(key); own != doubts.end()) r.responseDoubts.insert(*own);
+    }
+    fitGroups(r, left, &changed, round > 0 ? &before : nullptr, progress);
   }
-  if (!changed.empty()) fitGroups(r, own, &changed, progress);
 }
 
 /// For each light of a frame with a known lobe, the light of the other ones where it shows.
@@ -367,7 +387,7 @@ void fitLobes(Inspection& r, const SurfaceOfFrame& surfaceOf, bool together, con
       groups[r.keyFor(s.views[i].frame, s.views[i].highlight.light)].push_back(s.views[i]);
     }
   addVignetting(r, frames, surfaceOf);
-  fitLobesOf(r, std::move(groups), progress);
+  fitLobesOf(r, groups, progress);
 }
 
 std::map<FitKey, CutUse> useOfCut(const Inspection& r, CutUse few) {

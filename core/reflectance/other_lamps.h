@@ -17,7 +17,8 @@ struct LampInFrame {
 };
 
 /// What a photograph shows is the sum of all lamps, and long-tailed lobes reach into each other's highlights (method.md section
-/// 15, "Several lamps"). The strengths of the lamps in this frame are found in turn, each with the light of the others taken off.
+/// 7, "Several lamps in a frame"). The strengths of the lamps in this frame are found in turn, each with the light of the others
+/// taken off.
 /// @return  for each lamp the light of the others; empty where it does not show in the lamp's pixels, by 3 in 10,000 of their top
 std::vector<std::vector<LampLight>> lightOfOthers(const std::vector<LampInFrame>& lamps, const Surface& surface,
                                                   const Camera& camera);
