@@ -31,7 +31,7 @@ namespace glint {
 
 namespace {
 
-constexpr int kRoundsWithoutOthers = 2;  // each divides what the other lamps left in a lobe by about ten
+constexpr int kRoundsWithoutOthers = 2;  // after one, a lobe may still hide a blur: 0.09 % of the diameter (GGX, four lamps)
 constexpr int kEnoughWhole = 3;          // training highlights that determine every model's light; a cut one adds little to them
 
 bool trains(const Inspection& r, int frame) {

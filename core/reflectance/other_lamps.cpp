@@ -12,7 +12,7 @@ namespace glint {
 namespace {
 
 constexpr double kShows = 3e-4;     // of a patch's top: as much at a contour moves it by 0.02 % of its diameter
-constexpr int kStrengthRounds = 4;  // each leaves about the square of the share in which two highlights overlap
+constexpr int kStrengthRounds = 4;  // lamps in turn; a fixed number that was not tuned
 
 /// e^(log I) of a lamp's lobe, by cell; no shadow rays.
 std::vector<double> lobeOn(const PixelPatch& patch, const RadianceField& field, double logStrength) {
