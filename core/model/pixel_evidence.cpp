@@ -161,6 +161,7 @@ Outcome<PixelFit> fitViewsPixels(const std::vector<TrainingView>& views, const s
     PixelFitOptions same = options;
     same.background = near->background;
     same.blur = near->model.blurVariance != 0;
+    same.near = true;
     Outcome<PixelFit> fit = fitPixels({near->model.lobe}, patches, near->model.lamp, near->model.roughness, same);
     if (fit && !fit->poor) return fit;
   }

@@ -53,7 +53,10 @@ struct PixelFitOptions {
   int maxIterations = 60;
   bool blur = true;                          ///< estimate the blur where the pixels show it
   std::optional<BackgroundKind> background;  ///< no other is tried
-  ProgressFn progress{};                     ///< asked at every look at all cells
+  /// Lamp and roughness are those of a fit to these patches and a few more, with the one lobe and `background`: nothing is
+  /// searched, and the solver ends where contours tell no difference.
+  bool near = false;
+  ProgressFn progress{};  ///< asked at every look at all cells
 };
 
 struct PixelFit {
