@@ -95,8 +95,8 @@ inline constexpr double kAsGood = 1.1;
 /// counts for none.
 /// Where frames to predict show a surface that no training view shows, `primal` and `dual` are not eligible: their ellipsoid
 /// belongs to the surface it was seen on.
-/// Where there are views to predict, a model whose fit to all training views fails is not tried view by view, and only models that
-/// can still be chosen look ahead. Lights, canonical contours and fits are computed once (core/choice/choice_ground.h).
+/// Where there are views to predict, a model whose fit to all training views fails is not tried view by view, and only models
+/// that can still be chosen look ahead. Lights, canonical contours and fits are computed once (core/choice/choice_ground.h).
 /// Then, for a model that walks: local quadrics are good enough where the curvature varies little over the highlights of the
 /// left-out views and of some frames to predict (kLargestVariation, core/model/star.h), where they answer the left-out views
 /// with the same highlights and an error that the rule would still take, and are faster. Each condition is checked
