@@ -14,7 +14,6 @@ namespace {
 using patch::FramePatches;
 using patch::PixelProblem;
 
-constexpr double kNearTolerance = 1e-6;     // of fits that are compared with others: contours resolve 1e-4
 constexpr double kSearchTolerance = 1e-4;   // of fits that only choose a start or a background
 constexpr double kMicrofacetMargin = 0.02;  // of the cost, by which a cosine power must be better than a microfacet lobe
 constexpr double kClearGain = 0.1;          // of the cost, before an extent or a blur is believed
@@ -232,7 +231,6 @@ struct FullFit {
 FullFit solveInFull(PixelProblem& problem, const patch::State& start, const PixelFitOptions& options, int& iterations) {
   const bool point = start.lamp.isPoint();
   patch::SolveOptions solving{false, options.maxIterations};
-  if (options.near) solving.tolerance = solving.costTolerance = kNearTolerance;
   solving.progress = options.progress;
   if (!point) {
     solving.mostEvaluations = 4 * kMostEvaluations;  // it may grow a little more

@@ -54,7 +54,7 @@ struct PixelFitOptions {
   bool blur = true;                          ///< estimate the blur where the pixels show it
   std::optional<BackgroundKind> background;  ///< no other is tried
   /// Lamp and roughness are those of a fit to these patches and a few more, with the one lobe and `background`: nothing is
-  /// searched, and the solver ends where contours tell no difference.
+  /// searched on coarse cells.
   bool near = false;
   ProgressFn progress{};  ///< asked at every look at all cells
 };
