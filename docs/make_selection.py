@@ -63,7 +63,7 @@ def write(out, tables):
             "from `resources/specs/auto`: exact contours under one limit angle (the tube light: rendered radiance). The rule is in [method.md](method.md), section 11.\n"
             "\n"
             "Columns of models: error on training frames, each left out in turn. \\* the choice; – not tried (a simpler model met the tolerance, or the surface is a plane and nothing could be better); (k of n) answered k of n views (one for each highlight of a training frame).\n"
-            "Where a model could no longer become the best, fewer views than there are were tried. Further columns: whether walks on local quadrics are good enough for the choice, with the largest\n"
+            "Where a model could no longer become the best, fewer views than there are were tried, and none (0 of 0) where its fit to all views fails. Further columns: whether walks on local quadrics are good enough for the choice, with the largest\n"
             "variation of curvature seen (– it does not walk); error expected for the choice, and found on the held-out frames, whose contours it has not seen; time of the whole choice.\n")
     for run, _ in RUNS:
         text += f"\n## {run[0].upper() + run[1:]}\n| scene | training | " + " | ".join(models) + " | local quadric | expected | held out | seconds |\n|---|---|" + "---|" * (len(models) + 4) + "\n"

@@ -35,8 +35,7 @@ void ChoiceGround::findLights(const ProgressFn& progress) {
 void ChoiceGround::fitPixels(const ProgressFn& progress) {
   if (std::exchange(pixelsFitted_, true)) return;
   const Settings& settings = inspection.request.settings;
-  const std::string& evidence = settings.text("fit.evidence");
-  if (evidence != "auto" && evidence != "pixels") return;
+  if (!fitsPixels(settings)) return;
   for (auto& [light, fold] : whole) {
     if (!fold.light || !isSmoothedAlone(fold.light->correction) || !havePixels(fold.light->views)) continue;
     const auto estimate = fold.light->light ? std::optional(*fold.light->light) : std::nullopt;

@@ -93,9 +93,28 @@ bool isSmoothedAlone(const SurfaceCorrection& correction) {
   return correction.smoothed && !correction.depth && !correction.normals;
 }
 
+bool fitsPixels(const Settings& settings) {
+  const std::string& evidence = settings.text("fit.evidence");
+  return evidence == "auto" || evidence == "pixels";
+}
+
 namespace {
+/// From the fit to the pixels of all views. It needs no light, whose estimate takes longest where highlights are far from a limit
+/// angle's. Nothing where a light may correct the surface, or another way may answer better.
+std::optional<ModelFit> fitNearAll(const Fold& fold, const HighlightModel& model, const Settings& settings,
+                                   const ProgressFn& progress) {
+  const SurfaceCorrection* const chosen =
+      fold.inspection->chosenFor(fold.inspection->keyFor(fold.left.frame, fold.left.highlight.light));
+  if (!model.takesPixels() || fold.light || !fold.pixels.near || !fitsPixels(settings) || !chosen || *chosen ||
+      settings.flag("light.refine_depth") || settings.flag("light.refine_normals"))
+    return std::nullopt;
+  const Outcome<ModelFit> fit = fitModel(model, fold.others, std::nullopt, settings, fold.pixels, progress);
+  return fit && fit->solver == "pixels" && fit->poor.empty() ? std::optional(*fit) : std::nullopt;
+}
+
 Outcome<ModelFit> newFit(Fold& fold, const HighlightModel& model, const Settings& settings, const ProgressFn& progress) {
   if (!model.needsLight()) return fitModel(model, fold.others, std::nullopt, settings, fold.pixels, progress);
+  if (std::optional<ModelFit> near = fitNearAll(fold, model, settings, progress)) return *std::move(near);
   if (!fold.light) {
     fold.light = fitLight(fold.others, *fold.inspection->scene, *fold.inspection->surfaces, settings,
                           fold.inspection->chosenFor(fold.inspection->keyFor(fold.left.frame, fold.left.highlight.light)));

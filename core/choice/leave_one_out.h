@@ -53,6 +53,8 @@ enum class LeaveOut { Frame, Place };
 std::vector<Fold> foldsOf(const Inspection& inspection, LeaveOut together);
 /// The correction is the smoothed mesh and nothing else.
 bool isSmoothedAlone(const SurfaceCorrection& correction);
+/// Fits of reflectance look at pixels.
+bool fitsPixels(const Settings& settings);
 /// The fit of the model to the fold's other views, made once. Fills what is missing in the fold. The model's and the light's
 /// failures; NotConverged for a poor fit where those do not serve.
 Outcome<ModelFit> fitFold(Fold& fold, const HighlightModel& model, const Settings& settings, PoorFits poor = PoorFits::Refuse,

@@ -181,7 +181,9 @@ Outcome<PixelFit> fitViewsPixels(const std::vector<TrainingView>& views, const s
   for (const TrainingView& v : views)
     if (v.seen && v.pixels) level = v.highlight.level;
   if (patches.empty()) return Failure{Reason::TooFewViews, "no training view has pixels"};
-  const bool known = light && light->known;
+  // Views of known lamps were carried to one, which a fit keeps; who leaves a view out may ask without its light.
+  const auto first = std::find_if(views.begin(), views.end(), [](const TrainingView& v) { return v.seen && v.pixels; });
+  const bool known = first->known.has_value();
   PixelFitOptions options;
   options.holdLamp = known;
   options.progress = progress;
@@ -189,12 +191,13 @@ Outcome<PixelFit> fitViewsPixels(const std::vector<TrainingView>& views, const s
     PixelFitOptions same = options;
     same.background = near->background;
     same.blur = near->model.blurVariance != 0;
+    same.near = true;
     Outcome<PixelFit> fit = fitPixels({near->model.lobe}, patches, near->model.lamp, near->model.roughness, same);
     if (fit && !fit->poor) return fit;
   }
   const std::vector<Lobe> lobes = lobesOf(settings);
   std::vector<Lamp> starts;
-  if (light) starts.push_back(known ? Lamp(light->light.homogeneous(), *light->known) : Lamp(light->light));
+  if (known || light) starts.push_back(known ? first->known->lamp : Lamp(light->light));
   const std::vector<ReflectedRay> rays = known ? std::vector<ReflectedRay>() : peakRays(views);
   // Where highlights are unequal, their contours lie at different shares of their own peaks, and mislead; their peaks do not.
   if (const Outcome<Triangulation> meet = triangulateLight(rays)) starts.push_back(meet->light);

@@ -206,6 +206,23 @@ void coarsenForSearch(Cells& cells, const LobeModel& start) {
   }
 }
 
+/// Lobe, background and a better start from coarse cells. @param fit  gets background and iterations. False where no lobe reaches
+/// the pixels.
+bool searchStart(const std::vector<const PixelPatch*>& patches, const std::vector<Lobe>& lobes, const PixelFitOptions& options,
+                 LobeModel& start, PixelFit& fit) {
+  Cells coarse(patches);
+  coarsenForSearch(coarse, start);
+  const patch::Normalised& few = coarse.all();
+  Search search(few, options);
+  const std::optional<Search::Candidate> chosen = search.run(lobes, stateOf(start, few));
+  if (!chosen) return false;
+  const patch::State found = chosen->attempt.at;
+  start = {chosen->lobe, found.roughness(), inWorld(found, few), 0};
+  fit.background = chosen->kind;
+  fit.iterations = search.iterations();
+  return true;
+}
+
 struct FullFit {
   patch::Attempt attempt;
   bool blur = false;  ///< shows
@@ -254,30 +271,26 @@ bool describeAllPixels(const std::vector<const PixelPatch*>& patches, PixelFit& 
 Outcome<PixelFit> fitPixels(const std::vector<Lobe>& lobes, const std::vector<const PixelPatch*>& patches, const Lamp& lamp,
                             const Roughness& roughness, const PixelFitOptions& options) {
   require(!lobes.empty() && roughness > 0 && std::isfinite(roughness.mean), "fitPixels: lobes and roughness");
-  Cells full(patches), coarse(patches);
+  require(!options.near || (options.background && lobes.size() == 1), "fitPixels: a fit nearby has a lobe and a background");
+  Cells full(patches);
   if (full.all().cells < 30)
     return Failure{Reason::TooFewPoints, "only " + std::to_string(full.all().cells) + " pixels can be used"};
-  const LobeModel first{lobes.front(), roughness, lamp, 0};
-  coarsenForSearch(coarse, first);
-  const patch::Normalised& few = coarse.all();
-  Search search(few, options);
-  const std::optional<Search::Candidate> chosen = search.run(lobes, stateOf(first, few));
-  if (!chosen) return Failure{Reason::NotConverged, "no lobe reaches the pixels from the contours' light"};
-
-  const patch::State found = chosen->attempt.at;
-  const LobeModel start{chosen->lobe, found.roughness(), inWorld(found, few), 0};
+  PixelFit fit;
+  LobeModel start{lobes.front(), roughness, lamp, 0};
+  if (options.near) {
+    fit.background = *options.background;
+  } else if (!searchStart(patches, lobes, options, start, fit)) {
+    return Failure{Reason::NotConverged, "no lobe reaches the pixels from the contours' light"};
+  }
   while (!lamp.isPoint() && evaluationsOf(start, full.all()) > kMostEvaluations &&
          (full.coarsen() || full.coarsen(kFewestFrom))) {
   }
   const patch::Normalised& fine = full.all();
-  PixelProblem problem(fine, chosen->lobe, chosen->kind);
-  PixelFit fit;
-  fit.background = chosen->kind;
-  fit.iterations = search.iterations();
+  PixelProblem problem(fine, start.lobe, fit.background);
   const FullFit best = solveInFull(problem, stateOf(start, fine), options, fit.iterations);
   const patch::State& at = best.attempt.at;
   if (!std::isfinite(best.attempt.cost)) return Failure{Reason::NotConverged, "pixels"};
-  fit.model = {chosen->lobe, at.roughness(), options.holdLamp ? lamp : inWorld(at, fine), at.blurVariance};
+  fit.model = {start.lobe, at.roughness(), options.holdLamp ? lamp : inWorld(at, fine), at.blurVariance};
   if (!describeAllPixels(patches, fit)) return Failure{Reason::NotConverged, "pixels"};
   // The cells that were fitted say how well: joined ones hold the same evidence.
   problem.chooseRule(at);

@@ -60,7 +60,10 @@ struct PixelFitOptions {
   bool blur = true;                          ///< estimate the blur where the pixels show it
   bool holdLamp = false;                     ///< the lamp is known: its place and shape stay those of the start
   std::optional<BackgroundKind> background;  ///< no other is tried
-  ProgressFn progress{};                     ///< asked at every look at all cells
+  /// Lamp and roughness are those of a fit to these patches and a few more, with the one lobe and `background`: nothing is
+  /// searched on coarse cells.
+  bool near = false;
+  ProgressFn progress{};  ///< asked at every look at all cells
 };
 
 struct PixelFit {
