@@ -170,7 +170,8 @@ TEST(Lamp, SettingsAndSchemaNameEveryShape) {
 
   std::ifstream file(GLINT_SOURCE_DIR "/resources/scene.schema.json");
   const auto light = nlohmann::json::parse(file).at("$defs").at("light");
-  std::set<std::string> places{"position", "direction"}, keys{"id", "radius", "frame"}, required, stated;
+  std::set<std::string> places{"position", "direction"}, keys{"id", "radius", "frame", "known", "sigma_m", "sigma_deg"}, required,
+      stated;
   for (const PlacedShape& shape : placedShapes()) {
     places.insert(shape.name);
     const auto& points = light.at("properties").at(shape.name);
