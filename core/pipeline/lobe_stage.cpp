@@ -176,7 +176,7 @@ std::set<FitKey> takeOtherLampsOff(Inspection& r, Groups& groups) {
       for (TrainingView& v : views) byFrame[v.frame][key].push_back(&v);
   std::set<FitKey> changed;
   for (const auto& [frame, own] : byFrame) {
-    std::vector<LampInFrame> lamps;
+    std::vector<LampPatches> lamps;
     for (const auto& [key, views] : own) {
       const PixelFit& fit = **r.pixelFits.at(key);
       lamps.push_back({{}, fit.model, fit.background});
@@ -254,18 +254,18 @@ std::map<std::string, std::vector<LampLight>> otherLampsIn(const Inspection& lob
                                                            const Surface& surface) {
   std::vector<PixelPatch> patches;
   patches.reserve(detected.highlights.size());
-  std::map<std::string, LampInFrame> lamps;
+  std::map<std::string, LampPatches> lamps;
   for (const Highlight& h : detected.highlights) {
     const auto fit = lobes.pixelFits.find(lobes.keyFor(detected.frame, h.light));
     if (h.light.empty() || fit == lobes.pixelFits.end() || !fit->second) continue;
     Outcome<PixelPatch> patch = pixelPatch(pixels, camera, surface, detected.frame, h, ofOthers(detected, h.light));
     if (!patch) continue;
-    LampInFrame& lamp =
-        lamps.try_emplace(h.light, LampInFrame{{}, (*fit->second)->model, (*fit->second)->background}).first->second;
+    LampPatches& lamp =
+        lamps.try_emplace(h.light, LampPatches{{}, (*fit->second)->model, (*fit->second)->background}).first->second;
     lamp.patches.push_back(&patches.emplace_back(*std::move(patch)));
   }
   std::map<std::string, std::vector<LampLight>> others;
-  std::vector<LampInFrame> all;
+  std::vector<LampPatches> all;
   for (const auto& [light, lamp] : lamps) all.push_back(lamp);
   std::vector<std::vector<LampLight>> found = lightOfOthers(all, surface, camera);
   std::size_t n = 0;

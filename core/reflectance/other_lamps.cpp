@@ -43,10 +43,10 @@ bool shows(const PixelPatch& patch, const std::vector<double>& light) {
 /// The lamps of a frame with what each adds to the pixels of each other one.
 class LampsTogether {
  public:
-  LampsTogether(const std::vector<LampInFrame>& lamps, const Surface& surface, const Camera& camera)
+  LampsTogether(const std::vector<LampPatches>& lamps, const Surface& surface, const Camera& camera)
       : lamps_(lamps), logScale_(lamps.size(), 0), strength_(lamps.size(), 0), reach_(lamps.size()) {
     std::vector<RadianceField> fields;
-    for (const LampInFrame& lamp : lamps) fields.push_back(fieldOf(lamp.model, surface, camera));
+    for (const LampPatches& lamp : lamps) fields.push_back(fieldOf(lamp.model, surface, camera));
     for (std::size_t k = 0; k < lamps.size(); ++k) solve(k, &fields[k]);
     for (std::size_t k = 0; k < lamps.size(); ++k) {
       reach_[k].resize(lamps.size());
@@ -99,14 +99,14 @@ class LampsTogether {
     strength_[k] = first.strength;
   }
 
-  const std::vector<LampInFrame>& lamps_;
+  const std::vector<LampPatches>& lamps_;
   std::vector<double> logScale_, strength_;
   std::vector<std::vector<std::vector<std::vector<double>>>> reach_;  ///< of lamp o (second) at patch p (third) of lamp k (first)
 };
 
 }  // namespace
 
-std::vector<std::vector<LampLight>> lightOfOthers(const std::vector<LampInFrame>& lamps, const Surface& surface,
+std::vector<std::vector<LampLight>> lightOfOthers(const std::vector<LampPatches>& lamps, const Surface& surface,
                                                   const Camera& camera) {
   std::vector<std::vector<LampLight>> others(lamps.size());
   if (lamps.size() < 2) return others;

@@ -10,7 +10,7 @@
 namespace glint {
 
 /// One lamp in a frame where several are on: the pixels around its highlights, and the lobe that a fit found for it.
-struct LampInFrame {
+struct LampPatches {
   std::vector<const PixelPatch*> patches;
   LobeModel model;
   BackgroundKind background = BackgroundKind::None;
@@ -20,7 +20,7 @@ struct LampInFrame {
 /// 7, "Several lamps in a frame"). The strengths of the lamps in this frame are found in turn, each with the light of the others
 /// taken off.
 /// @return  for each lamp the light of the others; empty where it does not show in the lamp's pixels, by 3 in 10,000 of their top
-std::vector<std::vector<LampLight>> lightOfOthers(const std::vector<LampInFrame>& lamps, const Surface& surface,
+std::vector<std::vector<LampLight>> lightOfOthers(const std::vector<LampPatches>& lamps, const Surface& surface,
                                                   const Camera& camera);
 
 /// What these lamps add to every cell of a patch; 0 off the surface.

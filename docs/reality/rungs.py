@@ -154,11 +154,11 @@ RENDERED = [
     Rung("ring", "ring lamp", EXTENT, "lamps with a shape",
          render={"lamps": [dict(AREA, kind="ring", radius=0.4)], "roughness": MIRRORING}),
     Rung("white-floor", "white floor, two bounces", r"floor|bounce|reflect", "Fresnel and bounces", render={"floor": True}),
-    Rung("dome-ball", "13 known distant lamps, one in each photograph, still camera", KNOWN, "known lamps", render=BALL,
+    Rung("dome-ball", "13 known distant lamps, one in each photograph, still camera", KNOWN, render=BALL,
          train="0-11"),
-    Rung("dome-mesh", "the same over a mesh with broad waves", KNOWN, "known lamps", render=dict(DOME, waves=0.08), train="0-11"),
-    Rung("known-flash", "known lamp fixed to the camera", KNOWN, "known lamps", render={"lamps": [FLASH]}),
-    Rung("dome-three", "three known distant lamps in each photograph, still camera", KNOWN, "known lamps", train="0-11",
+    Rung("dome-mesh", "the same over a mesh with broad waves", KNOWN, render=dict(DOME, waves=0.08), train="0-11"),
+    Rung("known-flash", "known lamp fixed to the camera", KNOWN, render={"lamps": [FLASH]}),
+    Rung("dome-three", "three known distant lamps in each photograph, still camera", KNOWN, train="0-11",
          render=dict(BALL, on=[[k, (k + 1) % 13, (k + 7) % 13] for k in range(13)], roughness=[0.39, 0.39])),
 ]
 

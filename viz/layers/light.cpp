@@ -86,7 +86,7 @@ std::string lampBeside(const LayerInput& in, const std::string& light, const Lig
 LayerContent lightLayer(const LayerInput& in) {
   LayerContent content;
   for (const auto& [id, outcome] : in.inspection->lightsFor(in.selection.frame)) {
-    if (!*outcome || in.hidden.lights.count(id)) continue;
+    if (!*outcome || (**outcome).known || in.hidden.lights.count(id)) continue;  // a known one is drawn as the scene's own
     const LightEstimate& estimate = **outcome;
     Picked info;
     info.layer = "light";

@@ -145,7 +145,7 @@ TEST(OtherLamps, ShortTailsChangeNothing) {
   const Camera& camera = s.scene->frames[0].camera;
   const std::shared_ptr<const Surface> surface = makeAnalytic(*s.scene->surfaces["body"].analytic());
   const Inspection r = inspectedLamps(s);
-  std::vector<LampInFrame> lamps;
+  std::vector<LampPatches> lamps;
   for (const auto& [id, patch] : r.patches)
     if (id.first == 0) lamps.push_back({{patch.get()}, (*r.pixelFits.at({patch->light, {}}))->model, BackgroundKind::None});
   ASSERT_EQ(lamps.size(), 2u);
