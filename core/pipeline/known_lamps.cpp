@@ -17,6 +17,9 @@
 namespace glint {
 namespace {
 
+// Share of the radius. A lamp that is not held takes up what one limit angle leaves of a lobe; under a held one a path tracer's lobe
+// leaves 3 % and errs by 0.8 % of the diameter, and contours of one limit angle leave 0.01 %.
+constexpr double kOneAngleShare = 0.015;
 constexpr int kLimitPoints = 36;         // of a contour, for the angle that it reaches
 constexpr double kFarthestMirror = 0.2;  // rad: wide lobes at slanted views shift the peak from the mirror point by less
 
@@ -57,6 +60,14 @@ double mostMissed(const TrainingView& v, double limit) {
   // The half vector turns by half of the lamp's own error: this is twice its standard deviation.
   if (known.lamp.atInfinity()) return limit + known.sigma;
   return limit + known.sigma / (lightOf(known.lamp).position() - v.seen->brightest.point.position).norm();
+}
+
+/// What a fit leaves of contours beyond their points' noise, as a share of their radius (root of the mean square).
+double shareLeft(const std::vector<double>& residualPx, const std::vector<UsedContour>& used) {
+  double squares = 0;
+  for (std::size_t i = 0; i < used.size(); ++i)
+    squares += std::max(0.0, std::pow(residualPx[i], 2) - std::pow(used[i].noise, 2)) / std::pow(used[i].radius, 2);
+  return used.empty() ? 0 : std::sqrt(squares / double(used.size()));
 }
 
 std::string missedText(double angle) {
@@ -146,6 +157,10 @@ Outcome<ModelFit> fitOfKnownLamp(ModelFit fit, const std::string& light, const K
   fit.residualPx = std::move(residuals);
   fit.hints.clear();  // they lie where other lamps' views were carried
   if (!known.lamp.atInfinity() && known.sigma > 0) fit.lightCovariance = known.sigma * known.sigma * Eigen::Matrix3d::Identity();
+  if (const double left = shareLeft(fit.residualPx, own); fit.as<LimitAngleFit>() && left > kOneAngleShare)
+    fit.remarks.push_back(formatted(
+        "under known lamps one limit angle leaves %.2g %% of the contours' radius: reflectance, which has a lobe, tells more",
+        100 * left));
   // Others may have outvoted this lamp's own highlights.
   if (own.empty() || !fit.poor.empty() || fit.as<EllipsoidFit>()) return fit;
   return explaining(std::move(fit), own, true, mostShare);

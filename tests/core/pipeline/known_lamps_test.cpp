@@ -37,7 +37,8 @@ Vector3d domeDirection(int i) {
 std::string domeName(int i) { return "dome-" + std::to_string(i); }
 
 /// One photograph for each lamp. @param at  places the lamps at that distance, 0 = at infinity, m
-std::shared_ptr<Scene> domeScene(int lamps, double at = 0, double unit = 1) {
+/// @param apart  every other lamp has a limit angle that is larger by this share, the rest one that is smaller
+std::shared_ptr<Scene> domeScene(int lamps, double at = 0, double unit = 1, double apart = 0) {
   auto scene = std::make_shared<Scene>();
   scene->name = "dome";
   scene->surfaces["body"] = bodyOf(unit);
@@ -55,7 +56,7 @@ std::shared_ptr<Scene> domeScene(int lamps, double at = 0, double unit = 1) {
     f.lightsOn = {light.id};
     ExactOptions options;
     options.kind = ContourKind::LimitAngle;
-    options.limitAngle = kLimitAngle;
+    options.limitAngle = kLimitAngle * (i % 2 == 0 ? 1 - apart : 1 + apart);
     options.sagittaPx = 5e-3;
     const Outcome<std::vector<Highlight>> found =
         exactHighlights(*makeAnalytic(bodyOf(unit)), f.camera, light, Material{}, options);
@@ -117,6 +118,17 @@ TEST(KnownLamps, NoiseIsSharedByAllLamps) {
   // Twelve contours of 72 points each with noise of 0.5 px against radii of some 40 px: 0.5 / 40 / sqrt(864) of the angle.
   EXPECT_NEAR(*fitOfLamp(in, "limit-angle", domeName(12))->fit->limitAngle(), kLimitAngle, 4 * kLimitAngle * 0.5 / 40 / 29);
   EXPECT_LT(heldOutPct(in, "limit-angle"), 0.3);
+}
+
+TEST(KnownLamps, WhatOneLimitAngleLeavesIsSaid) {
+  const auto saysIt = [](double apart) {
+    const Inspection in = inspect(domeScene(13, 0, 1, apart), domeRequest());
+    for (const std::string& remark : fitOfLamp(in, "limit-angle", domeName(3))->fit->remarks)
+      if (remark.find("one limit angle leaves") != std::string::npos) return true;
+    return false;
+  };
+  EXPECT_FALSE(saysIt(0.005));
+  EXPECT_TRUE(saysIt(0.03));  // 3 % of the radius remain
 }
 
 TEST(KnownLamps, OneHighlightOfOneLampIsEnough) {

@@ -85,7 +85,7 @@ class Cycles(unittest.TestCase):
         import numpy
         depsgraph = bpy.context.evaluated_depsgraph_get()
         from glint_blender import views
-        vertices, _, _ = meshes.triangles_of(self.body, depsgraph, views.World())
+        vertices, _, _ = meshes.triangles_of(self.body, depsgraph, views.World(), self.body.evaluated_get(depsgraph).matrix_world)
         worst = 0.0
         for frame in self.document["frames"]:
             image = bpy.data.images.load(os.path.join(self.folder, frame["radiance"]))
