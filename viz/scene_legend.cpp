@@ -78,7 +78,9 @@ SceneLegend legendOf(const LayerInput& in, const std::vector<ShownLayer>& layers
   const bool carried = in.inspection->lightFrame.frame == LightFrame::Camera;
   if (drawn("light"))
     legend.entries.push_back({kLightColour, carried ? "light (estimate), moves with the camera" : "light (estimate)"});
-  if (drawn("true-light")) legend.entries.push_back({kTruth, "light (truth)"});
+  const std::vector<TrueLight>& stated = in.inspection->scene->lights;
+  const bool known = std::any_of(stated.begin(), stated.end(), [](const TrueLight& l) { return l.known; });
+  if (drawn("true-light")) legend.entries.push_back({kTruth, known ? "light (known)" : "light (truth)"});
   if (drawn("measured-lamps")) legend.entries.push_back({kMeasuredLamp, "measured lamp, 95 % region"});
   if (drawn("solver-runs")) legend.entries.push_back({in.ink(), "runs of a solver: hollow start, full end"});
   std::string noEvidence;

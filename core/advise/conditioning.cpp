@@ -86,9 +86,12 @@ class Findings {
     if (fit_.failure()) add("fit", "fit", std::nan(""), "failed", Verdict::Red, "No fit: " + fit_.failure()->message() + ".");
     addPeaks();
     if (model_.hasOutlines()) addLinearSystem();
-    addAngle();
-    addViews();
-    addLight();
+    const bool held = estimate_ && estimate_->known && model_.needsLight();  // rays need not meet in a lamp that is stated
+    if (!held) {
+      addAngle();
+      addViews();
+      addLight();
+    }
     addResidual();
     return std::move(c_);
   }

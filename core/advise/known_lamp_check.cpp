@@ -159,9 +159,7 @@ class KnownLampCheck {
   Miss missOf(const LitFrame& lit, const Lamp& lamp) const {
     Miss least;
     for (const TrainingView& v : lit.views) {
-      const SurfacePoint& p = v.seen->brightest.point;
-      const Eigen::Vector3d toCamera = (v.camera.centreInWorld() - p.position).normalized();
-      const double angle = incidentAngle(p.normal, lightOf(lamp).directionFrom(p.position), toCamera);
+      const double angle = halfAngleAt(v.seen->brightest.point, v.camera, lamp);
       if (!(angle < least.angle)) continue;
       const double rim = medianContourAngle({v}, lightOf(lamp), kRimPoints);
       least = {angle, rim > 0 && angle < kOwnShare * rim};

@@ -49,9 +49,7 @@ Eigen::Matrix<double, 4, 3> statedColumns(const KnownLamp& known) {
 /// How far a highlight lies from where its known lamp mirrors, as a half angle; nothing for a view without either.
 std::optional<double> missedAngle(const TrainingView& v) {
   if (!v.seen || !v.known) return std::nullopt;
-  const SurfacePoint& p = v.seen->brightest.point;
-  const Eigen::Vector3d toCamera = (v.camera.centreInWorld() - p.position).normalized();
-  return incidentAngle(p.normal, lightOf(v.known->lamp).directionFrom(p.position), toCamera);
+  return halfAngleAt(v.seen->brightest.point, v.camera, v.known->lamp);
 }
 
 /// Further than that, the lamp and its highlight contradict each other. @param limit  that the contours reach, rad
@@ -102,6 +100,11 @@ bool knowsAllLamps(const Scene& scene, const Frame& frame) {
     return std::all_of(scene.lights.begin(), scene.lights.end(), [](const TrueLight& l) { return l.known; });
   return std::all_of(frame.lightsOn.begin(), frame.lightsOn.end(),
                      [&](const std::string& id) { return knownLamp(scene, id).has_value(); });
+}
+
+double halfAngleAt(const SurfacePoint& point, const Camera& camera, const Lamp& lamp) {
+  const Eigen::Vector3d toCamera = (camera.centreInWorld() - point.position).normalized();
+  return incidentAngle(point.normal, lightOf(lamp).directionFrom(point.position), toCamera);
 }
 
 bool shareMaterial(const KnownLamp& a, const KnownLamp& b) {
@@ -198,12 +201,10 @@ bool assignKnownLamps(const Scene& scene, std::vector<FrameEvidence>& evidence,
     for (Highlight& h : e.highlights) {
       const Outcome<BrightestPoint> seen = observedBrightestPoint(*surface, frame.camera, h.peak);
       if (!seen) continue;
-      const Eigen::Vector3d toCamera = (frame.camera.centreInWorld() - seen->point.position).normalized();
       double least = kFarthestMirror;
       h.light.clear();
       for (const std::string& id : on) {
-        const Light light = lightOf(knownLamp(scene, id)->lamp);
-        const double alpha = incidentAngle(seen->point.normal, light.directionFrom(seen->point.position), toCamera);
+        const double alpha = halfAngleAt(seen->point, frame.camera, knownLamp(scene, id)->lamp);
         if (alpha < least) least = alpha, h.light = id;
       }
     }

@@ -25,6 +25,10 @@ bool knowsAllLamps(const Scene& scene, const Frame& frame);
 /// Lamps of one shape that are both at a place, or both at infinity: only these can be carried into each other.
 bool shareMaterial(const KnownLamp& a, const KnownLamp& b);
 
+/// By how much a highlight's peak lies off the place where a lamp mirrors, as the angle between its normal and the half vector,
+/// rad. @param point  of the peak, normal on the camera's side
+double halfAngleAt(const SurfacePoint& point, const Camera& camera, const Lamp& lamp);
+
 /// A view of a known lamp as a view of another one: camera and surface are carried along with the lamp, by a shift for a lamp at
 /// a place, by a turn about `pivot` for one at infinity.
 /// @param pivot  a point near the surface, world, m

@@ -49,7 +49,7 @@ std::vector<fs::path> sortedFiles(const fs::path& folder, const std::string& ext
 class SceneFileReader final : public SceneReader {
  public:
   std::string name() const override { return "scene"; }
-  std::string describe() const override { return "scene file (scene.json, version 1)"; }
+  std::string describe() const override { return "scene file (scene.json)"; }
   fs::path recognise(const fs::path& input) const override {
     std::error_code error;
     if (fs::is_directory(input, error)) {

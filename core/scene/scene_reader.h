@@ -19,7 +19,7 @@ class SceneReader {
   virtual ~SceneReader() = default;
   /// The name that InputChoices::as gives it: "scene", "colmap"; "session".
   virtual std::string name() const = 0;
-  /// For a person: "scene file (scene.json, version 1)".
+  /// For a person: "scene file (scene.json)".
   virtual std::string describe() const = 0;
   /// The file to read when this reader understands `input` (a file, or a folder in which it looks), by content;
   /// an empty path otherwise. Never throws for an unreadable input.
