@@ -54,6 +54,11 @@ bool isItsQuadric(const LayerInput& in, const std::string& model, const std::str
   });
 }
 
+const char* statedLightText(const Scene& scene) {
+  const bool known = std::any_of(scene.lights.begin(), scene.lights.end(), [](const TrueLight& l) { return l.known; });
+  return known ? "light (known)" : "light (truth)";
+}
+
 }  // namespace
 
 SceneLegend legendOf(const LayerInput& in, const std::vector<ShownLayer>& layers) {
@@ -78,9 +83,7 @@ SceneLegend legendOf(const LayerInput& in, const std::vector<ShownLayer>& layers
   const bool carried = in.inspection->lightFrame.frame == LightFrame::Camera;
   if (drawn("light"))
     legend.entries.push_back({kLightColour, carried ? "light (estimate), moves with the camera" : "light (estimate)"});
-  const std::vector<TrueLight>& stated = in.inspection->scene->lights;
-  const bool known = std::any_of(stated.begin(), stated.end(), [](const TrueLight& l) { return l.known; });
-  if (drawn("true-light")) legend.entries.push_back({kTruth, known ? "light (known)" : "light (truth)"});
+  if (drawn("true-light")) legend.entries.push_back({kTruth, statedLightText(*in.inspection->scene)});
   if (drawn("measured-lamps")) legend.entries.push_back({kMeasuredLamp, "measured lamp, 95 % region"});
   if (drawn("solver-runs")) legend.entries.push_back({in.ink(), "runs of a solver: hollow start, full end"});
   std::string noEvidence;
