@@ -22,16 +22,14 @@ void Painter::ring(const Eigen::Vector2d& centre, double radius, const Colour& c
 
 std::string Painter::fitted(const std::string& text, double sizePx, double widthPx) const {
   if (textWidth(text, sizePx) <= widthPx) return text;
-  std::string shorter = text;
-  while (!shorter.empty()) {
-    do {  // whole UTF-8 characters
-      const bool continuation = (static_cast<unsigned char>(shorter.back()) & 0xC0) == 0x80;
-      shorter.pop_back();
-      if (!continuation) break;
-    } while (!shorter.empty());
-    if (textWidth(shorter + "\u2026", sizePx) <= widthPx) return shorter + "\u2026";
-  }
-  return {};
+  std::vector<std::size_t> ends;  // of its beginnings in whole UTF-8 characters
+  for (std::size_t i = 0; i < text.size(); ++i)
+    if ((static_cast<unsigned char>(text[i]) & 0xC0) != 0x80) ends.push_back(i);
+  const auto shortened = [&](std::size_t end) { return text.substr(0, end) + "\u2026"; };
+  // Longer beginnings are wider: a text of a file may have a million letters.
+  const auto tooWide = std::partition_point(ends.begin(), ends.end(),
+                                            [&](std::size_t end) { return textWidth(shortened(end), sizePx) <= widthPx; });
+  return tooWide == ends.begin() ? std::string() : shortened(*std::prev(tooWide));
 }
 
 std::vector<std::string> Painter::wrapped(const std::string& text, double sizePx, double widthPx) const {

@@ -101,6 +101,23 @@ TEST(Painter, TextsAreShortenedAndBrokenByTheirWidth) {
             (std::vector<std::string>{"one two", "three"}));
 }
 
+/// Counts how often it is asked for a width.
+struct CountingPainter : SvgPainter {
+  using SvgPainter::SvgPainter;
+  double textWidth(const std::string& text, double sizePx, bool bold = false) const override {
+    ++asked;
+    return SvgPainter::textWidth(text, sizePx, bold);
+  }
+  mutable int asked = 0;
+};
+
+/// Names in files of others may be that long: letter by letter, a caption took a minute.
+TEST(Painter, LongTextIsCutWithFewMeasurements) {
+  const CountingPainter painter(100, 50);
+  EXPECT_EQ(painter.fitted(std::string(100000, '0'), 10, 6.36 * 4 + 0.2), "000\u2026");
+  EXPECT_LE(painter.asked, 20);  // bisection: 1 + log2(100000)
+}
+
 TEST(PlotPainter, EverySampleSaysItsValueUnderTheMouse) {
   PlotData plot;
   plot.id = "error";
