@@ -43,7 +43,7 @@ struct SceneView::Impl {
   vtkNew<vtkCallbackCommand> onFrame;
   std::unique_ptr<PhotographStand> photograph;  // below the annotations
   std::unique_ptr<Annotations> annotations;
-  std::shared_ptr<const Inspection> inspection;
+  std::shared_ptr<const Inspection> inspection, shown;  // shown: in the scene's coordinates of the selected frame
   Selection selection;
   std::set<std::string> models;
   std::vector<LayerState> layers{sceneLayers().size()};
@@ -107,7 +107,7 @@ struct SceneView::Impl {
     selection.frame = std::clamp(selection.frame, 0, static_cast<int>(inspection->scene->frames.size()) - 1);
     const std::shared_ptr<const Surface> before = input.surface;
     const std::vector<int> framesBefore = allFrames;
-    input.inspection = inspection.get();
+    input.inspection = (shown = inSceneAt(inspection, selection.frame)).get();
     input.selection = selection;
     input.models = modelsInOrder(*inspection, models);
     input.dark = dark;
@@ -400,7 +400,8 @@ void SceneView::setSelection(const Selection& selection) {
   impl_->selection = wanted;
   if (!frame && !highlight && !picked) return;
   impl_->refreshInput();
-  impl_->mark((frame ? kOnFrame : 0u) | (highlight ? kOnHighlight : 0u) | (picked ? kOnPicked : 0u));
+  const bool lightsMove = impl_->valid() && !impl_->inspection->lightFrame.elsewhere.empty();
+  impl_->mark((frame ? kOnFrame | (lightsMove ? kOnInspection : 0u) : 0u) | (highlight ? kOnHighlight : 0u) | (picked ? kOnPicked : 0u));
 }
 
 void SceneView::setLayerVisible(const std::string& name, bool visible) {

@@ -78,6 +78,10 @@ Eigen::Vector3d WalkStory::half(const WalkPlace& p) const { return (toEye(p) + t
 
 Outcome<WalkStory> walkStory(const Inspection& inspection, const Explanation& explanation, bool inverse,
                              std::optional<double> direction) {
+  if (inspection.lightFrame.elsewhere.count(explanation.light))
+    return Failure{Reason::NotSupported, "this lamp does not stand still in the scene that is shown: light.frame=" +
+                                             std::string(nameOf(inspection.lightFrame.frameOf(explanation.light))) +
+                                             " shows its walk"};
   const Outcome<Start> start = inverse ? backwards(inspection, explanation) : forwards(explanation);
   if (!start) return start.failure();
   const Camera& camera = inspection.scene->frames[static_cast<std::size_t>(explanation.frame)].camera;

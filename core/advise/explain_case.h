@@ -24,7 +24,7 @@ struct Case {
   const ModelResult::Fit* fit = nullptr;
   const FrameComparison* comparison = nullptr;
   const FrameComparison::Row* row = nullptr;
-  const Camera& camera() const { return inspection.scene->frames[std::size_t(out.frame)].camera; }
+  Camera camera() const { return inspection.cameraFor(out.frame, out.light); }
   /// The prediction of this highlight; if it was missed, the one beside it.
   const PredictedHighlight* predicted() const;
   /// Whether a frame has the same light and models as this one: with a model for each surface, only where it sees the same

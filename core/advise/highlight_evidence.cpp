@@ -186,7 +186,7 @@ bool isOutside(const Camera& camera, const Polyline& contour) {
 /// What hides the lamp from the middle of the contour on the surface, or how flat it is seen; "" if neither does, or where
 /// that misses the surface. A brightest point would not do: `primal` predicts outlines that no point of the surface made.
 std::string geometryAgainst(const Inspection& inspection, const FrameComparison& c, const PredictedHighlight& h) {
-  const Camera& camera = inspection.scene->frames[std::size_t(c.frame)].camera;
+  const Camera camera = inspection.cameraFor(c.frame, c.light);
   const Eigen::Vector3d eye = camera.centreInWorld();
   const LightEstimate* const light = inspection.lightFor(c.frame, c.light);
   const Outcome<std::shared_ptr<const Surface>> surface = surfaceFor(inspection, c.frame, c.light);

@@ -159,7 +159,7 @@ void Rows::measurePredicted(const FrameComparison& c, const PredictedHighlight& 
   set(RowValue::TimeUs, c.prediction.timeUs);
   set(RowValue::PredictedPx, 2 * radiusPx(h.contour));
   if (model_ && model_->traits().mirrored && in_.scene)
-    set(RowValue::IncidentDeg, incidentDegrees(h.brightest, in_.scene->frames[std::size_t(row.frame)].camera.centreInWorld()));
+    set(RowValue::IncidentDeg, incidentDegrees(h.brightest, in_.cameraFor(row.frame, row.light).centreInWorld()));
   double limit = h.canonical ? medianDegrees(*h.canonical) : std::nan("");
   if (const ModelFit* const fit = fitOf(c); fit && std::isnan(limit))
     if (const std::optional<double> alpha = fit->limitAngle()) limit = degrees(*alpha);

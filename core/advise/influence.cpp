@@ -100,7 +100,7 @@ std::optional<double> errorOn(int probe, const Fold& fold, const HighlightModel&
   const Inspection& inspection = *fold.inspection;
   const std::string& light = fold.left.highlight.light;
   if (!answer.fit || !shows(inspection, probe, light)) return std::nullopt;
-  const Camera& camera = inspection.scene->frames[std::size_t(probe)].camera;
+  const Camera camera = inspection.cameraFor(probe, light);
   const Outcome<std::shared_ptr<const Surface>> surface = fold.surfaceOf(probe, model);
   Prediction p = model.predict(*answer.fit, camera, surface ? surface->get() : nullptr, inspection.request.settings);
   return countedPct(compareFrame(inspection.evidence[std::size_t(probe)], light, camera, std::move(p)));

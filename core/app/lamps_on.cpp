@@ -140,7 +140,7 @@ PredictedLamp predicted(const Inspection& r, const ModelResult::Fit& fit, int fr
   lamp.answer.light = fit.light;
   if (!f.lightsOn.empty()) lamp.answer.stated = std::find(f.lightsOn.begin(), f.lightsOn.end(), fit.light) != f.lightsOn.end();
   const std::shared_ptr<const Surface> surface = surfaceOfModel(r, model, frame, fit.light);
-  const Prediction p = predictionFor(r, fit, model, frame, f.camera, surface.get());
+  const Prediction p = predictionFor(r, fit, model, frame, r.cameraFor(frame, fit.light), surface.get());
   for (const PredictedHighlight& h : p.highlights())
     if (h.contour.points.size() >= 3 && std::abs(signedArea(h.contour)) > 0) lamp.contours.push_back(h.contour);
   if (!lamp.contours.empty()) {

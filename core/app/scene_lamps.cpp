@@ -165,7 +165,7 @@ class SceneLamp {
 
   LampAnswer run() {
     a_.id = light_.id;
-    a_.frame = r_.lightFrame.frame;
+    a_.frame = r_.lightFrame.frameOf(light_.id);
     a_.frameReason = r_.lightFrame.reason;
     if (!r_.lightFrame.doubt.empty()) a_.remarks.push_back(r_.lightFrame.doubt);
     for (const int frame : light_.frames) a_.frames.push_back(idOf(frame));

@@ -184,7 +184,7 @@ std::vector<std::vector<double>> TradeoffBench::timesOf(const Inspection& inspec
     const FrameComparison& c = result.frames[i];
     std::vector<double>& of = times.emplace_back();
     const Outcome<std::shared_ptr<const Surface>> surface = surfaceFor(inspection, c.frame, c.light);
-    const Camera& camera = inspection.scene->frames[c.frame].camera;
+    const Camera camera = inspection.cameraFor(c.frame, c.light);
     for (int r = 0; r < repeats; ++r) {
       check();
       const auto start = std::chrono::steady_clock::now();

@@ -27,7 +27,8 @@ Eigen::Vector3d middleOf(const Scene& scene, const std::vector<Fold>& folds, con
   int count = 0;
   for (const Fold& f : folds)
     if (f.left.highlight.light == light && f.left.seen) {
-      sum += scene.frames[f.left.frame].worldFromObject.inverse() * f.left.seen->brightest.point.position;
+      sum += scene.frames[f.left.frame].worldFromObject.inverse() *
+             (f.left.fromScene.inverse() * f.left.seen->brightest.point.position);
       ++count;
     }
   return count ? Eigen::Vector3d(sum / count) : sum;
@@ -93,7 +94,7 @@ std::vector<ViewToPredict> viewsToPredict(const Inspection& inspection, const st
       ViewToPredict view;
       view.frame = f;
       view.light = light;
-      view.camera = scene.frames[f].camera;
+      view.camera = inspection.cameraFor(f, light);
       view.testedDeg = tested;
       view.distanceDeg = HUGE_VAL;
       for (const TrainingView* t : training)

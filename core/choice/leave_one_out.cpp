@@ -12,6 +12,7 @@
 #include "core/base/progress.h"
 #include "core/base/stage_times.h"
 #include "core/light/left_out.h"
+#include "core/pipeline/carried.h"
 #include "core/pipeline/lobe_stage.h"
 #include "core/pipeline/metrics.h"
 #include "core/pipeline/training.h"
@@ -85,8 +86,11 @@ Answer predictLeft(const Fold& fold, const HighlightModel& model, const ModelFit
 
 Outcome<std::shared_ptr<const Surface>> Fold::surfaceOf(int frame, const HighlightModel& model) const {
   const SurfaceCorrection none;
-  return correctedSurface(*inspection->scene, *inspection->surfaces, frame,
-                          model.needsLight() && light ? light->correction : none, meshPolicy(inspection->request.settings));
+  Outcome<std::shared_ptr<const Surface>> found =
+      correctedSurface(*inspection->scene, *inspection->surfaces, frame, model.needsLight() && light ? light->correction : none,
+                       meshPolicy(inspection->request.settings));
+  if (found) found = carried(*std::move(found), inspection->lightFromScene(frame, left.highlight.light));
+  return found;
 }
 
 bool isSmoothedAlone(const SurfaceCorrection& correction) {

@@ -112,10 +112,11 @@ class PatchTrial {
       const Frame& frame = inspection_.scene->frames[o.frame];
       const Outcome<std::shared_ptr<const Surface>> surface = surfaceFor(inspection_, o.frame, o.light);
       if (!surface) continue;  // no prediction of any kind
-      const Prediction walked = model_.predict(*o.fit, frame.camera, surface->get(), onPatches_);
+      const Camera camera = inspection_.cameraFor(o.frame, o.light);
+      const Prediction walked = model_.predict(*o.fit, camera, surface->get(), onPatches_);
       ++c_.others;
       if (tooCurved(variationOf(walked))) return curved(frame.id);
-      const Prediction whole = model_.predict(*o.fit, frame.camera, surface->get(), settings_);
+      const Prediction whole = model_.predict(*o.fit, camera, surface->get(), settings_);
       if (!sameHighlights(whole, walked))
         return decided(false, "in frame " + frame.id + ", a frame to predict, local quadrics do not give the same highlights");
     }

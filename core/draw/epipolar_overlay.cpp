@@ -39,7 +39,8 @@ Outcome<PairView> viewOf(const Inspection& inspection, int frame, int highlight,
   const Frame& f = inspection.scene->frames[static_cast<std::size_t>(frame)];
   const Highlight& h = inspection.evidence[static_cast<std::size_t>(frame)].highlights[static_cast<std::size_t>(highlight)];
   const TrainingView* training = trainingViewOf(inspection, frame, h.light);
-  PairView view{f.camera.projection(), {}};
+  const Camera camera = inspection.cameraFor(frame, h.light);
+  PairView view{camera.projection(), {}};
   if (request.ellipse == PairEllipse::Canonical) {
     if (!training || !training->canonical || !training->canonical->ellipse)
       return Failure{Reason::NotSupported,
@@ -54,7 +55,7 @@ Outcome<PairView> viewOf(const Inspection& inspection, int frame, int highlight,
     if (training && training->seen) {
       view.projection = training->seen->virtualCamera;
     } else if (const Plane* plane = predictedPlane(inspection, frame, highlight)) {
-      view.projection = virtualCamera(f.camera, *plane);
+      view.projection = virtualCamera(camera, *plane);
     } else {
       return Failure{Reason::NotSupported, "frame " + f.id + ": no virtual camera because the tangent plane is unknown"};
     }

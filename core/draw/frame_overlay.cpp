@@ -429,7 +429,8 @@ FrameOverlay frameOverlay(const Inspection& inspection, int frame, const Overlay
   require(inspection.scene && frame >= 0 && frame < static_cast<int>(inspection.scene->frames.size()),
           "frameOverlay: no such frame");
   require(options.ellipseSegments >= 8, "frameOverlay: ellipseSegments < 8");
-  return FrameLayers(inspection, frame, options).draw();
+  const std::shared_ptr<const Inspection> there = inSceneAt(inspection, frame);
+  return FrameLayers(*there, frame, options).draw();
 }
 
 }  // namespace glint::draw

@@ -86,7 +86,9 @@ void storeSamples(FrameSamples::Lobe& lobe, Outcome<LobeSamples> samples) {
 }
 }  // namespace
 
-FrameSamples frameSamples(const Inspection& inspection, int frame, const std::string& model) {
+FrameSamples frameSamples(const Inspection& given, int frame, const std::string& model) {
+  const std::shared_ptr<const Inspection> there = inSceneAt(given, frame);
+  const Inspection& inspection = *there;
   FrameSamples result;
   result.frame = frame;
   result.model = model;

@@ -135,29 +135,42 @@ Colour colourOf(const SceneThing& thing) {
   return thing.role == SceneRole::TangentPlane ? kVirtualCamera : kObserved;
 }
 
-SceneDrawing sceneThings(const Inspection& inspection, const DrawingOptions& options) {
+namespace {
+
+/// Estimates, true lamps and what was fitted, of some lights.
+SceneDrawing lightThings(const Inspection& inspection, const DrawingOptions& options,
+                         const std::function<bool(const std::string&)>& taken) {
   SceneDrawing things;
   for (const auto& [key, estimate] : inspection.lights) {
-    if (!estimate || estimate->known) continue;  // a known lamp is drawn once, below
+    if (!estimate || estimate->known || !taken(key.light)) continue;  // a known lamp is drawn once, below
     things.push_back(estimateThing(key.light, estimate->light, options.scale));
     things.back().surface = key.surface;
   }
   const auto addFits = [&](const auto& thingOf) {
     for (const std::string& model : modelsInOrder(inspection))
       for (const ModelResult::Fit& fit : inspection.models.at(model).fits)
-        if (fit.fit)
+        if (fit.fit && taken(fit.light))
           if (std::optional<SceneThing> thing = thingOf(*fit.fit)) things.push_back(std::move(*thing));
   };
   addFits([&](const ModelFit& fit) { return fittedLampThing(inspection, fit, options.scale); });
   for (const TrueLight& light : inspection.scene->lights)
-    things.push_back(trueLampThing(light, options.leastLamp, options.scale));
+    if (taken(light.id)) things.push_back(trueLampThing(light, options.leastLamp, options.scale));
   addFits([&](const ModelFit& fit) { return ellipsoidThing(fit, options.scale); });
   return things;
 }
 
-SceneDrawing frameThings(const Inspection& inspection, int frame, const std::shared_ptr<const Surface>& surface,
+}  // namespace
+
+SceneDrawing sceneThings(const Inspection& inspection, const DrawingOptions& options) {
+  return lightThings(inspection, options,
+                     [&](const std::string& light) { return inspection.lightFrame.elsewhere.count(light) == 0; });
+}
+
+SceneDrawing frameThings(const Inspection& given, int frame, const std::shared_ptr<const Surface>& surface,
                          const DrawingOptions& options) {
-  require(frame >= 0 && frame < static_cast<int>(inspection.scene->frames.size()), "frameThings: the frame does not exist");
+  require(frame >= 0 && frame < static_cast<int>(given.scene->frames.size()), "frameThings: the frame does not exist");
+  const std::shared_ptr<const Inspection> there = inSceneAt(given, frame);
+  const Inspection& inspection = *there;
   const Frame& f = inspection.scene->frames[static_cast<std::size_t>(frame)];
   SceneDrawing things;
   SceneThing camera;
@@ -166,6 +179,12 @@ SceneDrawing frameThings(const Inspection& inspection, int frame, const std::sha
   camera.chains = frustum(f.camera, options.scale.cameraDepth);
   camera.label = "frame " + f.id;
   things.push_back(std::move(camera));
+  if (const std::set<std::string>& moving = given.lightFrame.elsewhere; !moving.empty())
+    for (SceneThing& thing :
+         lightThings(inspection, options, [&](const std::string& light) { return moving.count(light) > 0; })) {
+      thing.frame = frame;
+      things.push_back(std::move(thing));
+    }
   if (!surface) return things;
   SceneThing mesh;
   mesh.role = SceneRole::Surface;

@@ -76,9 +76,10 @@ struct DrawingOptions {
   std::size_t mostPoints = 0;    ///< of a contour on the surface; 0 = as many as a screen shows
   bool predictedMirrors = true;  ///< tangent planes, virtual cameras and canonical ellipses of predictions, too
 };
-/// What belongs to no frame: estimated lights, lamps of all fits, true lamps, ellipsoids of all fits.
+/// What belongs to no frame: estimated lights, lamps of all fits, true lamps, ellipsoids of all fits; of those lights alone that
+/// stand still in the scene.
 SceneDrawing sceneThings(const Inspection& inspection, const DrawingOptions& options);
-/// What belongs to one frame: its surface and camera; of each observed highlight the contour on the surface, brightest point,
+/// What belongs to one frame: its surface and camera; lights that stand elsewhere (LightFrameChoice::elsewhere); of each observed highlight the contour on the surface, brightest point,
 /// tangent plane, virtual camera, canonical ellipse and rays; of each model the predicted contours.
 /// @param frame    index; std::invalid_argument if it does not exist
 /// @param surface  of the frame; null = none, and only the camera is drawn

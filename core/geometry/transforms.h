@@ -22,6 +22,9 @@ struct Similarity {
   Similarity inverse() const { return {1 / scale, rotation.transpose(), -(rotation.transpose() * translation) / scale}; }
 };
 
+/// To the last bit.
+inline bool isIdentity(const Eigen::Isometry3d& pose) { return pose.matrix() == Eigen::Isometry3d::Identity().matrix(); }
+
 /// What kind of matrix was stored as a 3x3 rotation.
 enum class TypedRotation { Exact, Repaired, NotARotation, Mirrored };
 

@@ -155,8 +155,23 @@ std::vector<std::pair<std::size_t, std::size_t>> seedPairs(const std::vector<Ite
 
 struct Group {
   Light light;
-  Members members;  ///< that contain its mirror point and no nearer one of another light
+  Members members;         ///< that contain its mirror point and no nearer one of another light
+  bool elsewhere = false;  ///< it stands still in the other coordinates
 };
+
+/// All highlights, in both coordinates; `there` is empty where frames have no others.
+struct Items {
+  std::vector<Item> here, there;
+
+  const std::vector<Item>& of(const Group& g) const { return g.elsewhere ? there : here; }
+};
+
+Item carriedItem(Item item, const Eigen::Isometry3d& by) {
+  item.ray = {by * item.ray.origin, by.linear() * item.ray.direction, by.linear() * item.ray.normal};
+  item.across = by.linear() * item.across;
+  for (RaySample& next : item.next) next = {by * next.origin, by.linear() * next.direction};
+  return item;
+}
 
 /// The light that most of `free` confirm, refined on its own inliers. Nothing when too few frames do.
 std::optional<Group> bestGroup(const std::vector<Item>& items, const Members& free, std::size_t leastFrames,
@@ -185,6 +200,16 @@ std::optional<Group> bestGroup(const std::vector<Item>& items, const Members& fr
   }
   if (framesOf(items, members) < leastFrames) return std::nullopt;
   return Group{*best, std::move(members)};
+}
+
+/// The same where a light may stand still in other coordinates, too.
+std::optional<Group> bestGroup(const Items& items, const Members& free, std::size_t leastFrames, const TrackOptions& options) {
+  std::optional<Group> here = bestGroup(items.here, free, leastFrames, options);
+  if (items.there.empty()) return here;
+  std::optional<Group> there = bestGroup(items.there, free, leastFrames, options);
+  if (!there || (here && there->members.size() <= here->members.size())) return here;
+  there->elsewhere = true;
+  return there;
 }
 
 /// Squared distance of every item from a light's mirror point in units of its own size; infinite where it does not contain the
@@ -218,12 +243,12 @@ std::vector<double> containing(const std::vector<Item>& items, const std::vector
 
 /// Gives every item to the nearest light whose mirror point it contains, and triangulates lights again from those that confirm
 /// them.
-void settle(const std::vector<Item>& items, const std::vector<TrackedFrame>& frames, std::vector<Group>& groups) {
+void settle(const Items& items, const std::vector<TrackedFrame>& frames, std::vector<Group>& groups) {
   for (int round = 0; round < kVoteRounds; ++round) {
     std::vector<std::vector<double>> miss;
-    for (const Group& g : groups) miss.push_back(containing(items, frames, g.light));
+    for (const Group& g : groups) miss.push_back(containing(items.of(g), frames, g.light));
     std::vector<Members> next(groups.size());
-    for (std::size_t k = 0; k < items.size(); ++k) {
+    for (std::size_t k = 0; k < items.here.size(); ++k) {
       double least = 1;
       std::optional<std::size_t> nearest;
       for (std::size_t g = 0; g < groups.size(); ++g)
@@ -234,9 +259,10 @@ void settle(const std::vector<Item>& items, const std::vector<TrackedFrame>& fra
     for (std::size_t g = 0; g < groups.size(); ++g) {
       same = same && next[g] == groups[g].members;
       groups[g].members = std::move(next[g]);
-      const Members confirming = inliers(items, groups[g].members, groups[g].light, &Item::tight);
-      if (framesOf(items, confirming) < 2) continue;
-      if (const std::optional<Light> light = lightOf(items, confirming)) groups[g].light = *light;
+      const std::vector<Item>& own = items.of(groups[g]);
+      const Members confirming = inliers(own, groups[g].members, groups[g].light, &Item::tight);
+      if (framesOf(own, confirming) < 2) continue;
+      if (const std::optional<Light> light = lightOf(own, confirming)) groups[g].light = *light;
     }
     if (same) return;
   }
@@ -253,14 +279,14 @@ bool provenBySight(const std::vector<Item>& items, const Group& group, const std
   return shared >= 2 && 2 * static_cast<std::size_t>(shared) >= own.size();
 }
 
-Members unexplained(const std::vector<Item>& items, const std::vector<TrackedFrame>& frames, const std::vector<Group>& groups) {
-  std::vector<char> explained(items.size(), 0);
+Members unexplained(const Items& items, const std::vector<TrackedFrame>& frames, const std::vector<Group>& groups) {
+  std::vector<char> explained(items.here.size(), 0);
   for (const Group& g : groups) {
-    const std::vector<double> miss = containing(items, frames, g.light);
-    for (std::size_t k = 0; k < items.size(); ++k) explained[k] = explained[k] || miss[k] <= 1;
+    const std::vector<double> miss = containing(items.of(g), frames, g.light);
+    for (std::size_t k = 0; k < explained.size(); ++k) explained[k] = explained[k] || miss[k] <= 1;
   }
   Members result;
-  for (std::size_t k = 0; k < items.size(); ++k)
+  for (std::size_t k = 0; k < explained.size(); ++k)
     if (!explained[k]) result.push_back(k);
   return result;
 }
@@ -278,19 +304,19 @@ bool proven(const std::vector<Item>& items, const std::vector<Group>& groups, st
 
 /// Forms as many groups as there are lights; with `lights` 0 as many as the highlights prove. Lamps that are switched prove each
 /// other: up to three are taken together.
-std::vector<Group> findGroups(const std::vector<Item>& items, const std::vector<TrackedFrame>& frames, std::size_t lights,
+std::vector<Group> findGroups(const Items& items, const std::vector<TrackedFrame>& frames, std::size_t lights,
                               const TrackOptions& options) {
   constexpr std::size_t kMostWaiting = 2;  // groups that wait for another one to prove them
   std::vector<Group> groups, all;          // all: with those that wait
   while (lights == 0 || groups.size() < lights) {
     const Members free = unexplained(items, frames, all);
     std::size_t least = std::max<std::size_t>(2, std::min(kLeastFrames, frames.size()));
-    if (lights == 0 && !groups.empty()) least = std::max(kLeastFrames, (framesOf(items, free) + 1) / 2);
+    if (lights == 0 && !groups.empty()) least = std::max(kLeastFrames, (framesOf(items.here, free) + 1) / 2);
     const std::optional<Group> group = bestGroup(items, free, least, options);
     if (!group) break;
     all.push_back(*group);
     settle(items, frames, all);
-    if (lights > 0 || groups.empty() || proven(items, all, groups.size()))
+    if (lights > 0 || groups.empty() || proven(items.here, all, groups.size()))
       groups = all;
     else if (all.size() - groups.size() > kMostWaiting)
       break;
@@ -382,8 +408,9 @@ std::vector<std::string> numberedNames(std::size_t count) {
 
 /// Gives every highlight the name of its group, unless it also contains the mirror point of another light that has no
 /// highlight of its own in that frame: it then shows both.
-void nameMembers(std::vector<TrackedFrame>& frames, const std::vector<Item>& items, const std::vector<Group>& groups,
+void nameMembers(std::vector<TrackedFrame>& frames, const Items& all, const std::vector<Group>& groups,
                  const std::vector<std::string>& names) {
+  const std::vector<Item>& items = all.here;
   std::map<std::size_t, std::set<std::size_t>> shown;  // groups that have a highlight of their own in a frame
   for (std::size_t g = 0; g < groups.size(); ++g)
     for (const std::size_t k : groups[g].members) shown[items[k].frame].insert(g);
@@ -398,7 +425,7 @@ void nameMembers(std::vector<TrackedFrame>& frames, const std::vector<Item>& ite
       bool merged = false;
       for (std::size_t o = 0; o < groups.size() && !merged; ++o) {
         if (o == g || shown[items[k].frame].count(o) || !mayBeOn(frame, names[o])) continue;
-        const std::optional<Pixel> by = toMirrorPoint(items[k], groups[o].light);
+        const std::optional<Pixel> by = toMirrorPoint(all.of(groups[o])[k], groups[o].light);
         merged = by && h.contour.points.size() >= 3 && contains(h.contour, h.peak + *by);
       }
       if (!merged) h.light = names[g];
@@ -422,18 +449,21 @@ int assignLights(std::vector<TrackedFrame>& frames, const std::function<std::sha
   }
 
   // Frames with one light vote too: they give the others their names.
-  std::vector<Item> items;
+  Items items;
   for (std::size_t f = 0; f < frames.size(); ++f) {
     const std::shared_ptr<const Surface> surface = frames[f].highlights.empty() ? nullptr : surfaceOf(f);
     for (std::size_t i = 0; surface && i < frames[f].highlights.size(); ++i)
-      if (std::optional<Item> item = itemOf(frames[f], *surface, f, i, options.inlierPx)) items.push_back(*item);
+      if (const std::optional<Item> item = itemOf(frames[f], *surface, f, i, options.inlierPx)) {
+        items.here.push_back(*item);
+        if (frames[f].elsewhereFromHere) items.there.push_back(carriedItem(*item, *frames[f].elsewhereFromHere));
+      }
   }
   const std::vector<Group> groups = findGroups(items, frames, ids.size(), options);
   if (!stated && groups.size() < 2) {
     for (TrackedFrame& frame : frames) nameAllOf(frame, "light");
     return 0;
   }
-  nameMembers(frames, items, groups, stated ? namesFor(frames, items, groups, ids) : numberedNames(groups.size()));
+  nameMembers(frames, items, groups, stated ? namesFor(frames, items.here, groups, ids) : numberedNames(groups.size()));
   for (TrackedFrame& frame : frames)
     if (frame.lightsOn.size() == 1) nameAllOf(frame, frame.lightsOn.front());
   return static_cast<int>(groups.size());

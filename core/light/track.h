@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <Eigen/Geometry>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +19,8 @@ struct TrackedFrame {
   Camera camera;
   std::vector<std::string> lightsOn;  ///< empty = not stated
   std::vector<Highlight> highlights;  ///< a light that one of them already has is kept, and names its group
+  /// To other coordinates in which a light may stand still, too: to those of the camera, or back. All frames have it or none.
+  std::optional<Eigen::Isometry3d> elsewhereFromHere{};
 };
 
 struct TrackOptions {
@@ -33,7 +37,8 @@ struct TrackOptions {
 /// mirror point (one Newton step on the surface around its peak), and the candidate with most votes (a truncated sum of squares)
 /// becomes a group. When all lights are found, every highlight goes to the light whose mirror point it contains, the nearest
 /// where several do, and the lights are triangulated again, until nothing changes. A light may own several highlights of a frame
-/// (concave surfaces). A highlight that contains the mirror points of two lights is of both if the other light has no highlight
+/// (concave surfaces). Where frames have other coordinates, a light may stand still there: more highlights must say so than for one
+/// that stands still here. A highlight that contains the mirror points of two lights is of both if the other light has no highlight
 /// of its own in that frame; it belongs to neither and keeps "".
 ///
 /// Groups are as many as the frames' `lightsOn` name. They get the names that agree best with the frames where each is on, and

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/base/number_text.h"
+#include "core/geometry/transforms.h"
 #include "core/light/estimate.h"
 #include "core/model/models.h"
 #include "core/model/plausible.h"
@@ -32,12 +33,13 @@ class PatchesOfViews {
     std::map<std::pair<int, std::string>, int> strengths;
     for (const TrainingView& v : views) {
       if (!v.seen || !v.pixels) continue;
+      const bool carried = v.known || !isIdentity(v.fromScene);
+      if (carried) carried_.push_back(carriedBy(*v.pixels, v.fromScene));
       if (v.known) {
         const int own = static_cast<int>(strengths.size());
-        carried_.push_back(carriedBy(*v.pixels, v.fromScene));
         carried_.back().frame = strengths.try_emplace({v.frame, v.highlight.light}, own).first->second;
       }
-      pointers_.push_back(v.known ? &carried_.back() : v.pixels.get());
+      pointers_.push_back(carried ? &carried_.back() : v.pixels.get());
     }
   }
   PatchesOfViews(const PatchesOfViews&) = delete;

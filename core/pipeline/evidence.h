@@ -83,10 +83,11 @@ bool lightsNeedAllFrames(const Scene& scene);
 /// @param evidence     one per frame; changed in place
 /// @param surfaceOf    of a frame; null if it has none
 /// @param detectAgain  evidence of a frame with its lights kept apart; called from several threads
+/// @param elsewhereFromScene  of each frame, to coordinates in which lights may stand still as well; empty = there are none
 /// Throws Stopped.
 void assignSeveralLights(const Scene& scene, std::vector<FrameEvidence>& evidence,
                          const std::function<std::shared_ptr<const Surface>(int frame)>& surfaceOf,
                          const std::function<FrameEvidence(int frame, const SeparateLights&)>& detectAgain,
-                         const ProgressFn& progress);
+                         const std::vector<Eigen::Isometry3d>& elsewhereFromScene, const ProgressFn& progress);
 
 }  // namespace glint

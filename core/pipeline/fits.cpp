@@ -13,6 +13,7 @@
 #include "core/base/words.h"
 #include "core/model/models.h"
 #include "core/model/pixel_evidence.h"
+#include "core/pipeline/carried.h"
 #include "core/pipeline/fit_engine.h"
 #include "core/pipeline/lobe_stage.h"
 
@@ -133,8 +134,8 @@ std::string switchedRemark(const Inspection& r, const ModelFit& fit,
       ++on;
       continue;
     }
-    const std::shared_ptr<const Surface> surface = surfaceOf(e.frame);
-    off += surface && brightestPointsFor(*surface, frames[std::size_t(e.frame)].camera, *fit.lightEstimate, r.request.settings);
+    const std::shared_ptr<const Surface> surface = carried(surfaceOf(e.frame), r.lightFromScene(e.frame, fit.light));
+    off += surface && brightestPointsFor(*surface, r.cameraFor(e.frame, fit.light), *fit.lightEstimate, r.request.settings);
   }
   std::string text;
   for (const std::string& light : untrained) text += (text.empty() ? "" : ", ") + light;

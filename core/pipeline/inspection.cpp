@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/pipeline/carried.h"
 #include "core/pipeline/corrected_depth.h"
 #include "core/pipeline/known_lamps.h"
 #include "core/scene/frame_name.h"
@@ -49,6 +50,16 @@ std::vector<TrainingView> Inspection::viewsOf(const FitKey& key, bool asGiven) c
   return lamp ? pooledViews(own, *lamp) : own;
 }
 
+Eigen::Isometry3d Inspection::lightFromScene(int frame, const std::string& light) const {
+  if (!lightFrame.elsewhere.count(light)) return Eigen::Isometry3d::Identity();
+  const Eigen::Isometry3d& camFromWorld = world->frames[static_cast<std::size_t>(frame)].camera.camFromWorld;
+  return lightFrame.frame == LightFrame::World ? camFromWorld : camFromWorld.inverse();
+}
+
+Camera Inspection::cameraFor(int frame, const std::string& light) const {
+  return carried(scene->frames[static_cast<std::size_t>(frame)].camera, lightFromScene(frame, light));
+}
+
 const FrameEvidence* Inspection::evidenceOf(int frame, const StageInputs& from) const {
   if (!inputs.same(Stage::Evidence, from)) return nullptr;
   const FrameEvidence& e = evidence[static_cast<std::size_t>(frame)];
@@ -87,8 +98,8 @@ const Failure* Inspection::lightFailureFor(int frame, const std::string& light) 
   return found != lights.end() && !found->second ? &found->second.failure() : nullptr;
 }
 
-Outcome<std::shared_ptr<const Surface>> surfaceFor(const Inspection& inspection, int frame, const std::string& light) {
-  if (!inspection.surfaces) return Failure{Reason::NoSurface, ""};
+namespace {
+Outcome<std::shared_ptr<const Surface>> surfaceInScene(const Inspection& inspection, int frame, const std::string& light) {
   const MeshPolicy policy = meshPolicy(inspection.request.settings);
   const FitKey key = inspection.keyFor(frame, light);
   const auto found = inspection.corrections.find(key);
@@ -97,6 +108,46 @@ Outcome<std::shared_ptr<const Surface>> surfaceFor(const Inspection& inspection,
   if (found->second.depth && f.surface.empty() && inspection.correctedDepthMaps)
     return inspection.correctedDepthMaps->surfaceOf(f, policy, key, *found->second.depth);
   return correctedSurface(*inspection.scene, *inspection.surfaces, frame, found->second, policy);
+}
+}  // namespace
+
+Outcome<std::shared_ptr<const Surface>> surfaceFor(const Inspection& inspection, int frame, const std::string& light) {
+  if (!inspection.surfaces) return Failure{Reason::NoSurface, ""};
+  Outcome<std::shared_ptr<const Surface>> found = surfaceInScene(inspection, frame, light);
+  if (!found || !inspection.lightFrame.elsewhere.count(light)) return found;
+  return carried(*std::move(found), inspection.lightFromScene(frame, light));
+}
+
+TrainingView trainingViewIn(const Inspection& inspection, const FrameEvidence& evidence, int highlight,
+                            std::shared_ptr<const Surface> surface, CutUse cut) {
+  const Camera& camera = inspection.scene->frames[static_cast<std::size_t>(evidence.frame)].camera;
+  const TrainingView view = trainingView(evidence, highlight, camera, std::move(surface), cut);
+  TrainingView there = carried(view, inspection.lightFromScene(evidence.frame, view.highlight.light));
+  there.known = knownLamp(*inspection.scene, view.highlight.light);
+  return there;
+}
+
+std::shared_ptr<const Inspection> inSceneAt(std::shared_ptr<const Inspection> inspection, int frame) {
+  if (!inspection || inspection->lightFrame.elsewhere.empty()) return inspection;
+  auto there = std::make_shared<Inspection>(*inspection);
+  frame = std::max(frame, 0);  // where none is chosen, lights are where the first one has them
+  const auto back = [&](int at, const std::string& light) { return inspection->lightFromScene(at, light).inverse(); };
+  there->lightFrame.elsewhere.clear();  // it is what everything else says from here on
+  for (TrainingView& v : there->views) v = carried(v, back(v.frame, v.highlight.light));
+  for (auto& [index, v] : there->viewsAsGiven) v = carried(v, back(v.frame, v.highlight.light));
+  for (auto& [key, light] : there->lights)
+    if (light && inspection->lightFrame.elsewhere.count(key.light)) light = carried(*std::move(light), back(frame, key.light));
+  for (auto& [name, result] : there->models) {
+    for (FrameComparison& c : result.frames) carry(c.prediction, back(c.frame, c.light));
+    for (ModelResult::Fit& fit : result.fits)
+      if (fit.fit && inspection->lightFrame.elsewhere.count(fit.light))
+        fit.fit = carried(*std::move(fit.fit), back(frame, fit.light));
+  }
+  return there;
+}
+
+std::shared_ptr<const Inspection> inSceneAt(const Inspection& inspection, int frame) {
+  return inSceneAt(std::shared_ptr<const Inspection>(std::shared_ptr<const Inspection>(), &inspection), frame);
 }
 
 std::vector<std::pair<std::string, const Outcome<LightEstimate>*>> Inspection::lightsFor(int frame) const {

@@ -112,6 +112,11 @@ struct Inspection {
   /// (core/pipeline/known_lamps.h).
   /// @param asGiven  on the surfaces as given, see viewAsGiven()
   std::vector<TrainingView> viewsOf(const FitKey& key, bool asGiven = false) const;
+  /// From the coordinates of `scene` to those in which a light stands still, in a frame: the identity, but where the light stands
+  /// elsewhere (LightFrameChoice::elsewhere). Its views, estimates, fits and predictions are there.
+  Eigen::Isometry3d lightFromScene(int frame, const std::string& light) const;
+  /// A frame's camera in the coordinates of a light, as surfaceFor() has its surface.
+  Camera cameraFor(int frame, const std::string& light) const;
   /// The evidence of a frame, gathered from these inputs of Stage::Evidence; null if it is of others, or was not gathered.
   const FrameEvidence* evidenceOf(int frame, const StageInputs& from) const;
   /// What a later run takes its evidence and lobes from, and computes everything else anew.
@@ -133,10 +138,21 @@ struct Inspection {
 };
 
 /// The surface that predictions of a light in a frame use: the frame's own, corrected where the light's contours correct it
-/// (light.smooth_mesh, light.refine_depth, light.refine_normals). Thread-safe. The failures of correctedSurface(); NoSurface
-/// without a cache.
+/// (light.smooth_mesh, light.refine_depth, light.refine_normals), in the coordinates of the light. Thread-safe. The failures of
+/// correctedSurface(); NoSurface without a cache.
 /// @param light  id.
 Outcome<std::shared_ptr<const Surface>> surfaceFor(const Inspection& inspection, int frame, const std::string& light);
+
+/// A highlight of a frame as evidence of its light, in the coordinates of the light. @param surface  of the frame, in the scene's
+TrainingView trainingViewIn(const Inspection& inspection, const FrameEvidence& evidence, int highlight,
+                            std::shared_ptr<const Surface> surface, CutUse cut);
+
+/// The inspection with everything of one frame in the coordinates of its scene: lights that stand elsewhere are carried to where
+/// they are in that frame, with their fits, whose uncertainty is left out; views and predictions are where their frames have them. For
+/// what is drawn or asked of a single frame. The inspection itself where no light stands elsewhere.
+std::shared_ptr<const Inspection> inSceneAt(std::shared_ptr<const Inspection> inspection, int frame);
+/// The same of an inspection that somebody else holds, and outlives the answer.
+std::shared_ptr<const Inspection> inSceneAt(const Inspection& inspection, int frame);
 
 /// The answer to a single question for everything, see Pipeline (core/pipeline/pipeline.h), with its failures.
 /// @param previous  result of an earlier run on the same scene: stages whose inputs did not change are taken from it.

@@ -8,11 +8,12 @@
 
 #include "core/base/number_text.h"
 #include "core/base/numeric.h"
+#include "core/geometry/transforms.h"
 #include "core/light/estimate.h"
 #include "core/model/models.h"
 #include "core/model/plausible.h"
+#include "core/pipeline/carried.h"
 #include "core/pipeline/training.h"
-#include "core/surface/posed_surface.h"
 
 namespace glint {
 namespace {
@@ -114,15 +115,9 @@ bool shareMaterial(const KnownLamp& a, const KnownLamp& b) {
 TrainingView carriedTo(const TrainingView& view, const KnownLamp& lamp, const Eigen::Vector3d& pivot) {
   require(view.known.has_value(), "carriedTo: a view of a known lamp");
   const Eigen::Isometry3d by = carriage(view.known->lamp, lamp.lamp, pivot);
-  TrainingView there = view;
+  TrainingView there = view.surface ? carried(view, by) : view;
   there.known = lamp;
-  if (by.matrix() == Eigen::Isometry3d::Identity().matrix() || !view.surface) return there;
-  Camera camera = view.camera;
-  camera.camFromWorld = camera.camFromWorld * by.inverse();
-  there = seenAgain(there, camera, movedTo(by * poseOf(*view.surface), view.surface));
-  there.levels = view.levels;
-  there.pixels = view.pixels;
-  there.fromScene = by * view.fromScene;
+  if (!isIdentity(by)) there.canonical.reset();  // it was found under the other lamp
   return there;
 }
 

@@ -11,6 +11,7 @@
 #include "core/base/evenly.h"
 #include "core/base/number_text.h"
 #include "core/light/shared_lamp.h"
+#include "core/pipeline/carried.h"
 #include "core/pipeline/known_lamps.h"
 #include "core/surface/brightest_point.h"
 #include "core/surface/mesh_policy.h"
@@ -19,6 +20,7 @@ namespace glint {
 namespace {
 
 constexpr std::size_t kMostViews = 12;      // more do not make the answer surer
+constexpr std::size_t kMostDepthMaps = 4;   // of frames that have their own: they are read here and again with the views
 constexpr std::size_t kMostHighlights = 6;  // of a frame: more are texture, and the lamp's is among the largest
 constexpr double kPeaksExplained = 0.25;    // of the contours' radius: what a lamp with a size and grazing views leave of peaks
 constexpr double kLessThanWorld = 1.0 / 3;  // of what the world leaves: a wrong frame leaves tens of percent of the radius
@@ -38,8 +40,6 @@ struct PeakView {
 ReflectedRay turned(const Eigen::Isometry3d& to, const ReflectedRay& ray) {
   return {to * ray.origin, to.linear() * ray.direction, to.linear() * ray.normal};
 }
-
-Light carried(const Eigen::Isometry3d& to, const Light& light) { return Light::homogeneous(to.matrix() * light.homogeneous()); }
 
 /// The largest highlights of one light in a frame.
 PeakView peakViewOf(const Scene& scene, const FrameEvidence& evidence, const std::string& light,
@@ -90,7 +90,7 @@ std::optional<double> residualPx(const std::vector<PeakView>& views, LightFrame 
   if (!lamp) return std::nullopt;
   std::vector<double> missed;
   for (const PeakView& v : views)
-    missed.push_back(missedPx(v, carried(fromWorld(v).inverse(), lamp->light)).value_or(std::numeric_limits<double>::infinity()));
+    missed.push_back(missedPx(v, carried(lamp->light, fromWorld(v).inverse())).value_or(std::numeric_limits<double>::infinity()));
   std::sort(missed.begin(), missed.end());
   const std::size_t counted = std::max<std::size_t>(2, (3 * missed.size() + 3) / 4);
   double sum = 0;
@@ -129,16 +129,44 @@ Verdict verdictOf(const LightFrameChoice::Residuals& r, double radiusPx, bool st
           "no lamp explains the peaks, neither one that stands still nor one that moves with the camera: " + both};
 }
 
-}  // namespace
+std::string listed(const std::set<std::string>& lights) {
+  std::string text;
+  for (const std::string& light : lights) text += (text.empty() ? "" : ", ") + light;
+  return text;
+}
 
-LightFrameChoice chooseLightFrame(const Scene& scene, const SurfaceCache& surfaces, const std::vector<int>& training,
-                                  const std::vector<FrameEvidence>& evidence, const Settings& settings) {
-  LightFrameChoice choice;
+/// @param wanted      light.frame
+/// @param known       where lamps stand that the scene states: they stay there. @param knownBoth  they are of both kinds
+void decide(LightFrameChoice& choice, const std::string& wanted, const std::set<std::string>& still,
+            const std::set<std::string>& moving, std::optional<LightFrame> known, bool knownBoth) {
+  const bool most = !moving.empty() && moving.size() >= still.size();
+  const LightFrame best = known && !knownBoth ? *known : most ? LightFrame::Camera : LightFrame::World;
+  choice.frame = wanted == "auto" ? best : wanted == "camera" ? LightFrame::Camera : LightFrame::World;
+  const bool inCamera = choice.frame == LightFrame::Camera;
+  const std::set<std::string>& others = inCamera ? still : moving;
+  const bool both = !moving.empty() && !still.empty();
+  if (wanted == "auto" && both && !knownBoth) {
+    choice.elsewhere = others;
+    choice.reason = "Lamps of both kinds are on: " + listed(moving) + " with the camera, " + listed(still) + " in the world";
+  } else if (both) {
+    choice.doubt = formatted(
+        "some lamps stand still (%zu) and others move with the camera (%zu): one light is fitted to those that %s (light.frame)",
+        still.size(), moving.size(), inCamera ? "move with the camera" : "stand still");
+  } else if (wanted != "auto" && !others.empty()) {
+    choice.doubt = "light.frame=" + wanted + ", but " + choice.reason;
+  }
+}
+
+/// By label, of lights that are not known.
+std::map<std::string, std::vector<PeakView>> peakViews(const Scene& scene, const SurfaceCache& surfaces,
+                                                       const std::vector<int>& training,
+                                                       const std::vector<FrameEvidence>& evidence, const Settings& settings) {
+  const auto hasOwnDepth = [&](int frame) { return scene.frames[static_cast<std::size_t>(frame)].surface.empty(); };
+  const bool depthAlone = std::all_of(training.begin(), training.end(), hasOwnDepth);
   std::map<std::string, std::vector<PeakView>> views;
-  for (const int frame : evenly(training, kMostViews)) {
+  for (const int frame : evenly(training, depthAlone ? kMostDepthMaps : kMostViews)) {
     const FrameEvidence& e = evidence[static_cast<std::size_t>(frame)];
-    // A depth map of the frame's own would be read here and again with the views.
-    if (e.frame < 0 || e.highlights.empty() || scene.frames[static_cast<std::size_t>(frame)].surface.empty()) continue;
+    if (e.frame < 0 || e.highlights.empty() || (!depthAlone && hasOwnDepth(frame))) continue;
     const Outcome<std::shared_ptr<const Surface>> surface = surfaces.surfaceOf(frame, meshPolicy(settings));
     if (!surface) continue;
     std::set<std::string> labels;
@@ -147,12 +175,27 @@ LightFrameChoice chooseLightFrame(const Scene& scene, const SurfaceCache& surfac
       if (PeakView view = peakViewOf(scene, e, label, *surface); !view.peaks.empty() && !knownLamp(scene, label))
         views[label].push_back(std::move(view));
   }
-  int still = 0, moving = 0;  // lights of which it is told
+  return views;
+}
+
+}  // namespace
+
+LightFrame LightFrameChoice::frameOf(const std::string& light) const {
+  if (!elsewhere.count(light)) return frame;
+  return frame == LightFrame::World ? LightFrame::Camera : LightFrame::World;
+}
+
+LightFrameChoice chooseLightFrame(const Scene& scene, const SurfaceCache& surfaces, const std::vector<int>& training,
+                                  const std::vector<FrameEvidence>& evidence, const Settings& settings) {
+  LightFrameChoice choice;
+  const std::map<std::string, std::vector<PeakView>> views = peakViews(scene, surfaces, training, evidence, settings);
+  std::set<std::string> still, moving;  // lights of which it is told
   for (const TrueLight& light : scene.lights)
-    if (light.known) ++(light.frame == LightFrame::Camera ? moving : still);
-  const bool stated = moving + still > 0;
+    if (light.known) (light.frame == LightFrame::Camera ? moving : still).insert(light.id);
+  const bool stated = !moving.empty() || !still.empty(), statedBoth = !moving.empty() && !still.empty();
   if (stated)
-    choice.reason = std::string("the scene states its lamps: they ") + (moving > 0 ? "move with the camera" : "stand still");
+    choice.reason = std::string("the scene states its lamps: they ") + (moving.empty() ? "stand still" : "move with the camera");
+  const bool statedMove = stated && !moving.empty();
   for (const auto& [label, list] : views) {
     double radius = 0;
     for (const PeakView& v : list) radius += v.radiusPx / double(list.size());
@@ -162,21 +205,13 @@ LightFrameChoice chooseLightFrame(const Scene& scene, const SurfaceCache& surfac
       return v.camera->camFromWorld.isApprox(first.camera->camFromWorld);
     });
     const Verdict verdict = verdictOf(r, radius, stays);
-    if (verdict.told == Verdict::Told::Yes) ++(verdict.frame == LightFrame::Camera ? moving : still);
+    if (verdict.told == Verdict::Told::Yes) (verdict.frame == LightFrame::Camera ? moving : still).insert(label);
     if (choice.reason.empty() || verdict.frame == LightFrame::Camera) choice.reason = verdict.reason;
     if (verdict.told == Verdict::Told::Either && choice.doubt.empty()) choice.doubt = verdict.reason;
   }
   // The setting says where unknown lights stand.
-  const std::string wanted = stated && views.empty() ? "auto" : settings.text("light.frame");
-  const bool carried = moving > 0 && moving >= still;
-  choice.frame = wanted == "camera" || (wanted == "auto" && carried) ? LightFrame::Camera : LightFrame::World;
-  const bool inCamera = choice.frame == LightFrame::Camera;
-  if (moving > 0 && still > 0)
-    choice.doubt = formatted(
-        "some lamps stand still (%d) and others move with the camera (%d): one light is fitted to those that %s (light.frame)",
-        still, moving, inCamera ? "move with the camera" : "stand still");
-  else if (wanted != "auto" && (inCamera ? still : moving) > 0)
-    choice.doubt = "light.frame=" + wanted + ", but " + choice.reason;
+  decide(choice, stated && views.empty() ? "auto" : settings.text("light.frame"), still, moving,
+         stated ? std::optional(statedMove ? LightFrame::Camera : LightFrame::World) : std::nullopt, statedBoth);
   return choice;
 }
 

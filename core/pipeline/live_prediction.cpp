@@ -12,6 +12,7 @@
 #include "core/geometry/light.h"
 #include "core/geometry/polyline.h"
 #include "core/model/plausible.h"
+#include "core/pipeline/carried.h"
 #include "core/pipeline/fits.h"
 #include "core/pipeline/pipeline.h"
 #include "core/reflectance/lobe.h"
@@ -114,11 +115,16 @@ Outcome<LiveAnswer> LivePredictor::predict(const std::string& id, const Eigen::I
   Eigen::Isometry3d place = worldFromObject.value_or(Eigen::Isometry3d::Identity());
   if (!worldFromObject && answer.frame)
     place = inspection_.world->frames[static_cast<std::size_t>(*answer.frame)].worldFromObject;
-  answer.camera.camFromWorld = cameraFromWorld;
-  if (inspection_.lightFrame.frame == LightFrame::Camera) {
-    place = cameraFromWorld * place;
-    answer.camera.camFromWorld.setIdentity();
-  }
+  const auto fromWorld = [&](LightFrame frame) {
+    return frame == LightFrame::Camera ? cameraFromWorld : Eigen::Isometry3d::Identity();
+  };
+  const auto cameraIn = [&](LightFrame frame) {
+    Camera there = answer.camera;
+    there.camFromWorld = frame == LightFrame::Camera ? Eigen::Isometry3d::Identity() : cameraFromWorld;
+    return there;
+  };
+  const LightFrame of = inspection_.lightFrame.frame;
+  answer.camera = cameraIn(of);
   const std::optional<int> frame = answer.frame ? answer.frame : anyFrameOfSurface_;
   for (const std::string& name : inspection_.request.models) {
     const HighlightModel& model = modelByName(name);
@@ -126,11 +132,14 @@ Outcome<LiveAnswer> LivePredictor::predict(const std::string& id, const Eigen::I
       if (fit.surface && frame && *fit.surface != inspection_.surfaces->keyOf(*frame)) continue;
       if (!isPredicted(scene, inspection_.request, answer.frame, fit.light)) continue;
       std::shared_ptr<const Surface> surface = surfaceOfModel(inspection_, model, frame.value_or(-1), fit.light);
+      const LightFrame own = inspection_.lightFrame.frameOf(fit.light);
+      const Camera eye = cameraIn(own);
       if (surface && !scene.frames[static_cast<std::size_t>(*frame)].surface.empty())
-        surface = movedTo(place, std::move(surface));
-      Prediction prediction = predictionFor(inspection_, fit, model, frame.value_or(-1), answer.camera, surface.get());
+        surface = movedTo(fromWorld(own) * place, std::move(surface));
+      Prediction prediction = predictionFor(inspection_, fit, model, frame.value_or(-1), eye, surface.get());
       if (const auto band = bands_.find({name, fit.key()}); band != bands_.end())
-        for (PredictedHighlight& h : prediction.editable()) h.sigmaPx = band->second->sigmaPx(h, answer.camera, surface.get());
+        for (PredictedHighlight& h : prediction.editable()) h.sigmaPx = band->second->sigmaPx(h, eye, surface.get());
+      if (own != of) carry(prediction, fromWorld(of) * fromWorld(own).inverse());
       answer.highlights.push_back({name, fit.light, std::move(prediction), fit.fit ? fit.fit->poor : ""});
     }
   }

@@ -10,10 +10,12 @@
 #include "core/base/evenly.h"
 #include "core/base/number_text.h"
 #include "core/base/progress.h"
+#include "core/geometry/transforms.h"
 #include "core/model/model.h"
 #include "core/model/models.h"
 #include "core/model/pixel_evidence.h"
 #include "core/model/reflectance_settings.h"
+#include "core/pipeline/carried.h"
 #include "core/pipeline/depth_motion.h"
 #include "core/pipeline/evidence.h"
 #include "core/pipeline/hand_edits.h"
@@ -90,7 +92,8 @@ std::optional<LobeModel> startOf(const std::vector<TrainingView>& views, const L
 bool showCodes(const Inspection& r, const std::vector<TrainingView>& views) {
   return std::all_of(views.begin(), views.end(), [&](const TrainingView& v) {
     const FrameEvidence& e = r.evidence[static_cast<std::size_t>(v.frame)];
-    return !e.diffuse && e.separated.empty() && !(r.scene->frames[static_cast<std::size_t>(v.frame)].response.vignetting() > 0);
+    return isIdentity(r.lightFromScene(v.frame, v.highlight.light)) && !e.diffuse && e.separated.empty() &&
+           !(r.scene->frames[static_cast<std::size_t>(v.frame)].response.vignetting() > 0);
   });
 }
 
@@ -167,6 +170,12 @@ void shareLobe(Inspection& r, const FitKey& of, const std::vector<FitKey>& share
   }
 }
 
+/// The lobe of a fit in the scene's coordinates of a frame, in which pixels are.
+LobeModel lobeInScene(const Inspection& r, int frame, const std::string& light, LobeModel model) {
+  model.lamp = carried(model.lamp, r.lightFromScene(frame, light).inverse());
+  return model;
+}
+
 /// Takes the light of the other lamps off the pixels of each, where their lobes are known and reach there.
 /// @return  whose pixels changed
 std::set<FitKey> takeOtherLampsOff(Inspection& r, Groups& groups) {
@@ -179,10 +188,10 @@ std::set<FitKey> takeOtherLampsOff(Inspection& r, Groups& groups) {
     std::vector<LampPatches> lamps;
     for (const auto& [key, views] : own) {
       const PixelFit& fit = **r.pixelFits.at(key);
-      lamps.push_back({{}, fit.model, fit.background});
+      lamps.push_back({{}, lobeInScene(r, frame, key.light, fit.model), fit.background});
       for (const TrainingView* v : views) lamps.back().patches.push_back(v->pixels.get());
     }
-    const TrainingView& any = *own.begin()->second.front();
+    const TrainingView any = carried(*own.begin()->second.front(), own.begin()->second.front()->fromScene.inverse());
     const std::vector<std::vector<LampLight>> others = lightOfOthers(lamps, *any.surface, any.camera);
     std::size_t lamp = 0;
     for (const auto& [key, views] : own) {
@@ -260,8 +269,11 @@ std::map<std::string, std::vector<LampLight>> otherLampsIn(const Inspection& lob
     if (h.light.empty() || fit == lobes.pixelFits.end() || !fit->second) continue;
     Outcome<PixelPatch> patch = pixelPatch(pixels, camera, surface, detected.frame, h, ofOthers(detected, h.light));
     if (!patch) continue;
-    LampPatches& lamp =
-        lamps.try_emplace(h.light, LampPatches{{}, (*fit->second)->model, (*fit->second)->background}).first->second;
+    LampPatches& lamp = lamps
+                            .try_emplace(h.light, LampPatches{{},
+                                                              lobeInScene(lobes, detected.frame, h.light, (*fit->second)->model),
+                                                              (*fit->second)->background})
+                            .first->second;
     lamp.patches.push_back(&patches.emplace_back(*std::move(patch)));
   }
   std::map<std::string, std::vector<LampLight>> others;
@@ -368,9 +380,8 @@ void fitLobes(Inspection& r, const SurfaceOfFrame& surfaceOf, bool together, con
               isIgnored(r.request.whatIf, f, highlight))
             continue;
           const auto use = cut.find(r.keyFor(f, highlight.light));
-          TrainingView view = trainingView(evidence, h, frame.camera, surface, use == cut.end() ? CutUse::None : use->second);
+          TrainingView view = trainingViewIn(r, evidence, h, surface, use == cut.end() ? CutUse::None : use->second);
           if (!view.seen) continue;
-          view.known = knownLamp(*r.scene, highlight.light);
           Outcome<PixelPatch> patch = pixelPatch(*pixels, frame.camera, *surface, f, atOwnLevel(highlight, evidence),
                                                  ofOthers(evidence, highlight.light));
           if (!patch) continue;
@@ -425,9 +436,9 @@ std::optional<FrameEvidence> contouredAgain(const Inspection& lobes, const Scene
     const PixelFit& lobe = **fit->second;
     std::vector<Highlight> found;
     for (const std::size_t h : indices) found.push_back(detected.highlights[h]);
-    Outcome<std::vector<Highlight>> traced =
-        contourWithLobe(*pixels, frame.camera, *surface, f, found, ofOthers(detected, light), lobe.model, lobe.background,
-                        detectOptionsFor(frame, in.source, in.detect), others[light]);
+    Outcome<std::vector<Highlight>> traced = contourWithLobe(*pixels, frame.camera, *surface, f, found, ofOthers(detected, light),
+                                                             lobeInScene(lobes, f, light, lobe.model), lobe.background,
+                                                             detectOptionsFor(frame, in.source, in.detect), others[light]);
     if (!traced) continue;
     if (!again) again = detected;
     for (std::size_t k = 0; k < indices.size(); ++k) again->highlights[indices[k]] = std::move((*traced)[k]);

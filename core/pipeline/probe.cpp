@@ -3,6 +3,7 @@
 
 #include "core/geometry/camera.h"
 #include "core/geometry/light.h"
+#include "core/pipeline/carried.h"
 #include "core/surface/mesh_policy.h"
 
 namespace glint {
@@ -26,7 +27,8 @@ Outcome<PixelProbe> probePixel(const Inspection& inspection, int frame, const Pi
   const Eigen::Vector3d toCamera = (eye - probe.point.position).normalized();
   for (const auto& [id, estimate] : inspection.lightsFor(frame)) {
     if (!*estimate) continue;
-    const Eigen::Vector3d toLight = (*estimate)->light.directionFrom(probe.point.position);
+    const Light light = carried((*estimate)->light, inspection.lightFromScene(frame, id).inverse());
+    const Eigen::Vector3d toLight = light.directionFrom(probe.point.position);
     PixelProbe::Incidence incidence{id, {}};
     if (probe.point.normal.dot(toLight) > 0) incidence.alpha = incidentAngle(probe.point.normal, toLight, toCamera);
     probe.lights.push_back(incidence);

@@ -8,12 +8,12 @@
 #include "core/light/contour_evidence.h"
 #include "core/model/plausible.h"
 #include "core/model/reflectance_settings.h"
+#include "core/pipeline/carried.h"
 #include "core/pipeline/fit_engine.h"
 #include "core/pipeline/training.h"
 #include "core/reflectance/pixel_patch.h"
 #include "core/reflectance/radiance_field.h"
 #include "core/surface/mesh_policy.h"
-#include "core/surface/posed_surface.h"
 
 namespace glint {
 namespace {
@@ -108,8 +108,7 @@ std::string RefinedNormals::remark() const {
 }
 
 TrainingView onSurface(const TrainingView& view, std::shared_ptr<const Surface> surface) {
-  const bool carried = surface && view.fromScene.matrix() != Eigen::Isometry3d::Identity().matrix();
-  TrainingView other = seenAgain(view, view.camera, carried ? movedTo(view.fromScene * poseOf(*surface), surface) : surface);
+  TrainingView other = seenAgain(view, view.camera, carried(std::move(surface), view.fromScene));
   other.levels = view.levels;
   if (view.pixels && surface) other.pixels = std::make_shared<const PixelPatch>(glint::onSurface(*view.pixels, *surface));
   return other;

@@ -71,7 +71,7 @@ bool lightsNeedAllFrames(const Scene& scene) {
 void assignSeveralLights(const Scene& scene, std::vector<FrameEvidence>& evidence,
                          const std::function<std::shared_ptr<const Surface>(int frame)>& surfaceOf,
                          const std::function<FrameEvidence(int frame, const SeparateLights&)>& detectAgain,
-                         const ProgressFn& progress) {
+                         const std::vector<Eigen::Isometry3d>& elsewhereFromScene, const ProgressFn& progress) {
   const std::size_t n = scene.frames.size();
   const auto open = [](const FrameEvidence& e) {
     return std::any_of(e.highlights.begin(), e.highlights.end(), [](const Highlight& h) { return h.light.empty(); });
@@ -88,7 +88,10 @@ void assignSeveralLights(const Scene& scene, std::vector<FrameEvidence>& evidenc
   }
   const auto assign = [&] {
     std::vector<TrackedFrame> tracked(n);
-    for (std::size_t i = 0; i < n; ++i) tracked[i] = {scene.frames[i].camera, scene.frames[i].lightsOn, evidence[i].highlights};
+    for (std::size_t i = 0; i < n; ++i) {
+      tracked[i] = {scene.frames[i].camera, scene.frames[i].lightsOn, evidence[i].highlights};
+      if (!elsewhereFromScene.empty()) tracked[i].elsewhereFromHere = elsewhereFromScene[i];
+    }
     if (!report(progress, {"assign lights", 0, 0})) throw Stopped{};
     const int groups = assignLights(tracked, [&](std::size_t i) { return surfaceOf(static_cast<int>(i)); });
     for (std::size_t i = 0; i < n; ++i) evidence[i].highlights = std::move(tracked[i].highlights);

@@ -140,7 +140,9 @@ void StageRun::highlights() {
       r_, judged, [this](int frame) { return surfaceOf(frame); }, progress_);
   const LightFrame before = evidenceFrame.value_or(LightFrame::World);
   standInLightFrame();
-  if (together_ && (!missing.empty() || before != r_.lightFrame.frame)) assignSeveralLights();
+  if (!together_ || (missing.empty() && before == r_.lightFrame.frame)) return;
+  assignSeveralLights();
+  standInLightFrame();  // lights that were one before may stand in different coordinates
 }
 
 /// From here on the scene is that in whose coordinates the lights stand still; answers in others do not serve.
@@ -151,7 +153,9 @@ void StageRun::standInLightFrame() {
   for (const int frame : r_.train.frames)
     if (r_.isTraining(frame)) training.push_back(frame);
   r_.lightFrame = chooseLightFrame(*r_.world, *inWorld, training, r_.evidence, r_.request.settings);
-  std::erase_if(known_, [&](const Inspection* k) { return k->lightFrame.frame != r_.lightFrame.frame; });
+  std::erase_if(known_, [&, &now = r_.lightFrame](const Inspection* k) {
+    return k->lightFrame.frame != now.frame || k->lightFrame.elsewhere != now.elsewhere;
+  });
   const auto same = std::find_if(known_.begin(), known_.end(), [&](const Inspection* k) { return k->world == r_.world; });
   if (same != known_.end()) {
     r_.scene = (*same)->scene;
@@ -215,7 +219,20 @@ void StageRun::assignSeveralLights() {
         dropTextures(again, r_.evidence[static_cast<std::size_t>(frame)].textures);
         return again;
       },
-      progress_);
+      elsewhereFromScene(), progress_);
+}
+
+/// Of each frame, to the coordinates in which lights stand still that do not in the scene's; empty where they are not looked for,
+/// or are the same.
+std::vector<Eigen::Isometry3d> StageRun::elsewhereFromScene() const {
+  std::vector<Eigen::Isometry3d> all;
+  if (r_.request.settings.text("light.frame") != "auto") return all;
+  for (const Frame& frame : r_.world->frames) {
+    const Eigen::Isometry3d& camFromWorld = frame.camera.camFromWorld;
+    all.push_back(r_.lightFrame.frame == LightFrame::World ? camFromWorld : camFromWorld.inverse());
+  }
+  const bool still = std::all_of(all.begin(), all.end(), [&](const Eigen::Isometry3d& t) { return t.isApprox(all.front()); });
+  return still ? std::vector<Eigen::Isometry3d>() : all;
 }
 
 /// The user's changes to single highlights and lights come after detection, so that none of them detects anything again.
@@ -260,8 +277,7 @@ void StageRun::brightestPointsAndTangentPlanes() {
       evidence.highlights[h] = withNoise(evidence.highlights[h], q.noisePx, q.seed, frame, evidence.asFound(static_cast<int>(h)));
     for (int h = 0; h < static_cast<int>(evidence.highlights.size()); ++h) {
       const CutUse use = cut.at(r_.keyFor(frame, evidence.highlights[static_cast<std::size_t>(h)].light));
-      r_.views.push_back(trainingView(evidence, h, r_.scene->frames[frame].camera, surfaceOf(frame), use));
-      r_.views.back().known = knownLamp(*r_.scene, r_.views.back().highlight.light);
+      r_.views.push_back(trainingViewIn(r_, evidence, h, surfaceOf(frame), use));
       if (TrainingView& view = r_.views.back(); !view.seen) view.seen = explained(frame, view.seen.failure());
     }
   }
@@ -425,7 +441,7 @@ ModelResult::Fit StageRun::fitOf(const HighlightModel& model, const FitKey& key,
   if (entry.fit && merged && merged->certain) entry.fit = Failure{Reason::NotConverged, merged->text};
   if (!entry.fit) {
     Failure why = entry.fit.failure();
-    if (why.reason == Reason::RankDeficient && r_.lightFrame.frame == LightFrame::Camera)
+    if (why.reason == Reason::RankDeficient && r_.lightFrame.frameOf(key.light) == LightFrame::Camera)
       why.detail += "; the lamp moves with the camera, and in the lamp's coordinates all cameras are one";
     if (together_ && input.views.empty())
       why.detail += "; no training frame shows this light: lamps may be switched between frames";
@@ -517,7 +533,7 @@ void StageRun::predict(const HighlightModel& model, ModelResult& result) {
       [&](int t) {
         const auto [frame, f] = tasks[t];
         const ModelResult::Fit& fit = result.fits[f];
-        const Camera& camera = r_.scene->frames[frame].camera;
+        const Camera camera = r_.cameraFor(frame, fit.light);
         const std::shared_ptr<const Surface> surface = fit.fit ? surfaceOfModel(r_, model, frame, fit.light) : nullptr;
         const std::optional<ModelResult::Fit> there =
             fitAtObservedLevel(fit, model, r_.evidence[frame], camera, surface.get(), r_.request.settings);

@@ -76,6 +76,7 @@ class StageRun {
   void predict(const HighlightModel& model, ModelResult& result);
   void standInLightFrame();
   void assignSeveralLights();
+  std::vector<Eigen::Isometry3d> elsewhereFromScene() const;
   void gather(const std::vector<int>& frames);
   std::vector<int> framesToGather() const;
 

@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 
+#include "core/geometry/transforms.h"
 #include "core/highlight/diffuse.h"
 
 namespace glint {
@@ -171,7 +172,7 @@ Outcome<PixelPatch> pixelPatch(const LinearPixels& pixels, const Camera& camera,
 }
 
 PixelPatch carriedBy(PixelPatch patch, const Eigen::Isometry3d& by) {
-  if (by.matrix() == Eigen::Isometry3d::Identity().matrix()) return patch;
+  if (isIdentity(by)) return patch;
   patch.camera.camFromWorld = patch.camera.camFromWorld * by.inverse();
   for (PixelPatch::Seen& s : patch.seen) {
     s.position = by * s.position;

@@ -97,7 +97,7 @@ void lampJson(const std::optional<Lamp>& lamp, Json& j) {
 
 /// In which coordinates the light stands still, and what it would leave of the training peaks in each.
 void lightFrameJson(const LightFrameChoice& choice, const std::string& light, Json& j) {
-  j["frame"] = nameOf(choice.frame);
+  j["frame"] = nameOf(choice.frameOf(light));
   j["frame_reason"] = choice.reason;
   const auto found = choice.byLight.find(light);
   const auto px = [](const std::optional<double>& v) { return v ? numberOrNull(*v) : Json(nullptr); };

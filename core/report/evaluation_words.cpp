@@ -189,8 +189,9 @@ EvaluationWords evaluationWords(const Inspection& inspection, const ReportContex
     if (!s.answered) words.inShort.push_back(name + " gives no answer: " + sentence(s.reason));
     if (s.poor) words.inShort.push_back(name + " answers poorly: " + sentence(s.reason));
   }
-  if (inspection.lightFrame.frame == LightFrame::Camera)
-    words.inShort.push_back("In the world no lamp stands still: " + sentence(inspection.lightFrame.reason));
+  if (inspection.lightFrame.anyMoves())
+    words.inShort.push_back((inspection.lightFrame.elsewhere.empty() ? "In the world no lamp stands still: " : "") +
+                            sentence(inspection.lightFrame.reason));
   words.inShort.insert(words.inShort.begin(), context.advice.begin(), context.advice.end());
   if (helpWanted && !models.empty() && context.advice.empty())
     words.inShort.push_back("glint diagnose " + (context.input.empty() ? "INPUT" : context.input) +

@@ -103,7 +103,7 @@ LabelSet labelsOf(const Inspection& inspection, const std::string& model, const 
   for (const FrameComparison& c : inspection.models.at(model).frames) {
     if (!wanted.count(c.frame)) continue;
     if (const Failure* const why = c.prediction.failure()) labels.reasons[c.frame] = why->message();
-    const Camera& camera = inspection.scene->frames[static_cast<std::size_t>(c.frame)].camera;
+    const Camera camera = inspection.cameraFor(c.frame, c.light);
     const std::shared_ptr<const Surface> surface =
         c.prediction.highlights().empty() ? nullptr : surfaceOfModel(inspection, m, c.frame, c.light);
     for (const PredictedHighlight& h : c.prediction.highlights()) {

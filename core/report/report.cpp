@@ -21,7 +21,7 @@ std::string cell(double v, const char* format = "%.3f") {
 
 /// Where the lamps stand still, if not in the world.
 std::string carriedLine(const Inspection& inspection) {
-  return inspection.lightFrame.frame == LightFrame::Camera ? inspection.lightFrame.reason + "\n" : std::string();
+  return inspection.lightFrame.anyMoves() ? inspection.lightFrame.reason + "\n" : std::string();
 }
 
 /// What the rows of a table are over, and what the models were made from.

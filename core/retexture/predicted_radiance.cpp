@@ -82,7 +82,7 @@ ShareAt angleShare(const LimitAngleFit& fit, const Light& light, const FallProfi
 /// The highlight of one light, whose prediction has contours.
 std::optional<Failure> addLight(const Inspection& in, int frame, const FrameComparison& predicted, const ModelFit& fit,
                                 const HighlightAppearance& a, PredictedRadiance& sum, const ProgressFn& progress) {
-  const Camera& camera = in.scene->frames[std::size_t(frame)].camera;
+  const Camera camera = in.cameraFor(frame, predicted.light);
   const Outcome<std::shared_ptr<const Surface>> surface = surfaceFor(in, frame, predicted.light);
   if (a.kind != HighlightAppearance::Kind::Contour && !surface) return surface.failure();
   if (a.kind == HighlightAppearance::Kind::Lobe) {

@@ -10,6 +10,7 @@
 #include "core/base/image.h"
 #include "core/base/number_text.h"
 #include "core/base/numeric.h"
+#include "core/pipeline/carried.h"
 #include "core/retexture/pixels.h"
 #include "core/retexture/shading.h"
 #include "core/surface/mesh_policy.h"
@@ -48,10 +49,11 @@ std::vector<Light> lightsFor(const Inspection& in, int frame, const std::string&
     const bool fitted = c.fit >= 0 && c.fit < int(result.fits.size()) && result.fits[std::size_t(c.fit)].fit;
     const std::optional<Light> own = fitted ? result.fits[std::size_t(c.fit)].fit->lightEstimate : std::nullopt;
     const LightEstimate* const estimate = in.lightFor(frame, c.light);
+    const Eigen::Isometry3d back = in.lightFromScene(frame, c.light).inverse();
     if (own)
-      lights.push_back(*own);
+      lights.push_back(carried(*own, back));
     else if (estimate)
-      lights.push_back(estimate->light);
+      lights.push_back(carried(estimate->light, back));
   }
   return lights;
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/geometry/transforms.h"
 #include "core/scene/scene.h"
 
 namespace glint {
@@ -17,7 +18,7 @@ void keepLightsOf(Scene& scene, LightFrame frame) {
 
 const char* nameOf(LightFrame frame) { return frame == LightFrame::World ? "world" : "camera"; }
 
-bool standsStill(const Frame& frame) { return frame.worldFromObject.matrix() == Eigen::Isometry3d::Identity().matrix(); }
+bool standsStill(const Frame& frame) { return isIdentity(frame.worldFromObject); }
 
 bool standsStill(const Scene& scene) {
   return std::all_of(scene.frames.begin(), scene.frames.end(), [](const Frame& f) { return standsStill(f); });

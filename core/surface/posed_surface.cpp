@@ -4,6 +4,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/geometry/transforms.h"
 #include "core/surface/mirror_places.h"
 #include "core/surface/occlusion.h"
 #include "core/surface/part_bounds.h"
@@ -136,7 +137,7 @@ std::shared_ptr<const Surface> movedTo(const Isometry3d& worldFromObject, std::s
   require(surface != nullptr, "movedTo: no surface");
   require(worldFromObject.matrix().allFinite(), "movedTo: a finite pose");
   if (const auto* const moved = dynamic_cast<const PosedSurface*>(surface.get())) surface = moved->shared();
-  if (worldFromObject.matrix() == Isometry3d::Identity().matrix()) return surface;
+  if (isIdentity(worldFromObject)) return surface;
   if (PosedMesh::canMove(*surface)) return std::make_shared<PosedMesh>(std::move(surface), worldFromObject);
   return std::make_shared<PosedSurface>(std::move(surface), worldFromObject);
 }

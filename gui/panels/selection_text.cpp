@@ -100,7 +100,7 @@ NumberGroup trainingView(const TrainingView& view) {
 NumberGroup lightGroup(const std::string& id, const LightEstimate& estimate, const LightFrameChoice& frame) {
   Lines lines;
   addLight(lines, estimate.light);
-  if (frame.frame == LightFrame::Camera) lines.note(QObject::tr("in the camera's frame: %1").arg(toQString(frame.reason)));
+  if (frame.frameOf(id) == LightFrame::Camera) lines.note(QObject::tr("in the camera's frame: %1").arg(toQString(frame.reason)));
   lines.add(QObject::tr("solver"), toQString(estimate.solver));
   lines.add(QObject::tr("limit angle"), estimate.limitAngle * kDegPerRad, "deg");
   lines.add(QObject::tr("condition"), estimate.condition);

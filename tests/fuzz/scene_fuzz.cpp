@@ -21,14 +21,16 @@ constexpr const char* kMesh =
     "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n"
     "property list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
 
-/// Runs `read`; false = refused by an InputError with the file's name.
+/// Runs `read`; false = refused by an InputError with the file's name, or with that of a file that it names.
+/// @param names  whether it may name files that are read with it
 template <class Read>
-bool refusable(const std::string& file, const Read& read) {
+bool refusable(const std::string& file, const Read& read, bool names = false) {
   try {
     read();
     return true;
   } catch (const InputError& e) {
-    checkRefusal(e, file);
+    const std::string other = std::filesystem::path(e.file()).filename().string();
+    checkRefusal(e, names && !other.empty() ? other : file);
     return false;
   }
 }
@@ -48,7 +50,7 @@ const ScratchFolder& scratch() {
 
 bool feedScene(const std::string& bytes) {
   const std::filesystem::path file = scratch().path() / "fed.json";
-  return refusable("fed.json", [&] {
+  const auto read = [&] {
     const Scene scene = readSceneJson(bytes, file, {});
     std::string written;
     try {
@@ -57,7 +59,8 @@ bool feedScene(const std::string& bytes) {
     } catch (const InputError& e) {
       throw Finding{std::string("a scene that was read cannot be written and read again: ") + e.what()};
     }
-  });
+  };
+  return refusable("fed.json", read, /*names=*/true);  // the camera's response may be a file
 }
 
 bool feedSession(const std::string& bytes) {

@@ -10,6 +10,7 @@
 
 #include "core/surface/analytic.h"
 #include "core/surface/brightest_point.h"
+#include "core/surface/posed_surface.h"
 
 namespace glint {
 namespace {
@@ -86,6 +87,37 @@ TEST(AssignLights, StatedNowhereTheHighlightsProveTheLights) {
     for (TrackedFrame& frame : scene.frames) frame.lightsOn.clear();
     EXPECT_EQ(scene.assign(), 2);
     expectToldApart(scene, "noise " + std::to_string(noise));
+  }
+}
+
+/// The right lamp moves with the camera: it stands still in the camera's coordinates, where the left one does not.
+TEST(AssignLights, ALightMayStandStillInOtherCoordinates) {
+  for (const bool fromCamera : {false, true}) {  // which coordinates come first must not matter
+    TwoLights scene(0.2);
+    const Light carried = Light::at({0.3, -0.4, 0.1});
+    for (std::size_t f = 0; f < scene.frames.size(); ++f) {
+      TrackedFrame& frame = scene.frames[f];
+      const Eigen::Isometry3d toWorld = frame.camera.camFromWorld.inverse();
+      const Outcome<std::vector<BrightestPoint>> seen =
+          predictedBrightestPoints(*scene.surface, frame.camera, Light::at(toWorld * carried.position()));
+      ASSERT_TRUE(seen);
+      for (std::size_t i = 0; i < scene.truth[f].size(); ++i)
+        if (scene.truth[f][i] == "right") frame.highlights[i].peak = seen->front().pixel;
+      frame.lightsOn.clear();
+      frame.elsewhereFromHere = frame.camera.camFromWorld;
+    }
+    if (fromCamera) {
+      std::vector<std::shared_ptr<const Surface>> moved;
+      for (TrackedFrame& frame : scene.frames) {
+        moved.push_back(movedTo(frame.camera.camFromWorld, scene.surface));
+        frame.elsewhereFromHere = frame.camera.camFromWorld.inverse();
+        frame.camera.camFromWorld.setIdentity();
+      }
+      EXPECT_EQ(assignLights(scene.frames, [&](std::size_t f) { return moved[f]; }), 2);
+    } else {
+      EXPECT_EQ(scene.assign(), 2);
+    }
+    expectToldApart(scene, fromCamera ? "the camera's coordinates" : "the world's");
   }
 }
 

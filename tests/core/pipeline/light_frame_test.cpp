@@ -152,6 +152,115 @@ TEST(LightFrame, ASingleViewTellsNothing) {
   EXPECT_FALSE(in.lightFrame.byLight.at("lamp").camera);
 }
 
+const Vector3d kStill(0.4, 0.3, 1.9);  // in the world, m
+
+/// A flash on the camera beside a lamp that stands still, both on in each frame.
+/// @param named  whether the scene says which highlight is whose
+std::shared_ptr<Scene> bothKinds(int frames, bool named, double scale = 1) {
+  auto scene = std::make_shared<Scene>();
+  scene->name = "both";
+  AnalyticSpec spec = body();
+  spec.semiAxes *= scale;
+  scene->surfaces["body"] = spec;
+  for (int i = 0; i < frames; ++i) {
+    Frame f;
+    f.id = "v" + std::to_string(i);
+    f.camera = around(i, frames);
+    f.camera.camFromWorld.translation() *= scale;
+    f.surface = "body";
+    const Vector3d flash = f.camera.camFromWorld.inverse() * Vector3d(scale * kFlash);
+    const std::vector<NamedLight> lights{{"flash", flash}, {"still", scale * kStill}};
+    for (const NamedLight& light : lights)
+      for (Highlight& h : exactContours(spec, f.camera, light)) f.highlights.push_back(std::move(h));
+    if (named)
+      f.lightsOn = {"flash", "still"};
+    else
+      for (Highlight& h : f.highlights) h.light.clear();
+    scene->frames.push_back(std::move(f));
+  }
+  return scene;
+}
+
+const ModelResult::Fit& fitNamed(const Inspection& in, const std::string& light) {
+  const std::vector<ModelResult::Fit>& fits = in.models.at("limit-angle").fits;
+  const auto found = std::find_if(fits.begin(), fits.end(), [&](const ModelResult::Fit& f) { return f.light == light; });
+  require(found != fits.end(), "fitNamed: no such light");
+  return *found;
+}
+
+TEST(LightFrame, LampsOfBothKindsStandEachInItsOwnFrame) {
+  for (const double scale : {1.0, 1e-2, 1e2}) {
+    const Inspection in = inspect(bothKinds(14, true, scale), asked());
+    EXPECT_EQ(in.lightFrame.frameOf("flash"), LightFrame::Camera) << in.lightFrame.reason;
+    EXPECT_EQ(in.lightFrame.frameOf("still"), LightFrame::World) << in.lightFrame.reason;
+    EXPECT_THAT(in.lightFrame.reason, HasSubstr("flash with the camera, still in the world"));
+    EXPECT_EQ(in.lightFrame.doubt, "");
+    ASSERT_TRUE(fitNamed(in, "flash").fit && fitNamed(in, "still").fit);
+    EXPECT_EQ(fitNamed(in, "flash").fit->poor, "");
+    EXPECT_LT((fitNamed(in, "flash").fit->lightEstimate->position() - scale * kFlash).norm(), 1e-4 * scale);
+    EXPECT_LT((fitNamed(in, "still").fit->lightEstimate->position() - scale * kStill).norm(), 1e-4 * scale);
+    EXPECT_LT(meanPct(in, "limit-angle"), 0.01);
+  }
+}
+
+TEST(LightFrame, HighlightsThatNobodyNamedAreToldApartByTheFrame) {
+  for (const double noise : {0.0, 0.2}) {
+    InspectionRequest request = asked();
+    request.noisePx = noise;
+    const Inspection in = inspect(bothKinds(14, false), request);
+    ASSERT_EQ(in.models.at("limit-angle").fits.size(), 2u) << in.lightFrame.reason;
+    ASSERT_EQ(in.lightFrame.elsewhere.size(), 1u) << in.lightFrame.reason;
+    for (const ModelResult::Fit& fit : in.models.at("limit-angle").fits) {
+      ASSERT_TRUE(fit.fit);
+      const Vector3d truth = in.lightFrame.frameOf(fit.light) == LightFrame::Camera ? kFlash : kStill;
+      EXPECT_LT((fit.fit->lightEstimate->position() - truth).norm(), noise > 0 ? 0.02 : 1e-4) << fit.light;
+    }
+    EXPECT_LT(meanPct(in, "limit-angle"), noise > 0 ? 0.5 : 0.01);
+  }
+}
+
+TEST(LightFrame, WhatIsDrawnOfAFrameStandsInItsScene) {
+  const Inspection in = inspect(bothKinds(14, true), asked());
+  ASSERT_EQ(in.lightFrame.frame, LightFrame::Camera) << "the flash counts as much as the lamp: the scene is the camera's";
+  for (const int frame : {0, 5}) {
+    const std::shared_ptr<const Inspection> there = inSceneAt(in, frame);
+    const Isometry3d& camFromWorld = in.world->frames[std::size_t(frame)].camera.camFromWorld;
+    EXPECT_LT((there->lightFor(frame, "still")->light.position() - camFromWorld * kStill).norm(), 1e-4) << frame;
+    EXPECT_LT((there->lightFor(frame, "flash")->light.position() - kFlash).norm(), 1e-4) << frame;
+    for (const TrainingView& v : there->views) EXPECT_TRUE(v.camera.camFromWorld.isApprox(Isometry3d::Identity(), 1e-9));
+    for (const FrameComparison& c : there->models.at("limit-angle").frames) {
+      if (c.frame != frame) continue;
+      for (const PredictedHighlight& h : c.prediction.highlights()) {
+        const std::optional<Pixel> seen = in.scene->frames[std::size_t(frame)].camera.project(h.brightest.point.position);
+        ASSERT_TRUE(seen);
+        EXPECT_LT((*seen - h.brightest.pixel).norm(), 1e-6);
+      }
+    }
+  }
+}
+
+TEST(LightFrame, APoseThatComesLiveHasLampsOfBothKinds) {
+  const auto all = bothKinds(14, true);
+  const LivePredictor live(all, asked());
+  const Camera unseen = [] {
+    Camera c = lookingAt({1.2, -1.1, 0.8}, {0, 0, 0});
+    return c;
+  }();
+  const Outcome<LiveAnswer> answer = live.predict("unseen", unseen.camFromWorld, unseen, std::nullopt);
+  ASSERT_TRUE(answer);
+  int compared = 0;
+  for (const LiveHighlights& h : answer->highlights) {
+    if (h.model != "limit-angle") continue;
+    const Vector3d lamp = h.light == "flash" ? Vector3d(unseen.camFromWorld.inverse() * kFlash) : kStill;
+    const std::vector<Highlight> truth = exactContours(body(), unseen, {h.light, lamp});
+    ASSERT_EQ(truth.size(), 1u);
+    ASSERT_EQ(h.prediction.highlights().size(), 1u) << h.light;
+    EXPECT_LT((centroid(truth[0].contour) - centroid(h.prediction.highlights()[0].contour)).norm(), 0.02) << h.light;
+    ++compared;
+  }
+  EXPECT_EQ(compared, 2);
+}
+
 TEST(LightFrame, ScaleChangesNothing) {
   for (const double scale : {1e-3, 1e3}) {
     auto scene = std::make_shared<Scene>(*flashScene(14));
