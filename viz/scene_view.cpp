@@ -401,7 +401,8 @@ void SceneView::setSelection(const Selection& selection) {
   if (!frame && !highlight && !picked) return;
   impl_->refreshInput();
   const bool lightsMove = impl_->valid() && !impl_->inspection->lightFrame.elsewhere.empty();
-  impl_->mark((frame ? kOnFrame | (lightsMove ? kOnInspection : 0u) : 0u) | (highlight ? kOnHighlight : 0u) | (picked ? kOnPicked : 0u));
+  impl_->mark((frame ? kOnFrame | (lightsMove ? kOnInspection : 0u) : 0u) | (highlight ? kOnHighlight : 0u) |
+              (picked ? kOnPicked : 0u));
 }
 
 void SceneView::setLayerVisible(const std::string& name, bool visible) {

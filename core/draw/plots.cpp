@@ -84,11 +84,8 @@ void storeSamples(FrameSamples::Lobe& lobe, Outcome<LobeSamples> samples) {
   else
     lobe.comparisonFailure = comparison.failure();
 }
-}  // namespace
 
-FrameSamples frameSamples(const Inspection& given, int frame, const std::string& model) {
-  const std::shared_ptr<const Inspection> there = inSceneAt(given, frame);
-  const Inspection& inspection = *there;
+FrameSamples samplesInScene(const Inspection& inspection, int frame, const std::string& model) {
   FrameSamples result;
   result.frame = frame;
   result.model = model;
@@ -147,6 +144,11 @@ FrameSamples frameSamples(const Inspection& given, int frame, const std::string&
     result.failure = e.what();
   }
   return result;
+}
+}  // namespace
+
+FrameSamples frameSamples(const Inspection& inspection, int frame, const std::string& model) {
+  return samplesInScene(*inSceneAt(inspection, frame), frame, model);
 }
 
 const FrameSamples::Lobe* lobeOfHighlight(const FrameSamples& samples, int highlight) {

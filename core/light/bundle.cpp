@@ -41,7 +41,7 @@ class AngleCost final : public ceres::CostFunction {
     mutable_parameter_block_sizes()->push_back(1);
   }
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
-    const SeenPoint& s = evidence_.at;
+    const EvidencePoint& s = evidence_.at;
     Eigen::Vector4d light(parameters[0][0], parameters[0][1], parameters[0][2], size_ == 4 ? parameters[0][3] : 0.0);
     const Eigen::Vector3d plain = light.head<3>() - light.w() * s.position;
     const double sign = s.normal.dot(plain) < 0 ? -1 : 1, distance = plain.norm();
@@ -63,7 +63,7 @@ class AngleCost final : public ceres::CostFunction {
     residuals[0] = k * off - evidence_.biasPx;
     if (!jacobians) return true;
     if (jacobians[0]) {
-      const auto at = [&](const SeenPoint& seen) {
+      const auto at = [&](const EvidencePoint& seen) {
         return incidentAngleByLight(seen.position, seen.normal, seen.toCamera, light);
       };
       Eigen::Vector4d byLight = k * at(s);

@@ -11,13 +11,13 @@ namespace glint::bundling {
 namespace {
 
 /// Direction to the light with N.L > 0, not normalised.
-Eigen::Vector3d towards(const SeenPoint& s, const Eigen::Vector4d& light) {
+Eigen::Vector3d towards(const EvidencePoint& s, const Eigen::Vector4d& light) {
   const Eigen::Vector3d d = light.head<3>() - light.w() * s.position;
   return s.normal.dot(d) < 0 ? Eigen::Vector3d(-d) : d;
 }
 }  // namespace
 
-double angle(const SeenPoint& s, const Eigen::Vector4d& light) {
+double angle(const EvidencePoint& s, const Eigen::Vector4d& light) {
   return incidentAngle(s.normal, towards(s, light).normalized(), s.toCamera);
 }
 
@@ -37,7 +37,7 @@ struct AnglesAround {
   double here, left, right, up, down;
 };
 std::vector<AnglesAround> anglesAround(const std::vector<ContourEvidence>& points, const Eigen::Vector4d& light) {
-  const auto of = [&](const std::optional<SeenPoint>& s) { return s ? angle(*s, light) : std::nan(""); };
+  const auto of = [&](const std::optional<EvidencePoint>& s) { return s ? angle(*s, light) : std::nan(""); };
   std::vector<AnglesAround> angles;
   angles.reserve(points.size());
   for (const ContourEvidence& e : points) angles.push_back({angle(e.at, light), of(e.left), of(e.right), of(e.up), of(e.down)});

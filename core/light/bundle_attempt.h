@@ -27,7 +27,7 @@ struct Attempt {
 };
 
 /// Incident angle of a point under a light seen with N.L > 0, rad.
-double angle(const SeenPoint& s, const Eigen::Vector4d& light);
+double angle(const EvidencePoint& s, const Eigen::Vector4d& light);
 
 /// Signed distance of a point from the level set, px.
 double residual(const ContourEvidence& e, const Attempt& a);

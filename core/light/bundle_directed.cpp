@@ -125,7 +125,7 @@ Attempt weighed(std::vector<ContourEvidence>& points, const Attempt& start, doub
 bool directedResidual(const ContourEvidence& e, const Eigen::Vector4d& light, double constant, const Vector6& entries,
                       double& residual, Eigen::Matrix<double, 1, 11>* derivatives) {
   if (!(constant > 0)) return false;
-  const SeenPoint& s = e.at;
+  const EvidencePoint& s = e.at;
   const double k = e.pixelsPerRadian;
   const Eigen::Matrix3d extent = symmetric(entries);
   if (!derivatives) {

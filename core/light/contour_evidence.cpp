@@ -20,14 +20,14 @@ Outcome<std::vector<ContourEvidence>> contoursOnSurfaces(const std::vector<Bundl
         view.contour.size() > std::size_t(pointsPerView) ? resample(Polyline{view.contour, true}, pointsPerView) : view.contour;
     offered += pixels.size();
     const Eigen::Vector3d eye = view.camera.centreInWorld();
-    const auto seen = [&](const Pixel& p) -> std::optional<SeenPoint> {
+    const auto seen = [&](const Pixel& p) -> std::optional<EvidencePoint> {
       const Outcome<SurfacePoint> hit = view.surface->firstHit(view.camera.ray(p));
       if (!hit || !hit->position.allFinite() || !hit->normal.allFinite()) return std::nullopt;
       const SurfacePoint s = facing(*hit, eye);
-      return SeenPoint{s.position, s.normal, (eye - s.position).normalized()};
+      return EvidencePoint{s.position, s.normal, (eye - s.position).normalized()};
     };
     for (const Pixel& p : pixels) {
-      const std::optional<SeenPoint> at = seen(p);
+      const std::optional<EvidencePoint> at = seen(p);
       if (!at) continue;
       ContourEvidence e{*at,
                         seen(p - Pixel(step, 0)),
@@ -62,7 +62,7 @@ Outcome<NormalisedContours> normalised(std::vector<ContourEvidence> points) {
   if (!(n.scale > 0) || !std::isfinite(n.scale)) return Failure{Reason::NotFinite, "camera distance"};
   for (ContourEvidence& e : points) {
     e.at.position = (e.at.position - n.origin) / n.scale;
-    for (std::optional<SeenPoint>* s : {&e.left, &e.right, &e.up, &e.down, &e.leftUp, &e.rightUp, &e.leftDown, &e.rightDown})
+    for (std::optional<EvidencePoint>* s : {&e.left, &e.right, &e.up, &e.down, &e.leftUp, &e.rightUp, &e.leftDown, &e.rightDown})
       if (*s) (*s)->position = ((*s)->position - n.origin) / n.scale;
   }
   n.points = std::move(points);

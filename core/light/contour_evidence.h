@@ -11,7 +11,7 @@
 namespace glint {
 
 /// A surface point as a camera sees it.
-struct SeenPoint {
+struct EvidencePoint {
   Eigen::Vector3d position, normal, toCamera;  ///< unit vectors away from the surface
 };
 
@@ -19,9 +19,9 @@ struct SeenPoint {
 /// solution.
 struct ContourEvidence {
   static constexpr double kStepPx = 0.5;  ///< of the finite differences that turn an angle into pixels
-  SeenPoint at;
-  std::optional<SeenPoint> left, right, up, down;  ///< of the pixels kStepPx away; empty where the surface ended
-  std::optional<SeenPoint> leftUp, rightUp, leftDown,
+  EvidencePoint at;
+  std::optional<EvidencePoint> left, right, up, down;  ///< of the pixels kStepPx away; empty where the surface ended
+  std::optional<EvidencePoint> leftUp, rightUp, leftDown,
       rightDown;  ///< along both diagonals: one alone would tell an image from its mirror image
   int view = 0;
   Pixel pixel{0, 0};

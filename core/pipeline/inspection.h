@@ -148,8 +148,8 @@ TrainingView trainingViewIn(const Inspection& inspection, const FrameEvidence& e
                             std::shared_ptr<const Surface> surface, CutUse cut);
 
 /// The inspection with everything of one frame in the coordinates of its scene: lights that stand elsewhere are carried to where
-/// they are in that frame, with their fits, whose uncertainty is left out; views and predictions are where their frames have them. For
-/// what is drawn or asked of a single frame. The inspection itself where no light stands elsewhere.
+/// they are in that frame, with their fits, whose uncertainty is left out; views and predictions are where their frames have
+/// them. For what is drawn or asked of a single frame. The inspection itself where no light stands elsewhere.
 std::shared_ptr<const Inspection> inSceneAt(std::shared_ptr<const Inspection> inspection, int frame);
 /// The same of an inspection that somebody else holds, and outlives the answer.
 std::shared_ptr<const Inspection> inSceneAt(const Inspection& inspection, int frame);

@@ -33,9 +33,9 @@ struct LightFrameChoice {
 
 /// Chooses by `light.frame`; `auto` decides by the training highlights alone. In each frame of coordinates it looks for the lamp
 /// that the mirrored rays of the peaks share, and measures by how many pixels its brightest points miss the peaks. The camera is
-/// chosen where it explains them and the world leaves several times as much. Where unknown lights differ, each gets its own frame,
-/// and the scene has that of most of them. Frames with a depth map of their own are asked where no training frame has another
-/// surface.
+/// chosen where it explains them and the world leaves several times as much. Where unknown lights differ, each gets its own
+/// frame, and the scene has that of most of them. Frames with a depth map of their own are asked where no training frame has
+/// another surface.
 /// @param scene     in the world
 /// @param surfaces  of that scene
 /// @param training  frames that train

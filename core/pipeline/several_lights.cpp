@@ -45,6 +45,16 @@ void levelOfEachLight(FrameEvidence& e, bool detected, const std::function<Frame
   }
 }
 
+std::vector<TrackedFrame> trackedFrames(const Scene& scene, const std::vector<FrameEvidence>& evidence,
+                                        const std::vector<Eigen::Isometry3d>& elsewhereFromScene) {
+  std::vector<TrackedFrame> tracked(scene.frames.size());
+  for (std::size_t i = 0; i < tracked.size(); ++i) {
+    tracked[i] = {scene.frames[i].camera, scene.frames[i].lightsOn, evidence[i].highlights, std::nullopt};
+    if (!elsewhereFromScene.empty()) tracked[i].elsewhereFromHere = elsewhereFromScene[i];
+  }
+  return tracked;
+}
+
 /// A truth file names no light: its contours are of the light whose detected highlight they overlap.
 void nameTruth(FrameEvidence& e) {
   std::set<std::string> lights;
@@ -87,11 +97,7 @@ void assignSeveralLights(const Scene& scene, std::vector<FrameEvidence>& evidenc
     return;
   }
   const auto assign = [&] {
-    std::vector<TrackedFrame> tracked(n);
-    for (std::size_t i = 0; i < n; ++i) {
-      tracked[i] = {scene.frames[i].camera, scene.frames[i].lightsOn, evidence[i].highlights};
-      if (!elsewhereFromScene.empty()) tracked[i].elsewhereFromHere = elsewhereFromScene[i];
-    }
+    std::vector<TrackedFrame> tracked = trackedFrames(scene, evidence, elsewhereFromScene);
     if (!report(progress, {"assign lights", 0, 0})) throw Stopped{};
     const int groups = assignLights(tracked, [&](std::size_t i) { return surfaceOf(static_cast<int>(i)); });
     for (std::size_t i = 0; i < n; ++i) evidence[i].highlights = std::move(tracked[i].highlights);

@@ -222,8 +222,8 @@ void StageRun::assignSeveralLights() {
       elsewhereFromScene(), progress_);
 }
 
-/// Of each frame, to the coordinates in which lights stand still that do not in the scene's; empty where they are not looked for,
-/// or are the same.
+/// For each frame the way to the coordinates in which lights stand still that do not in the scene's; empty where they are not
+/// looked for, or are the same.
 std::vector<Eigen::Isometry3d> StageRun::elsewhereFromScene() const {
   std::vector<Eigen::Isometry3d> all;
   if (r_.request.settings.text("light.frame") != "auto") return all;
