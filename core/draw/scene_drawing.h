@@ -79,8 +79,9 @@ struct DrawingOptions {
 /// What belongs to no frame: estimated lights, lamps of all fits, true lamps, ellipsoids of all fits; of those lights alone that
 /// stand still in the scene.
 SceneDrawing sceneThings(const Inspection& inspection, const DrawingOptions& options);
-/// What belongs to one frame: its surface and camera; lights that stand elsewhere (LightFrameChoice::elsewhere); of each observed highlight the contour on the surface, brightest point,
-/// tangent plane, virtual camera, canonical ellipse and rays; of each model the predicted contours.
+/// What belongs to one frame: its surface and camera; lights that stand elsewhere (LightFrameChoice::elsewhere); of each observed
+/// highlight the contour on the surface, brightest point, tangent plane, virtual camera, canonical ellipse and rays; of each
+/// model the predicted contours.
 /// @param frame    index; std::invalid_argument if it does not exist
 /// @param surface  of the frame; null = none, and only the camera is drawn
 SceneDrawing frameThings(const Inspection& inspection, int frame, const std::shared_ptr<const Surface>& surface,

@@ -37,9 +37,9 @@ struct TrackOptions {
 /// mirror point (one Newton step on the surface around its peak), and the candidate with most votes (a truncated sum of squares)
 /// becomes a group. When all lights are found, every highlight goes to the light whose mirror point it contains, the nearest
 /// where several do, and the lights are triangulated again, until nothing changes. A light may own several highlights of a frame
-/// (concave surfaces). Where frames have other coordinates, a light may stand still there: more highlights must say so than for one
-/// that stands still here. A highlight that contains the mirror points of two lights is of both if the other light has no highlight
-/// of its own in that frame; it belongs to neither and keeps "".
+/// (concave surfaces). Where frames have other coordinates, a light may stand still there: more highlights must say so than for
+/// one that stands still here. A highlight that contains the mirror points of two lights is of both if the other light has no
+/// highlight of its own in that frame; it belongs to neither and keeps "".
 ///
 /// Groups are as many as the frames' `lightsOn` name. They get the names that agree best with the frames where each is on, and
 /// with highlights that are named already; lights that are on in the same frames cannot be told apart, and their names are then

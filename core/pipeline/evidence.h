@@ -83,7 +83,7 @@ bool lightsNeedAllFrames(const Scene& scene);
 /// @param evidence     one per frame; changed in place
 /// @param surfaceOf    of a frame; null if it has none
 /// @param detectAgain  evidence of a frame with its lights kept apart; called from several threads
-/// @param elsewhereFromScene  of each frame, to coordinates in which lights may stand still as well; empty = there are none
+/// @param elsewhereFromScene  of each frame, to coordinates in which lights may stand still as well; empty without such
 /// Throws Stopped.
 void assignSeveralLights(const Scene& scene, std::vector<FrameEvidence>& evidence,
                          const std::function<std::shared_ptr<const Surface>(int frame)>& surfaceOf,
