@@ -81,6 +81,7 @@ SceneLegend legendOf(const LayerInput& in, const std::vector<ShownLayer>& layers
     legend.entries.push_back({kVirtualCamera, "virtual camera, tangent plane"});
   if (drawn("observed-contours")) legend.entries.push_back({kObserved, "observed contour"});
   const bool carried = in.inspection->lightFrame.frame == LightFrame::Camera;
+  if (carried) legend.remarks.push_back("drawn in the camera's coordinates: the object moves");
   if (drawn("light"))
     legend.entries.push_back({kLightColour, carried ? "light (estimate), moves with the camera" : "light (estimate)"});
   if (drawn("true-light")) legend.entries.push_back({kTruth, statedLightText(*in.inspection->scene)});
