@@ -20,6 +20,8 @@ std::string useOf(const Inspection& inspection, int frame) {
 }
 
 void addCameras(SceneLegend& legend, const LayerInput& in) {
+  if (in.inspection->lightFrame.frame == LightFrame::Camera)
+    legend.remarks.push_back("drawn in the camera's coordinates: the object moves");
   if (in.colours.by == CameraColours::By::Error) {
     const std::string model = errorModel(in);
     if (!model.empty()) legend.bar = errorBar(model);
@@ -81,7 +83,6 @@ SceneLegend legendOf(const LayerInput& in, const std::vector<ShownLayer>& layers
     legend.entries.push_back({kVirtualCamera, "virtual camera, tangent plane"});
   if (drawn("observed-contours")) legend.entries.push_back({kObserved, "observed contour"});
   const bool carried = in.inspection->lightFrame.frame == LightFrame::Camera;
-  if (carried) legend.remarks.push_back("drawn in the camera's coordinates: the object moves");
   if (drawn("light"))
     legend.entries.push_back({kLightColour, carried ? "light (estimate), moves with the camera" : "light (estimate)"});
   if (drawn("true-light")) legend.entries.push_back({kTruth, statedLightText(*in.inspection->scene)});

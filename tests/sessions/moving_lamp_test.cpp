@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the lesson of the lamp that moves with the camera claims, against an ellipsoid in closed form, its orbit as the specification
-// has it, and Fermat's principle.
+// What the lesson of the lamp that moves with the camera claims, against an ellipsoid in closed form, its orbit as the
+// specification has it, and Fermat's principle.
 #include <algorithm>
 #include <numbers>
 
