@@ -35,6 +35,7 @@ inspector lesson-sphere lessons/sphere 0000 dark
 inspector lesson-bent-mirror lessons/bent-mirror 0010 light --run explain.step-limit-angles
 inspector lesson-plane-to-cylinder lessons/plane-to-cylinder 0018 dark --run explain.step-inverse-walk
 inspector lesson-waist lessons/waist 0006 light --run explain.step-comparison
+inspector lesson-moving-lamp lessons/moving-lamp 0002 light --run explain.step-light
 inspector explain-cones ellipsoid 0008 light --layout explain --run explain.step-ellipsoid
 picture scene plane-to-cylinder 0045 scene
 picture ladder plane-to-cylinder 0045 ladder

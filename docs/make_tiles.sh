@@ -26,6 +26,7 @@ tile lesson-sphere lessons/sphere 0001 $base,+virtual-cameras,+observed-contours
 tile lesson-bent-mirror lessons/bent-mirror 0013 $base,+observed-contours,+tangent-planes
 tile lesson-plane-to-cylinder lessons/plane-to-cylinder 0018 $base,+observed-contours,+rays,+light
 tile lesson-waist lessons/waist 0008 +surface,+observed-contours,+rays,+light
+tile lesson-moving-lamp lessons/moving-lamp 0002 $base,+rays,+light
 tile plane plane 0004 $base,+photographs,+observed-contours
 tile plane-to-cylinder plane-to-cylinder 0045 $base,+observed-contours,+rays
 tile ellipsoid ellipsoid 0008 $base,+observed-contours,+tangent-planes

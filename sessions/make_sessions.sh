@@ -23,7 +23,7 @@ root=$(dirname -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")")
 glint=${GLINT:-$root/build/release/bin/glint}
 cycles=${CYCLES:-$root/../shared/data/cycles}
 
-lessons=(lessons/{moving-highlight,mirror,plane,sphere,bent-mirror,plane-to-cylinder,waist})
+lessons=(lessons/{moving-highlight,mirror,plane,sphere,bent-mirror,plane-to-cylinder,waist,moving-lamp})
 data=yes names=()
 while [ $# -gt 0 ]; do
   case "$1" in
@@ -99,7 +99,7 @@ def rows(entries):  # one entry a line
     return ",\n    ".join(entries)
 
 with open(os.path.join(folder, "scene.json"), "w") as out:
-    out.write('{\n  "glint_scene": 1,\n  "name": %s,\n  "units": "m",\n  "camera": %s,\n' % (json.dumps(scene["name"]), json.dumps(scene["camera"])))
+    out.write('{\n  "glint_scene": %d,\n  "name": %s,\n  "units": "m",\n  "camera": %s,\n' % (scene["glint_scene"], json.dumps(scene["name"]), json.dumps(scene["camera"])))
     out.write('  "frames": [\n    %s\n  ],\n' % rows(json.dumps(f, separators=(",", ":")) for f in frames))
     out.write('  "surfaces": {\n    %s\n  },\n' % rows(json.dumps(k) + ": " + json.dumps(v) for k, v in scene["surfaces"].items()))
     out.write('  "lights": [\n    %s\n  ]\n}\n' % rows(json.dumps(light) for light in scene["lights"]))
@@ -151,11 +151,12 @@ for name in "${names[@]}"; do
     lessons/bent-mirror) train=per-surface ;;
     lessons/plane-to-cylinder) train=0-3 ;;  # the plane only
     lessons/waist) train=1,3,5,7,9 ;;
+    lessons/moving-lamp) train=0,2,4,6,8 ;;
     *) train=spread:6 ;;
   esac
   # Where `primal` or `dual` leave 10 to 25 % of the contours' radius, they are shown all the same: how they fail is what these sessions are about.
   case "$name" in
-    ellipsoid|two-lamps|vase|lessons/sphere|lessons/bent-mirror|lessons/waist) settings=(--set fit.most_residual=0.3) ;;
+    ellipsoid|two-lamps|vase|lessons/sphere|lessons/bent-mirror|lessons/waist|lessons/moving-lamp) settings=(--set fit.most_residual=0.3) ;;
     *) settings=() ;;
   esac
   folder=$root/sessions/$name

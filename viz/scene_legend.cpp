@@ -20,6 +20,8 @@ std::string useOf(const Inspection& inspection, int frame) {
 }
 
 void addCameras(SceneLegend& legend, const LayerInput& in) {
+  if (in.inspection->lightFrame.frame == LightFrame::Camera)
+    legend.remarks.push_back("drawn in the camera's coordinates: the object moves");
   if (in.colours.by == CameraColours::By::Error) {
     const std::string model = errorModel(in);
     if (!model.empty()) legend.bar = errorBar(model);

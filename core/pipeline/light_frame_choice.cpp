@@ -99,7 +99,10 @@ std::optional<double> residualPx(const std::vector<PeakView>& views, LightFrame 
   return std::isfinite(rms) ? std::optional(rms) : std::nullopt;
 }
 
-std::string pxText(const std::optional<double>& px) { return px ? formatted("%.2g px", *px) : std::string("no such lamp"); }
+std::string pxText(const std::optional<double>& px) {
+  if (!px) return "no such lamp";
+  return *px < 1e-3 ? std::string("less than 0.001 px") : formatted("%.2g px", *px);  // of a made scene: rounding errors
+}
 
 /// What the highlights of one light say.
 struct Verdict {

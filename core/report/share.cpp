@@ -61,6 +61,13 @@ std::string viewJson(const Inspection& inspection, const ShareChoice& choice, co
   return json + "}";
 }
 
+/// In which coordinates everything is drawn, and whether the object moves there.
+std::string coordinatesJson(const Inspection& inspection) {
+  const LightFrameChoice& chosen = inspection.lightFrame;
+  return std::string("{\"frame\":\"") + nameOf(chosen.frame) + "\",\"reason\":" + quoted(chosen.reason) +
+         ",\"moves\":" + truth(!standsStill(*inspection.scene)) + "}";
+}
+
 std::string dataJson(const Inspection& inspection, const ReportContext& context, const ShareChoice& choice,
                      const ProgressFn& progress) {
   const std::vector<int> frames = framesOf(inspection, choice);
@@ -74,8 +81,8 @@ std::string dataJson(const Inspection& inspection, const ReportContext& context,
   return "{\"glint_share\":1,\"program\":" + quoted(context.program) + ",\"name\":" + quoted(inspection.scene->name) +
          ",\"input\":" + quoted(context.input) + ",\"frames_in_all\":" + std::to_string(inspection.scene->frames.size()) +
          ",\"lesson\":" + lessonJson(lesson == choice.view.options.end() ? "" : lesson->second) +
-         ",\"view\":" + viewJson(inspection, choice, frames) + ",\"models\":" + modelsJson(inspection) +
-         ",\"canonical_colour\":" + quoted(modelHex(canonicalModel().id())) +
+         ",\"coordinates\":" + coordinatesJson(inspection) + ",\"view\":" + viewJson(inspection, choice, frames) +
+         ",\"models\":" + modelsJson(inspection) + ",\"canonical_colour\":" + quoted(modelHex(canonicalModel().id())) +
          ",\"evaluation\":" + untimed(evaluationJson(inspection, context)) + ",\n\"sizes\":" + sizesJson(scale, rounding) +
          ",\"things\":" + sceneThingsJson(inspection, scale, rounding) + ",\n\"surfaces\":" + surfaces.json +
          ",\n\"frames\":" + framesJson(inspection, frames, surfaces, scale, rounding, progress) + ",\n\"photographs\":[" +

@@ -155,11 +155,11 @@ std::string surfaceJson(const Inspection& inspection, const std::string& key, in
 SharedSurfaces surfacesOf(const Inspection& inspection, const std::vector<int>& frames, const ProgressFn& progress) {
   SharedSurfaces out;
   std::map<std::string, int> index;
-  std::vector<std::pair<std::string, int>> first;  // key, frame
+  std::vector<std::pair<std::string, int>> first;  // as fits name it, frame
   for (const int frame : frames) {
     const std::string key = inspection.surfaces ? inspection.surfaces->placedKeyOf(frame) : "";
     const auto [found, isNew] = index.emplace(key, static_cast<int>(first.size()));
-    if (isNew) first.emplace_back(key, frame);
+    if (isNew) first.emplace_back(inspection.surfaces ? inspection.surfaces->keyOf(frame) : "", frame);
     out.ofFrame.push_back(inspection.surfaces ? found->second : -1);
   }
   const std::size_t most = std::max(kFewestTriangles, kMostTriangles / std::max<std::size_t>(1, first.size()));

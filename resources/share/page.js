@@ -53,6 +53,13 @@
     }
     return found;
   }
+  function coordinates() {
+    const { frame, reason, moves } = data.coordinates;
+    if (frame === 'camera')
+      return 'Drawn in the camera\u2019s coordinates (x right, y down, z forward): there the camera stands still and the object moves. ' +
+          reason.charAt(0).toUpperCase() + reason.slice(1) + '.';
+    return moves ? 'Drawn in the world\u2019s coordinates: the object moves from frame to frame.' : '';
+  }
   function header() {
     at('title').textContent = data.name || 'Glint';
     document.title = 'Glint: ' + (data.name || 'shared scene');
@@ -62,6 +69,7 @@
         'Smallest mean contour error: ' + top.id + (top.poor ? ' (poor)' : '') + ', ' + percent(top.summary.contour_error_pct.mean) +
         ' % of the highlight\u2019s diameter over the ' + top.summary.matched + ' of ' + plural(top.summary.matched + top.summary.missed, 'highlight') +
         ' that it found.' : 'No model was scored.');
+    at('coordinates').textContent = coordinates();
     at('made').textContent = 'Made by ' + (data.program || 'Glint') + ' from ' + data.input + '. This page loads nothing from a network.';
     if (evaluation.warnings.length) {
       at('warnings').hidden = false;

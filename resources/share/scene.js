@@ -190,18 +190,26 @@ function glintScene(data, canvas, labelBox, select) {
   const kLayers = { 'virtual-camera': 'virtual-cameras', 'brightest-point': 'peaks', 'tangent-plane': 'tangent-planes', 'canonical-ellipse': 'canonical-ellipses',
     'view-ray': 'rays', 'reflected-ray': 'rays', 'observed-contour': 'observed-contours', 'predicted-contour': 'predicted-contours', ellipsoid: 'ellipsoids',
     light: 'light', 'fitted-lamp': 'light', 'true-lamp': 'true-light' };
-  const kContours = ['observed-contour', 'predicted-contour'];
+  const kContours = ['observed-contour', 'predicted-contour'], kRays = ['view-ray', 'reflected-ray'];
+  const perSurface = data.evaluation.train_spec === 'per-surface';
   const ofTheme = () => ({ 'virtual-camera': kVirtual, 'view-ray': kLight, 'reflected-ray': kLight, light: kLight, 'true-lamp': kTruth });
   const colourOf = (thing) => (thing.role === 'tangent-plane' ? data.canonical_colour : ofTheme()[thing.role] ? ofTheme()[thing.role][theme] : thing.colour);
+  /// Pale where a ray starts on a surface that is not shown, or not there.
+  function rayColour(thing, place) {
+    if (data.frames[place].surface === data.frames[state.frame].surface) return colourOf(thing);
+    return new THREE.Color(colourOf(thing)).lerp(new THREE.Color(kGround[theme]), 0.5);
+  }
   const placeOfThing = (thing) => V(thing.place).divideScalar(thing.place[3]);
   /// Pieces of chains: `on` of every `of` segments.
   const pieces = (chains, on, of) => [].concat(...chains.map((c) => c.slice(1).map((p, i) => [c[i], p]).filter((s, i) => i % of < on)));
-  /// With its frame: those of the selected frame, those of frames that train on the surface that is shown, and those of the whole scene.
+  /// With its frame: those of the selected frame, those of frames that train on the surface that is shown, rays of all that share a light with it, and
+  /// those of the whole scene.
   function thingsToDraw() {
     const shown = data.frames[state.frame].surface, key = data.surfaces[shown] && data.surfaces[shown].key, all = [];
     data.frames.forEach((frame, place) => {
-      const trains = frame.role === 'training' && frame.surface === shown && !state.through;
-      for (const thing of frame.things) if (place === state.frame || (trains && !kContours.includes(thing.role))) all.push([place, thing]);
+      const trains = frame.role === 'training' && !state.through, drawn = (thing) => place === state.frame ||
+          (trains && (frame.surface === shown ? !kContours.includes(thing.role) : !perSurface && kRays.includes(thing.role)));
+      for (const thing of frame.things) if (drawn(thing)) all.push([place, thing]);
     });
     for (const thing of data.things) if (thing.surface === undefined || thing.surface === key) all.push([-1, thing]);
     return all.filter(([, thing]) => state.layers[kLayers[thing.role]] && !state.hiddenModels.has(thing.model));
@@ -264,9 +272,9 @@ function glintScene(data, canvas, labelBox, select) {
       ball(group, at, (chosen ? 1.2 : 0.7) * point, theme === 'dark' ? '#ffffff' : '#303030');
       if (chosen) arrow(group, at, at.clone().addScaledVector(V(thing.normal), 0.16 * surfaceSize), kInk[theme], 2);
     },
-    'view-ray'(group, thing, chains, chosen) { lines(group, chains, colourOf(thing), chosen ? 2 : 1); },
-    'reflected-ray'(group, thing, chains, chosen) {
-      lines(group, chains, colourOf(thing), chosen ? 2 : 1);
+    'view-ray'(group, thing, chains, chosen, place) { lines(group, chains, rayColour(thing, place), chosen ? 2 : 1); },
+    'reflected-ray'(group, thing, chains, chosen, place) {
+      lines(group, chains, rayColour(thing, place), chosen ? 2 : 1);
       extent.push(chains[0][1]);
     },
     'observed-contour'(group, thing, chains) {
@@ -378,7 +386,8 @@ function glintScene(data, canvas, labelBox, select) {
     const points = [...extent];
     for (const box of [surfaceBox]) for (let i = 0; i < 8; ++i) points.push(new THREE.Vector3(i & 1 ? box.max.x : box.min.x, i & 2 ? box.max.y : box.min.y, i & 4 ? box.max.z : box.min.z));
     if (state.layers.cameras || state.layers.rays) for (const place of camerasToDraw()) points.push(poses[place].centre, ...corners(place));
-    for (const [, thing] of thingsToDraw()) if (thing.role === 'virtual-camera') points.push(placeOfThing(thing), ...flat(thing.chains[0]));
+    const mirrored = data.coordinates.moves && state.layers['virtual-cameras'] ? data.frames.flatMap((f) => f.things) : thingsToDraw().map(([, thing]) => thing);
+    for (const thing of mirrored) if (thing.role === 'virtual-camera') points.push(placeOfThing(thing), ...flat(thing.chains[0]));
     const high = Math.tan(eye.fov * Math.PI / 360), wide = high * aspect(), kMargin = 1.1;
     // The middle of what is seen, found by a few steps, because far points count less.
     const middle = new THREE.Box3().setFromPoints(points).getCenter(new THREE.Vector3());

@@ -53,7 +53,7 @@ class LessonsTest : public QObject {
   void cleanupTestCase() { window_.reset(); }
 
   void everyLessonHasAnActionAndOpensWithItsOverview() {
-    QCOMPARE(lessons().size(), 7);
+    QCOMPARE(lessons().size(), 8);
     for (const Lesson& lesson : lessons()) {
       open(lesson.id);
       const QString shown = text();

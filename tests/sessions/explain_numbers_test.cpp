@@ -30,12 +30,20 @@ Body vase() {
   return [](const Vec& p) { return std::hypot(p.x(), p.y()) - (0.22 - 0.05 * std::cos(2 * std::numbers::pi / 0.6 * p.z())); };
 }
 
+/// In the coordinates of a camera that goes around it.
+Body turningBody(int frame) {
+  return [bodyFromCamera = movingLampCamera(frame).inverse()](const Vec& p) {
+    return (bodyFromCamera * p).cwiseQuotient(kMovingLampBody).norm() - 1;
+  };
+}
+
 /// As the lessons' specifications say.
 Body bodyOf(const std::string& id, int frame) {
   static const std::map<std::string, std::vector<double>> bends{
       {"moving-highlight", {0, 1}}, {"bent-mirror", {-0.2, 0, 0.5, 1, 2}}, {"plane-to-cylinder", {0, 0.5, 1, 1.5, 2}}};
   if (id == "sphere") return ball();
   if (id == "waist") return vase();
+  if (id == "moving-lamp") return turningBody(frame);
   const auto it = bends.find(id);
   if (it == bends.end()) return sheet(0);
   const int each = id == "moving-highlight" ? 5 : id == "bent-mirror" ? 3 : 4;
@@ -494,7 +502,7 @@ TEST_P(ExplainNumbers, AreThoseOfTheScenesGeometry) {
 
 INSTANTIATE_TEST_SUITE_P(Lessons, ExplainNumbers,
                          testing::Values("moving-highlight", "mirror", "plane", "sphere", "bent-mirror", "plane-to-cylinder",
-                                         "waist"),
+                                         "waist", "moving-lamp"),
                          [](const auto& info) {
                            std::string name = info.param;
                            std::replace(name.begin(), name.end(), '-', '_');

@@ -53,6 +53,21 @@ inline double number(const ExplainStep& s, const std::string& name, std::size_t 
   return std::nan("");
 }
 
+/// From the world to the camera of a frame of the lesson moving-lamp: its specification's orbit, 0.8 m about the origin and 0.4 m
+/// above it, from -2.2 to 0.2 rad in eight steps, with the origin in the middle and z upwards.
+inline Eigen::Isometry3d movingLampCamera(int frame) {
+  const double a = -2.2 + 0.3 * frame;
+  const Eigen::Vector3d eye(0.8 * std::cos(a), 0.8 * std::sin(a), 0.4), ahead = -eye.normalized();
+  const Eigen::Vector3d right = ahead.cross(Eigen::Vector3d::UnitZ()).normalized();
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.linear() << right.transpose(), ahead.cross(right).transpose(), ahead.transpose();
+  pose.translation() = -(pose.linear() * eye);
+  return pose;
+}
+
+/// Semi-axes of its ellipsoid, m, and its lamp, in the camera's coordinates.
+inline const Eigen::Vector3d kMovingLampBody(0.4, 0.32, 0.26), kMovingLamp(0.08, -0.06, 0);
+
 /// Contour errors of the held-out frames of a model, %, by frame; of several highlights the largest.
 inline std::map<int, double> errorsByFrame(const Inspection& in, const std::string& model) {
   std::map<int, double> all;

@@ -169,6 +169,27 @@ def check_scene(page):
     assert view() == before, "the first view does not come back"
 
 
+def check_moving(page, data):
+    """The object is drawn where the chosen frame has it, the rays of all training frames are there, and the page says in which coordinates."""
+    said = page.evaluate("document.getElementById('coordinates').textContent")
+    assert "camera\u2019s coordinates" in said and "The lamp moves with the camera" in said, said
+    check_photograph(page, data, "limit-angle")
+    for frame in (1, 7, 4):
+        page.evaluate(f"glintPage.select({frame})")
+        check_through(page, data, "limit-angle")
+    show(page, "rays")
+    page.evaluate("document.getElementById('reset').click()")
+    page.settle()
+    picture, rays = page.picture(), 0
+    for frame in data["frames"]:
+        if frame["role"] == "training":
+            (ray,) = [t["chains"][0] for t in frame["things"] if t["role"] == "reflected-ray"]
+            places = [page.evaluate(f"glintPage.place({[a + s / 20 * (b - a) for a, b in zip(ray[:3], ray[3:])]})") for s in range(2, 10)]
+            ground = picture.at(round(places[0][0]) + 60, round(places[0][1]) - 60)
+            rays += sum(any(not near(picture.at(round(x) + i, round(y) + j), ground, 20) for i in (-1, 0, 1) for j in (-1, 0, 1)) for x, y in places) > 6
+    assert rays == sum(frame["role"] == "training" for frame in data["frames"]), rays
+
+
 def main():
     browser.chromium()
     glint, sessions = sys.argv[1], pathlib.Path(sys.argv[2])
@@ -178,6 +199,7 @@ def main():
         run(glint, "share", sessions / "lessons/plane-to-cylinder/plane-to-cylinder.glint", "-o", folder / "page.html")
         data = Page((folder / "page.html").read_text(encoding="utf-8")).data()
         hostile = check_hostile(glint, lesson, folder)
+        run(glint, "share", sessions / "lessons/moving-lamp/moving-lamp.glint", "-o", folder / "moving.html")
         with browser.Browser(WIDTH, HEIGHT) as page:
             page.open(f"file://{folder}/page.html#theme=dark")
             check_frames(page, data)
@@ -189,6 +211,9 @@ def main():
             check_through(page, data, "limit-angle")
             page.click(*middle(page, "theme"))
             quiet(page, "page")
+            page.open(f"file://{folder}/moving.html#theme=light")
+            check_moving(page, Page((folder / "moving.html").read_text(encoding="utf-8")).data())
+            quiet(page, "moving page")
             page.open(f"file://{hostile}#theme=light")
             assert page.evaluate("document.querySelectorAll('img, iframe').length") == 0
             assert "</script><script>" in page.evaluate("document.getElementById('title').textContent")

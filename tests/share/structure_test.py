@@ -218,6 +218,70 @@ def check_session(glint, session, folder):
     return data
 
 
+def inside_out(pose):
+    """The inverse of a rigid motion."""
+    turn = [[pose[c][r] for c in range(3)] for r in range(3)]
+    return [row + [-sum(row[k] * pose[k][3] for k in range(3))] for row in turn]
+
+
+def moved(pose, point):
+    return [sum(row[k] * point[k] for k in range(3)) + row[3] for row in pose[:3]]
+
+
+def check_moved(data, poses, axes):
+    """What is drawn of each frame is on the ellipsoid where that frame has it: surface, contours and brightest points."""
+    assert len(data["surfaces"]) == len(data["frames"]) == len(poses), "one place of the object in each frame"
+    places = set()
+    for frame, pose in zip(data["frames"], poses):
+        surface, back = data["surfaces"][frame["surface"]], inside_out(pose)
+        codes = base64.b64decode(surface["positions"])
+        codes = struct.unpack(f"<{len(codes) // 2}H", codes)
+        drawn = [[surface["origin"][k] + surface["step"][k] * codes[i + k] for k in range(3)] for i in range(0, len(codes), 3)]
+        lying = [c[i:i + 3] for t in of_role(frame, "observed-contour") + of_role(frame, "predicted-contour") for c in t["chains"] for i in range(0, len(c), 3)]
+        lying += [t["place"][:3] for t in of_role(frame, "brightest-point")]
+        assert len(drawn) > 500 and len(lying) > 100, (len(drawn), len(lying))
+        for point in drawn + lying:
+            away = math.hypot(*(v / a for v, a in zip(moved(back, point), axes))) - 1
+            assert abs(away) < 1e-3, (frame["id"], point, away)
+        places.add(tuple(round(v, 2) for v in drawn[len(drawn) // 3]))
+    assert len(places) > len(poses) / 2, "it does not move"
+
+
+def check_moving(glint, sessions, folder):
+    """A lamp that moves with the camera, and the same views as an object that is turned before a still camera and lamp: equal numbers, and the object
+    where each frame has it."""
+    lesson = sessions / "lessons/moving-lamp"
+    carried = check_session(glint, lesson / "moving-lamp.glint", folder)
+    scene = json.loads((lesson / "scene.json").read_text())
+    axes, lamp = scene["surfaces"]["body"]["analytic"]["semi_axes"], scene["lights"][0]["position"]
+    poses = [frame["camera_from_world"] for frame in scene["frames"]]
+    assert carried["coordinates"]["frame"] == "camera" and carried["coordinates"]["moves"] and "moves with the camera" in carried["coordinates"]["reason"]
+    here = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0]]
+    assert all(frame["camera"]["camera_from_world"] == here for frame in carried["frames"]), "the camera moves in its own coordinates"
+    check_moved(carried, poses, axes)
+    for frame in carried["frames"]:
+        for ray in of_role(frame, "reflected-ray"):
+            (x, y) = ray["chains"][0][:3], ray["chains"][0][3:]
+            along, to = [b - a for a, b in zip(x, y)], [b - a for a, b in zip(x, lamp)]
+            t = sum(map(lambda a, b: a * b, along, to)) / sum(a * a for a in along)
+            assert math.dist([t * a for a in along], to) < 1e-4, (frame["id"], "a ray misses the lamp")
+    for frame in scene["frames"]:
+        frame["world_from_object"], frame["camera_from_world"] = frame["camera_from_world"], here + [[0, 0, 0, 1]]
+    scene["lights"][0]["frame"] = "world"
+    shutil.copytree(lesson / "frames", folder / "turned" / "frames")
+    (folder / "turned" / "scene.json").write_text(json.dumps(scene))
+    options = ["--models", ",".join(m["id"] for m in carried["models"]), "--source", "image", "--train", "0,2,4,6,8", "--set", "fit.most_residual=0.3"]
+    run(glint, "share", folder / "turned", *options, "-o", folder / "turned.html")
+    turned = Page((folder / "turned.html").read_text(encoding="utf-8")).data()
+    assert turned["evaluation"] == untimed(json.loads(run(glint, "evaluate", folder / "turned", *options, "--json", "-").stdout))
+    assert turned["coordinates"]["frame"] == "world" and turned["coordinates"]["moves"]
+    check_moved(turned, poses, axes)
+    errors = lambda data, model: [row["contour_error_pct"] for row in data["evaluation"]["models"][model]["frames"]]
+    for model in ("dual", "canonical", "limit-angle"):
+        there = errors(turned, model)
+        assert len(there) == 4 and all(abs(a - b) < 1e-3 for a, b in zip(there, errors(carried, model))), model
+
+
 def check_frames(glint, session, folder):
     page = folder / "two.html"
     run(glint, "share", session, "--frames", "1,3", "--models", "dual", "-o", page)
@@ -279,7 +343,7 @@ def main():
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         if "--all" in sys.argv:
-            assert len(files) >= 11
+            assert len(files) >= 13
             for session in files:
                 run(glint, "share", session, "-o", folder / "page.html")
                 size = (folder / "page.html").stat().st_size
@@ -296,6 +360,7 @@ def main():
         lesson = sessions / "lessons/sphere/sphere.glint"
         shared = check_session(glint, lesson, folder)["lesson"]
         assert len(shared["steps"]) == 5 and check_equations(shared, sessions.parent / "resources/explain") == 5
+        check_moving(glint, sessions, folder)
         check_frames(glint, lesson, folder)
         check_hostile(glint, lesson, folder)
         check_refusals(glint, lesson, folder)

@@ -323,6 +323,30 @@ TEST(Layers, OnAnotherSurfaceTheRaysAndConesAreThoseOfTheViewsThatTrained) {
   for (const Drawn& d : raysLayer(input).drawn) EXPECT_EQ(d.info.frame, 5);
 }
 
+TEST(Layers, WhereTheObjectMovesRaysAndConesAreThoseOfItsOtherPlaces) {
+  const TemporaryFolder folder;
+  const auto inspection = smallInspection(folder.path());
+  auto moving = std::make_shared<Scene>(*inspection->scene);
+  moving->frames[5].worldFromObject.translation().x() = 0.1;
+  inspection->scene = moving;
+  inspection->lightFrame.frame = LightFrame::Camera;
+  LayerInput input = heldOutInput(*inspection);
+  input.surfaceKey = "another";
+  input.models = {"canonical"};
+  const LayerContent cones = conesLayer(input), rays = raysLayer(input);
+  ASSERT_EQ(cones.remarks.size(), 1u);
+  EXPECT_EQ(cones.remarks[0], "cones: from the training frames, wherever the object stood");
+  ASSERT_EQ(rays.remarks.size(), 1u);
+  EXPECT_EQ(rays.remarks[0], "rays: 4 start where the object stands in other frames (faded)");
+  input.frames = {5};
+  const LayerContent cameras = camerasLayer(input), none;
+  std::vector<ShownLayer> layers(sceneLayers().size(), {false, &none});
+  for (std::size_t i = 0; i < layers.size(); ++i)
+    if (sceneLayers()[i].name == "cameras") layers[i] = {true, &cameras};
+  ASSERT_EQ(legendOf(input, layers).remarks.size(), 1u);
+  EXPECT_NE(legendOf(input, layers).remarks[0].find("camera's coordinates"), std::string::npos);
+}
+
 /// What primal calls its brightest point is the middle of its ellipsoid, which lies behind the surface.
 TEST(Layers, APredictionWithoutATangentPlaneHasNoBrightestPointOnTheSurface) {
   const TemporaryFolder folder;

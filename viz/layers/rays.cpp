@@ -61,7 +61,8 @@ LayerContent raysLayer(const LayerInput& in) {
   for (const TrainingView& view : in.ownViews()) addRay(content, in, view, false);
   if (elsewhere > 0)
     content.remarks.push_back("rays: " + std::to_string(elsewhere) + (elsewhere == 1 ? " starts" : " start") +
-                              " on another surface (faded)");
+                              (standsStill(*in.inspection->scene) ? " on another surface (faded)"
+                                                                  : " where the object stands in other frames (faded)"));
   return content;
 }
 
