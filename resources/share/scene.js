@@ -191,6 +191,7 @@ function glintScene(data, canvas, labelBox, select) {
     'view-ray': 'rays', 'reflected-ray': 'rays', 'observed-contour': 'observed-contours', 'predicted-contour': 'predicted-contours', ellipsoid: 'ellipsoids',
     light: 'light', 'fitted-lamp': 'light', 'true-lamp': 'true-light' };
   const kContours = ['observed-contour', 'predicted-contour'], kRays = ['view-ray', 'reflected-ray'];
+  const kOfOneFrame = [...kContours, 'light', 'fitted-lamp', 'true-lamp', 'ellipsoid'];  // lamps among them stand elsewhere in each frame
   const perSurface = data.evaluation.train_spec === 'per-surface';
   const ofTheme = () => ({ 'virtual-camera': kVirtual, 'view-ray': kLight, 'reflected-ray': kLight, light: kLight, 'true-lamp': kTruth });
   const colourOf = (thing) => (thing.role === 'tangent-plane' ? data.canonical_colour : ofTheme()[thing.role] ? ofTheme()[thing.role][theme] : thing.colour);
@@ -208,7 +209,7 @@ function glintScene(data, canvas, labelBox, select) {
     const shown = data.frames[state.frame].surface, key = data.surfaces[shown] && data.surfaces[shown].key, all = [];
     data.frames.forEach((frame, place) => {
       const trains = frame.role === 'training' && !state.through, drawn = (thing) => place === state.frame ||
-          (trains && (frame.surface === shown ? !kContours.includes(thing.role) : !perSurface && kRays.includes(thing.role)));
+          (trains && (frame.surface === shown ? !kOfOneFrame.includes(thing.role) : !perSurface && kRays.includes(thing.role)));
       for (const thing of frame.things) if (drawn(thing)) all.push([place, thing]);
     });
     for (const thing of data.things) if (thing.surface === undefined || thing.surface === key) all.push([-1, thing]);
