@@ -100,7 +100,9 @@ LayerContent conesLayer(const LayerInput& in) {
       elsewhere = elsewhere || !in.onSurface(view->frame);
       cones.push_back(*cone);
     }
-    if (elsewhere) content.remarks.push_back("cones: from the training frames, which saw another surface");
+    if (elsewhere)
+      content.remarks.push_back(std::string("cones: from the training frames, which saw ") +
+                                (standsStill(*in.inspection->scene) ? "another surface" : "the surface elsewhere"));
     const std::size_t every = std::max<std::size_t>(1, (cones.size() + kMostCones - 1) / kMostCones);
     if (every > 1) content.remarks.push_back("cones: one in " + std::to_string(every) + " drawn");
     for (std::size_t i = 0; i < cones.size(); ++i) {

@@ -60,8 +60,9 @@ LayerContent raysLayer(const LayerInput& in) {
   }
   for (const TrainingView& view : in.ownViews()) addRay(content, in, view, false);
   if (elsewhere > 0)
-    content.remarks.push_back("rays: " + std::to_string(elsewhere) + (elsewhere == 1 ? " starts" : " start") +
-                              " on another surface (faded)");
+    content.remarks.push_back(
+        "rays: " + std::to_string(elsewhere) + (elsewhere == 1 ? " starts" : " start") +
+        (standsStill(*in.inspection->scene) ? " on another surface (faded)" : " where the surface stood then (faded)"));
   return content;
 }
 
