@@ -112,7 +112,7 @@ NumberGroup lightGroup(const std::string& id, const LightEstimate& estimate, con
 
 /// Where a lamp that moves with the camera is, by the model on show or else by all contours together, and what speaks for it. Also
 /// of a lamp of which that is in doubt.
-NumberGroup movingLamp(const Inspection& inspection, const std::string& id, const LightEstimate* estimate, const ModelFit* fit) {
+NumberGroup movingLamp(const Inspection& in, const std::string& id, const LightEstimate* estimate, const ModelFit* fit) {
   Lines lines;
   const bool own = fit && fit->lightEstimate;
   const std::optional<Eigen::Matrix3d> covariance = own ? fit->lightCovariance : estimate ? estimate->covariance : std::nullopt;
@@ -126,11 +126,11 @@ NumberGroup movingLamp(const Inspection& inspection, const std::string& id, cons
   const auto left = [&](const QString& name, const std::optional<double>& px) {
     lines.add(name, px ? QObject::tr("misses the peaks by %1 px").arg(numberText(*px, 2)) : QObject::tr("no such lamp"));
   };
-  if (const auto r = inspection.lightFrame.byLight.find(id); r != inspection.lightFrame.byLight.end()) {
+  if (const auto r = in.lightFrame.byLight.find(id); r != in.lightFrame.byLight.end()) {
     left(QObject::tr("with camera"), r->second.camera);
     left(QObject::tr("at rest"), r->second.world);
   }
-  const bool carried = inspection.lightFrame.frame == LightFrame::Camera;
+  const bool carried = in.lightFrame.frame == LightFrame::Camera;
   return {carried ? QObject::tr("%1, in the camera's coordinates").arg(lightTitle(id)) : lightTitle(id), lines.text()};
 }
 
