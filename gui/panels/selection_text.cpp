@@ -110,7 +110,7 @@ NumberGroup lightGroup(const std::string& id, const LightEstimate& estimate, con
   return {lightTitle(id), lines.text()};
 }
 
-/// Where a lamp is that moves with the camera, or may: by the model on show, else by all contours together, and what speaks for it.
+/// Where a lamp that moves with the camera is, by the model on show or else by all contours, and what speaks for it.
 NumberGroup movingLamp(const Inspection& in, const std::string& id, const LightEstimate* estimate, const ModelFit* fit) {
   Lines lines;
   const bool own = fit && fit->lightEstimate;
