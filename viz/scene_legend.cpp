@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <string_view>
+#include <utility>
 
 #include "core/base/number_text.h"
 #include "core/draw/frame_overlay.h"
@@ -56,7 +57,13 @@ bool isItsQuadric(const LayerInput& in, const std::string& model, const std::str
   });
 }
 
-const char* statedLightText(const Scene& scene) {
+/// What is said of lights that move.
+std::string movesText(const LightFrameChoice& choice) {
+  if (!choice.elsewhere.empty()) return ", some move with the camera";
+  return choice.frame == LightFrame::Camera ? ", moves with the camera" : "";
+}
+
+std::string statedLightText(const Scene& scene) {
   const bool known = std::any_of(scene.lights.begin(), scene.lights.end(), [](const TrueLight& l) { return l.known; });
   return known ? "light (known)" : "light (truth)";
 }
@@ -82,10 +89,10 @@ SceneLegend legendOf(const LayerInput& in, const std::vector<ShownLayer>& layers
   if (drawn("virtual-cameras") || drawn("tangent-planes"))
     legend.entries.push_back({kVirtualCamera, "virtual camera, tangent plane"});
   if (drawn("observed-contours")) legend.entries.push_back({kObserved, "observed contour"});
-  const bool carried = in.inspection->lightFrame.frame == LightFrame::Camera;
-  if (drawn("light"))
-    legend.entries.push_back({kLightColour, carried ? "light (estimate), moves with the camera" : "light (estimate)"});
-  if (drawn("true-light")) legend.entries.push_back({kTruth, statedLightText(*in.inspection->scene)});
+  // Said once, for all lights in sight.
+  std::string carried = movesText(in.inspection->lightFrame);
+  if (drawn("light")) legend.entries.push_back({kLightColour, "light (estimate)" + std::exchange(carried, "")});
+  if (drawn("true-light")) legend.entries.push_back({kTruth, statedLightText(*in.inspection->scene) + carried});
   if (drawn("measured-lamps")) legend.entries.push_back({kMeasuredLamp, "measured lamp, 95 % region"});
   if (drawn("solver-runs")) legend.entries.push_back({in.ink(), "runs of a solver: hollow start, full end"});
   std::string noEvidence;

@@ -384,10 +384,11 @@ void SceneView::setInspection(std::shared_ptr<const Inspection> inspection) {
     impl_->photograph->setPhotograph(-1, nullptr);
   }
   const bool moved = newScene || inspection->scene != impl_->inspection->scene;
+  const bool otherCoordinates = newScene || inspection->lightFrame.frame != impl_->inspection->lightFrame.frame;
   impl_->inspection = std::move(inspection);
   impl_->refreshInput();
   impl_->mark(newScene ? kEverything : kOnInspection | (moved ? kOnScene : 0u));
-  if (newScene) impl_->frameAllPending = true;  // the window's shape is known at the first frame
+  if (otherCoordinates) impl_->frameAllPending = true;  // the window's shape is known at the first frame
 }
 
 void SceneView::setSelection(const Selection& selection) {

@@ -146,13 +146,16 @@ class Adviser {
     }
   }
 
-  /// What may help the best model and those close to it, their first changes first. If none answers, the present one.
+  /// What may help the best model and those close to it, their first changes first. If none answers, the present one. All models,
+  /// where the highlights contradict what is stated of the light: that alone may be why they fail.
   std::vector<CandidateChange> changesWorthATrial() {
     const ProgressFn progress = step("find changes to try");
+    const bool contradicted = r_.request.settings.text("light.frame") != "auto" && !r_.lightFrame.doubt.empty();
     std::vector<std::pair<double, std::string>> bases;
     for (const auto& [model, of] : results_) {
       const double pct = errorOf(d_, model)->pct();
-      if (d_.best.empty() ? model == d_.present : pct <= kNotFar * errorOf(d_, d_.best)->pct()) bases.emplace_back(pct, model);
+      if (contradicted || (d_.best.empty() ? model == d_.present : pct <= kNotFar * errorOf(d_, d_.best)->pct()))
+        bases.emplace_back(pct, model);
     }
     std::sort(bases.begin(), bases.end());
     std::vector<std::pair<std::size_t, CandidateChange>> ranked;

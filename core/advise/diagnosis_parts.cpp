@@ -66,6 +66,7 @@ class Candidates {
       : r_(inspection), model_(modelByName(model)), evidence_(highlightEvidence(inspection, model_, progress)) {}
 
   std::vector<CandidateChange> run() {
+    lightFrame();
     filters();
     lobes();
     otherFrames();
@@ -82,6 +83,11 @@ class Candidates {
     Settings other = r_.request.settings;
     other.setFromText(key, value);
     if (!(other.value(key) == r_.request.settings.value(key))) all_.push_back({{.set = key + "=" + value}, why});
+  }
+
+  /// The highlights speak against what is stated.
+  void lightFrame() {
+    if (!r_.lightFrame.doubt.empty()) set("light.frame", "auto", r_.lightFrame.reason);
   }
 
   void filters() {
@@ -251,6 +257,9 @@ ModelDiagnosis diagnosisOf(const Inspection& r, const std::string& name, const U
   };
   for (const ModelResult::Fit& fit : result.fits)
     if (const std::string reason = fitReason(fit); !reason.empty()) add(lightName(textOf(fit.key())) + ": " + reason);
+  if (std::none_of(d.causes.begin(), d.causes.end(),
+                   [&](const std::string& c) { return c.find(r.lightFrame.doubt) != std::string::npos; }))
+    add(r.lightFrame.doubt);
   if (std::none_of(r.views.begin(), r.views.end(), [](const TrainingView& v) { return bool(v.seen); }))
     add("no training view can be used");
   add(twoLimitAngles(r, model, d.evidence));

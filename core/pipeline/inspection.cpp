@@ -51,7 +51,7 @@ std::vector<TrainingView> Inspection::viewsOf(const FitKey& key, bool asGiven) c
 }
 
 Eigen::Isometry3d Inspection::lightFromScene(int frame, const std::string& light) const {
-  if (!lightFrame.elsewhere.count(light)) return Eigen::Isometry3d::Identity();
+  if (inScene || !lightFrame.elsewhere.count(light)) return Eigen::Isometry3d::Identity();
   const Eigen::Isometry3d& camFromWorld = world->frames[static_cast<std::size_t>(frame)].camera.camFromWorld;
   return lightFrame.frame == LightFrame::World ? camFromWorld : camFromWorld.inverse();
 }
@@ -114,7 +114,7 @@ Outcome<std::shared_ptr<const Surface>> surfaceInScene(const Inspection& inspect
 Outcome<std::shared_ptr<const Surface>> surfaceFor(const Inspection& inspection, int frame, const std::string& light) {
   if (!inspection.surfaces) return Failure{Reason::NoSurface, ""};
   Outcome<std::shared_ptr<const Surface>> found = surfaceInScene(inspection, frame, light);
-  if (!found || !inspection.lightFrame.elsewhere.count(light)) return found;
+  if (!found) return found;
   return carried(*std::move(found), inspection.lightFromScene(frame, light));
 }
 
@@ -128,11 +128,11 @@ TrainingView trainingViewIn(const Inspection& inspection, const FrameEvidence& e
 }
 
 std::shared_ptr<const Inspection> inSceneAt(std::shared_ptr<const Inspection> inspection, int frame) {
-  if (!inspection || inspection->lightFrame.elsewhere.empty()) return inspection;
+  if (!inspection || inspection->inScene || inspection->lightFrame.elsewhere.empty()) return inspection;
   auto there = std::make_shared<Inspection>(*inspection);
   frame = std::max(frame, 0);  // where none is chosen, lights are where the first one has them
   const auto back = [&](int at, const std::string& light) { return inspection->lightFromScene(at, light).inverse(); };
-  there->lightFrame.elsewhere.clear();  // it is what everything else says from here on
+  there->inScene = true;
   for (TrainingView& v : there->views) v = carried(v, back(v.frame, v.highlight.light));
   for (auto& [index, v] : there->viewsAsGiven) v = carried(v, back(v.frame, v.highlight.light));
   for (auto& [key, light] : there->lights)

@@ -86,6 +86,7 @@ struct Inspection {
   std::shared_ptr<const Scene> given;  ///< as it was read; the same object where the what-if leaves the scene alone
   std::shared_ptr<const SurfaceCache> surfaces;  ///< of `scene`
   LightFrameChoice lightFrame;                   ///< which coordinates `scene` has
+  bool inScene = false;                          ///< everything is in the scene's coordinates of one frame, see inSceneAt()
   InspectionRequest request;
   TrainSpec train;
   std::vector<FrameEvidence> evidence;  ///< one per frame; `frame` is -1 where nobody looked

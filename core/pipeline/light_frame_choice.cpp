@@ -106,7 +106,7 @@ std::string pxText(const std::optional<double>& px) {
 
 /// What the highlights of one light say.
 struct Verdict {
-  enum class Told { Nothing, Either, Yes };  ///< no frame explains the peaks, both do, one does
+  enum class Told { Nothing, Either, Both, Yes };  ///< none explains the peaks, both may, both are one, one does
   LightFrame frame = LightFrame::World;
   Told told = Told::Nothing;
   std::string reason;
@@ -121,7 +121,7 @@ Verdict verdictOf(const LightFrameChoice::Residuals& r, double radiusPx, bool st
   if (camera <= bound && world > kLeastPx && camera < kLessThanWorld * world)
     return {LightFrame::Camera, Verdict::Told::Yes, "the lamp moves with the camera: " + both};
   if (world <= bound && still)
-    return {LightFrame::World, Verdict::Told::Yes,
+    return {LightFrame::World, Verdict::Told::Both,
             "the camera stands still, and so does the lamp: it misses the peaks by " + pxText(r.world)};
   if (world <= bound && !(camera <= kAlike * std::max(world, kLeastPx)))
     return {LightFrame::World, Verdict::Told::Yes, "the lamp stands still: " + both};

@@ -443,6 +443,8 @@ ModelResult::Fit StageRun::fitOf(const HighlightModel& model, const FitKey& key,
     Failure why = entry.fit.failure();
     if (why.reason == Reason::RankDeficient && r_.lightFrame.frameOf(key.light) == LightFrame::Camera)
       why.detail += "; the lamp moves with the camera, and in the lamp's coordinates all cameras are one";
+    if (r_.request.settings.text("light.frame") != "auto" && !r_.lightFrame.doubt.empty())
+      why.detail += "; " + r_.lightFrame.doubt;
     if (together_ && input.views.empty())
       why.detail += "; no training frame shows this light: lamps may be switched between frames";
     if (merged && why.detail != merged->text) why.detail += "; " + merged->text;

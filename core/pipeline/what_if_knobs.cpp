@@ -70,11 +70,16 @@ Eigen::Vector3d shiftOf(const WhatIf& w, const std::string& light) {
 void addLights(std::vector<WhatIfKnob>& knobs, const Scene& scene, double distance) {
   for (const TrueLight& light : scene.lights) {
     const bool far = light.lamp.atInfinity();  // its unit direction moves
+    const bool carried = light.frame == LightFrame::Camera;
+    const Eigen::Vector3d at = far ? lightOf(light.lamp).homogeneous().head<3>().eval() : light.lamp.position();
+    const std::string help =
+        formatted("Moves the light along this axis of the %s. The scene has %s at %.4g, %.4g, %.4g%s.", nameOf(light.frame),
+                  far ? "its direction" : "it", at.x(), at.y(), at.z(), far ? "" : " m");
     const double reach = far ? 1.0 : kLightReach * distance;
     for (int axis = 0; axis < 3; ++axis)
-      knobs.push_back({saysLight(light.id) ? light.id : "Light " + light.id,
+      knobs.push_back({(saysLight(light.id) ? light.id : "Light " + light.id) + (carried ? ", moves with the camera" : ""),
                        numberKnob("light." + light.id + "." + kAxes[axis], std::string("Shift ") + kAxes[axis], far ? "" : "m", 0,
-                                  -reach, reach, roundStep(2 * reach), "Moves the light along this world axis."),
+                                  -reach, reach, roundStep(2 * reach), help),
                        true, [id = light.id, axis](const WhatIf& w) { return shiftOf(w, id)(axis); },
                        [id = light.id, axis](WhatIf& w, double v) {
                          Eigen::Vector3d by = shiftOf(w, id);

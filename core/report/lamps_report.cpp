@@ -14,7 +14,7 @@ namespace glint {
 
 const char* const kLampsCsvHeader =
     "id,status,reason,frames,x,y,z,cov_xx,cov_yy,cov_zz,cov_xy,cov_xz,cov_yz,direction_x,direction_y,direction_z,"
-    "direction_sigma_deg,from_x,from_y,from_z,residual_px,highlights,dropped\n";
+    "direction_sigma_deg,from_x,from_y,from_z,residual_px,highlights,dropped,frame\n";
 
 std::string reasonOf(const LampAnswer& lamp) { return lamp.failure ? lamp.failure->message() : lamp.withoutPosition; }
 
@@ -121,10 +121,13 @@ std::vector<LampLine> lampLinesOf(const Scene& scene, const std::vector<LampAnsw
     if (on.size() > 1) ++several;
     if (on.size() != 1 || on.front()->failure) continue;
     const std::filesystem::path& file = frame.image.empty() ? frame.radiance : frame.image;
-    const Eigen::Matrix3d turn = frame.camera.camFromWorld.linear();
-    lines.push_back({file.empty() ? frame.id : file.filename().string(), turn * on.front()->direction});
+    // The direction of a lamp that moves with the camera is in the camera's coordinates already.
+    const auto turnOf = [carried = on.front()->frame == LightFrame::Camera](const Frame& f) {
+      return carried ? Eigen::Matrix3d(Eigen::Matrix3d::Identity()) : Eigen::Matrix3d(f.camera.camFromWorld.linear());
+    };
+    lines.push_back({file.empty() ? frame.id : file.filename().string(), turnOf(frame) * on.front()->direction});
     constexpr double kSameWay = 1e-6;  // rounding of a pose in a file stays below
-    turned = turned || (turn - scene.frames.front().camera.camFromWorld.linear()).norm() > kSameWay;
+    turned = turned || (turnOf(frame) - turnOf(scene.frames.front())).norm() > kSameWay;
   }
   if (several > 0)
     warnings.push_back("the .lp file leaves out " + std::to_string(several) + " photographs that show several lamps");
@@ -169,7 +172,7 @@ std::string lampsCsv(const LampsReport& report) {
     out += fields(known ? std::optional(lamp.direction) : std::nullopt) + ",";
     out += (known ? field(degrees(lamp.directionSigma)) : "") + "," + fields(known ? lamp.from : std::nullopt) + ",";
     out += (known ? field(lamp.residualPx) : "") + "," + std::to_string(lamp.highlights) + "," +
-           std::to_string(lamp.dropped.size()) + "\n";
+           std::to_string(lamp.dropped.size()) + "," + (lamp.frame ? nameOf(*lamp.frame) : "") + "\n";
   }
   return out;
 }

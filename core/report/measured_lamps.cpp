@@ -183,7 +183,8 @@ std::optional<Failure> nothingMeasured(const LampsReport& report) {
 OutputKind lampsKind(const std::string& file, const std::string& place) {
   const std::string ending = std::filesystem::path(file).extension().string();
   if (ending == ".json") return OutputKind::document("glint_lights");
-  if (ending == ".csv") return OutputKind::table(kLampsCsvHeader);
+  const std::string header = kLampsCsvHeader;
+  if (ending == ".csv") return OutputKind::table(header.substr(0, header.rfind(',')));  // earlier versions had no last column
   if (ending == ".lp") return OutputKind::lightPositions();
   throw InputError(file, place, "the ending chooses what is written: .json, .csv or .lp");
 }

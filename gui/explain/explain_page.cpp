@@ -134,6 +134,7 @@ QString ExplainPage::subject() const {
   QString words = said("Frame %1%2").arg(escaped(scene.frames[frame].id), ofSeveral);
   if (!plain() && !explanation->light.empty()) words += QStringLiteral(", ") + lightText(explanation->light).toHtmlEscaped();
   if (!plain() && !explanation->model.empty()) words += said(", model %1").arg(escaped(explanation->model));
+  if (!plain() && inspection && inspection->lightFrame.frame == LightFrame::Camera) words += said(", coordinates of the camera");
   return QStringLiteral("<div class='subject' style='color:%1; margin-top:8px; margin-bottom:8px'>%2</div>")
       .arg(palette.color(QPalette::PlaceholderText).name(), words);
 }

@@ -33,6 +33,7 @@ FrameCaptions frameCaptions(const Document& document, const draw::FrameOverlay& 
     return QStringLiteral("<a href='%1' style='color:%2; text-decoration:none'>%3</a>").arg(target, colour, text);
   };
   QString rows, reasons, poor;
+  int failures = 0;
   QString problems, lobes;
   for (const draw::OverlayCaption& c : overlay.captions) {
     if (c.model.empty()) {
@@ -51,7 +52,7 @@ FrameCaptions frameCaptions(const Document& document, const draw::FrameOverlay& 
       if (c.score.matched > 0)
         poor += QStringLiteral("<p>%1</p>").arg(line);  // in a tool tip: it answers, and the photograph keeps its room
       else if (reason.contains(QStringLiteral(": ")))
-        reasons += QStringLiteral("<div style='color:%1'>%2</div>").arg(warning, line);
+        reasons += QStringLiteral("<div style='color:%1'>%2</div>").arg(warning, line), ++failures;
     }
     if (c.score.missed > 0 && (c.score.reason.empty() || c.score.matched > 0))
       said << QObject::tr("%1 missed").arg(c.score.missed);
@@ -77,7 +78,7 @@ FrameCaptions frameCaptions(const Document& document, const draw::FrameOverlay& 
                  "left") +
             cell(QObject::tr("error %")) + cell(QObject::tr("px")) + cell(QObject::tr("IoU")) + QStringLiteral("<td></td></tr>") +
             rows + QStringLiteral("</table>") + reasons;
-  return {html + lobes, !reasons.isEmpty(), poor};
+  return {html + lobes, failures, poor};
 }
 
 void keepErrors(const draw::FrameOverlay& results, draw::FrameOverlay& shown) {

@@ -14,9 +14,9 @@ inline constexpr char kModelLayer[] = "frame/model/";  ///< and the model: the l
 /// The text below the photograph, as rich text: notes, a table with one row per model ("show:MODEL" and "select:MODEL" are its
 /// links), and the reasons of failures.
 struct FrameCaptions {
-  QString html;          ///< "" for none
-  bool failure = false;  ///< it holds the reason of one
-  QString tip;           ///< why models are poor; "" = none is
+  QString html;      ///< "" for none
+  int failures = 0;  ///< how many it gives the reason of
+  QString tip;       ///< why models are poor; "" = none is
 };
 /// @param earlier  the errors are of an earlier state than what is asked for: faded, and the heading says so
 FrameCaptions frameCaptions(const Document& document, const draw::FrameOverlay& overlay, const QPalette& palette, bool earlier);

@@ -414,11 +414,11 @@ void FramePanel::showOverlay() {
 void FramePanel::showCaptions(const draw::FrameOverlay& overlay, bool earlier) {
   const FrameCaptions captions = frameCaptions(document_, overlay, palette(), earlier);
   // A reason that has gone leaves no empty lines behind.
-  const bool noLonger = failureShown_ && !captions.failure;
+  const bool noLonger = captions.failures < failuresShown_;
   if (overlay.captions.size() != captionCount_ || noLonger || fewerLines_) captions_->setMinimumHeight(0);
   if (!document_.stale()) fewerLines_ = false;  // until then these are still the lines of the what-if
   captionCount_ = overlay.captions.size();
-  failureShown_ = captions.failure;
+  failuresShown_ = captions.failures;
   captions_->setText(captions.html);
   setRichTip(captions_, captions.tip);
   // It may grow but not shrink: the pictures above it would jump with every result.

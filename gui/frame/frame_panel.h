@@ -113,7 +113,7 @@ class FramePanel : public QWidget {
   QAction* colourByRole_ = nullptr;
   draw::FrameOverlay shown_, shownSecond_;
   std::size_t captionCount_ = 0;
-  bool failureShown_ = false;            ///< the captions hold the reason of a failure
+  int failuresShown_ = 0;                ///< the captions hold the reasons of so many
   QToolButton* folded_ = nullptr;        ///< the overlays' switches, where there is no room for a row of them
   bool follows_ = false;                 ///< zoomed to the highlight by the user, who has not moved it since
   int seenFrame_ = -1;                   ///< that was selected last

@@ -70,6 +70,9 @@ RowsModel::Row rowOf(const LampAnswer& lamp, int tag, const QString& unit) {
                          : lamp.position ? QObject::tr("position")
                                          : QObject::tr("direction only");
   row.cells.push_back({answer, {}, lamp.failure ? warningColour() : QColor(), {}});
+  const QString where =
+      !lamp.frame ? QObject::tr("camera") : QLatin1String(nameOf(*lamp.frame));  // of balls there is one camera alone
+  row.cells.push_back({where, {}, {}, toQString(lamp.frameReason)});
   row.cells.push_back(positionOf(lamp, unit));
   row.cells.push_back(directionOf(lamp));
   if (lamp.failure) {
@@ -93,8 +96,8 @@ RowsModel::Row rowOf(const LampAnswer& lamp, int tag, const QString& unit) {
 
 LampTable::LampTable(QWidget* parent)
     : QTableView(parent),
-      model_(new RowsModel({tr("lamp"), tr("answer"), tr("position"), tr("direction"), tr("residual, px"), tr("d.o.f."),
-                            tr("highlights"), tr("dropped"), tr("why no more")},
+      model_(new RowsModel({tr("lamp"), tr("answer"), tr("stands still in"), tr("position"), tr("direction"), tr("residual, px"),
+                            tr("d.o.f."), tr("highlights"), tr("dropped"), tr("why no more")},
                            this)),
       proxy_(new QSortFilterProxyModel(this)) {
   setObjectName(QStringLiteral("lampTable"));

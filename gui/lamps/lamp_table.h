@@ -15,7 +15,7 @@ namespace glint::gui {
 class LampTable : public QTableView {
   Q_OBJECT
  public:
-  enum Column { Lamp, Answer, Position, Direction, Residual, Freedom, Highlights, Dropped, Why };
+  enum Column { Lamp, Answer, StandsStillIn, Position, Direction, Residual, Freedom, Highlights, Dropped, Why };
   explicit LampTable(QWidget* parent = nullptr);
   /// @param report  null = no rows
   void show(const LampsReport* report);

@@ -10,11 +10,14 @@
 
 #include "gui/base/stale_badge.h"
 #include "gui/base/text.h"
+#include "gui/base/tips.h"
 #include "gui/lamps/lamp_table.h"
 
 namespace glint::gui {
 
 namespace {
+
+constexpr int kMostWarnings = 3;  // as many lines as leave room for the table in a low dock
 
 QPushButton* button(const QString& text, const char* name, const QString& tip) {
   auto* b = new QPushButton(text);
@@ -80,6 +83,9 @@ void LampsPanel::show(const LampsReport* report, const QString& why) {
   summary_->setText(report ? summaryOf(*report) : why);
   QStringList lines;
   for (std::size_t i = 0; report && i < report->warnings.size(); ++i) lines << toQString(report->warnings[i]);
+  warnings_->setToolTip(plainTip(lines.join('\n')));
+  if (const qsizetype more = lines.size() - kMostWarnings; more > 0)  // the table stays in sight
+    lines = lines.mid(0, kMostWarnings) << tr("and %1 more: see the table's last column").arg(more);
   warnings_->setText(lines.join('\n'));
   warnings_->setVisible(!lines.isEmpty());
   table_->show(report);

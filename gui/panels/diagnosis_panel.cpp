@@ -370,6 +370,8 @@ void DiagnosisPanel::fillProblems() {
       if (fit.failure() && !explained)
         addLine(top, tr("because %1: %2").arg(lightText(textOf(fit.key())), toQString(fit.failure()->message())),
                 ProblemLine::Cause);
+    if (const std::string& doubt = inspection->lightFrame.doubt; summary.answered && !explained && !doubt.empty())
+      addLine(top, tr("because %1").arg(toQString(doubt)), ProblemLine::Cause);
     if (summary.answered) addShared(top, *inspection, name);
     if (summary.answered && !wrong.empty()) addWrongFrames(top, *inspection, wrong, !explained);
   }

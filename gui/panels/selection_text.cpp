@@ -35,7 +35,8 @@ class Lines {
   }
   void note(const QString& text) { lines_ << text; }
   /// With a line below that says what it is: two px of one contour may be two different things.
-  void addWithMeaning(const QString& name, double value, const char* unit, const QString& meaning) {
+  template <class Value>
+  void addWithMeaning(const QString& name, const Value& value, const char* unit, const QString& meaning) {
     add(name, value, unit);
     note(QStringLiteral("(%1: %2)").arg(name, meaning));
   }
@@ -107,6 +108,29 @@ NumberGroup lightGroup(const std::string& id, const LightEstimate& estimate, con
   if (estimate.rmsPx > 0)
     lines.addWithMeaning(QObject::tr("residual"), estimate.rmsPx, "px", QString::fromStdString(residualMeaning(estimate)));
   return {lightTitle(id), lines.text()};
+}
+
+/// Where a lamp that moves with the camera is, by the model on show or else by all contours, and what speaks for it.
+NumberGroup movingLamp(const Inspection& in, const std::string& id, const LightEstimate* estimate, const ModelFit* fit) {
+  Lines lines;
+  const bool own = fit && fit->lightEstimate;
+  const std::optional<Eigen::Matrix3d> covariance = own ? fit->lightCovariance : estimate ? estimate->covariance : std::nullopt;
+  if (own || estimate) addLight(lines, own ? *fit->lightEstimate : estimate->light);
+  if (covariance && covariance->allFinite()) {
+    QStringList sigma;
+    for (int i = 0; i < 3; ++i) sigma << numberText(std::sqrt(std::max(0.0, (*covariance)(i, i))), 2);
+    lines.addWithMeaning(QString::fromUtf8("±"), sigma.join(QStringLiteral("  ")), "m",
+                         QObject::tr("one standard deviation by noise, %1").arg(toQString(own ? fit->model : estimate->solver)));
+  }
+  const auto left = [&](const QString& name, const std::optional<double>& px) {
+    lines.add(name, px ? QObject::tr("misses the peaks by %1 px").arg(numberText(*px, 2)) : QObject::tr("no such lamp"));
+  };
+  if (const auto r = in.lightFrame.byLight.find(id); r != in.lightFrame.byLight.end()) {
+    left(QObject::tr("with camera"), r->second.camera);
+    left(QObject::tr("at rest"), r->second.world);
+  }
+  const bool carried = in.lightFrame.frameOf(id) == LightFrame::Camera;
+  return {carried ? QObject::tr("%1, in the camera's coordinates").arg(lightTitle(id)) : lightTitle(id), lines.text()};
 }
 
 NumberGroup fitGroup(const std::string& model, const ModelResult::Fit& f, int frame) {
@@ -216,19 +240,26 @@ std::vector<NumberGroup> describeSelection(const Inspection& inspection, const d
     if (view.frame == frame && (observed < 0 || view.highlight.peak == evidence.highlights[std::size_t(observed)].peak))
       groups.push_back(trainingView(view));
   const auto result = inspection.models.find(model);
+  const ModelFit* shown = nullptr;
   if (result != inspection.models.end()) {
     for (const FrameComparison& c : result->second.frames) {
       if (c.frame != frame || (!light.empty() && c.light != light)) continue;
       groups.push_back(comparison(c, observed));
-      if (c.fit >= 0 && c.fit < int(result->second.fits.size()))
-        groups.push_back(fitGroup(model, result->second.fits[std::size_t(c.fit)], frame));
+      if (c.fit < 0 || c.fit >= int(result->second.fits.size())) continue;
+      const ModelResult::Fit& fit = result->second.fits[std::size_t(c.fit)];
+      groups.push_back(fitGroup(model, fit, frame));
+      if (fit.fit) shown = &*fit.fit;
     }
   }
+  const LightFrameChoice& choice = inspection.lightFrame;
+  const bool tellsWhere = choice.anyMoves() || !choice.doubt.empty();  // first: no other number says that
   for (const auto& [id, estimate] : inspection.lightsFor(frame)) {
-    if (!*estimate)
-      groups.push_back({lightTitle(id), toQString(estimate->failure().message())});
-    else if (light.empty() || id == light)
-      groups.push_back(lightGroup(id, **estimate, inspection.lightFrame));
+    if (*estimate && !light.empty() && id != light) continue;
+    const LightEstimate* const common = *estimate ? &**estimate : nullptr;
+    if (tellsWhere)
+      groups.insert(groups.begin(), movingLamp(inspection, id, common, shown && shown->light == id ? shown : nullptr));
+    groups.push_back(common ? lightGroup(id, *common, choice)
+                            : NumberGroup{lightTitle(id), toQString(estimate->failure().message())});
   }
   for (NumberGroup& group : groups) group.lines = toQString(withoutFolder(group.lines.toStdString(), *inspection.scene));
   return groups;

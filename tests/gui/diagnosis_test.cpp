@@ -97,6 +97,29 @@ class DiagnosisTest : public QObject {
     QCOMPARE(document.brushed().begin()->frame, 2);
   }
 
+  /// A flash that was said to stand still: the list says so before anything is asked, and one click takes the statement back.
+  void aLightThatIsSaidToStandStillAndMovesIsOneClick() {
+    Document document(parseTrainSpec);
+    DiagnosisPanel panel(document);
+    panel.resize(600, 400);
+    panel.show();
+    QVERIFY(QTest::qWaitForWindowExposed(&panel));
+    open(document, testing_support::flashLitScene(testing_support::sphere(0.5), 9));
+    document.setSetting("light.frame", std::string("world"));
+    compute(document);
+    const QStringList said = lines(panel).filter(QStringLiteral("light.frame=world, but the lamp moves with the camera"));
+    QVERIFY2(!said.isEmpty() && said.front().startsWith(QStringLiteral("because ")), qPrintable(lines(panel).join("\n")));
+    QTest::mouseClick(panel.findChild<QPushButton*>(QStringLiteral("diagnose")), Qt::LeftButton);
+    QTRY_VERIFY_WITH_TIMEOUT(!panel.busy(), kLongest);
+    QVERIFY2(!tries(panel).isEmpty(), qPrintable(lines(panel).join("\n")));
+    QPushButton* const remedy = tries(panel).front();
+    QVERIFY2(remedy->accessibleName().endsWith(QStringLiteral("--set light.frame=auto")), qPrintable(remedy->accessibleName()));
+    QTest::mouseClick(remedy, Qt::LeftButton);
+    QCOMPARE(document.request().settings.text("light.frame"), std::string("auto"));
+    document.undoStack()->undo();
+    QCOMPARE(document.request().settings.text("light.frame"), std::string("world"));
+  }
+
   /// The verdict and its remedies stand first, what they stand on is folded, and why models fail is below.
   void aVerdictItsRemediesAndBelowWhatTheyStandOn() {
     Document document(parseTrainSpec);

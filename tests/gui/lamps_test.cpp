@@ -104,6 +104,37 @@ class LampsTest : public QObject {
     QVERIFY(!window.document().toSave().options.count("lamps/measured"));
   }
 
+  /// What is said of each lamp does not push the table out of sight.
+  void theTableSaysInWhatLampsStandStillAndStaysInSight() {
+    LampsReport report;
+    report.lengthUnit = "m";
+    for (int i = 0; i < 13; ++i) {
+      LampAnswer lamp;
+      lamp.id = "dome-" + std::to_string(i);
+      lamp.frame = i == 0 ? LightFrame::Camera : LightFrame::World;
+      lamp.frameReason = "as was measured";
+      report.lamps.push_back(lamp);
+      report.warnings.push_back(lamp.id + ": the scene states this lamp");
+    }
+    LampsPanel panel;
+    panel.resize(600, 280);
+    panel.setVisible(true);
+    panel.show(&report, {});
+    QVERIFY(QTest::qWaitForWindowExposed(&panel));
+    const QAbstractItemModel* table = panel.table()->model();
+    QCOMPARE(table->headerData(LampTable::StandsStillIn, Qt::Horizontal).toString(), QStringLiteral("stands still in"));
+    QCOMPARE(table->index(0, LampTable::StandsStillIn).data().toString(), QStringLiteral("camera"));
+    QCOMPARE(table->index(1, LampTable::StandsStillIn).data().toString(), QStringLiteral("world"));
+    QVERIFY(
+        table->index(0, LampTable::StandsStillIn).data(Qt::ToolTipRole).toString().contains(QStringLiteral("as was measured")));
+    QCOMPARE(table->headerData(LampTable::Position, Qt::Horizontal).toString(), QStringLiteral("position"));
+    auto* warnings = panel.findChild<QLabel*>(QStringLiteral("lampsWarnings"));
+    QCOMPARE(warnings->text().split('\n').size(), 4);
+    QVERIFY2(warnings->text().endsWith(QStringLiteral("and 10 more: see the table's last column")), qPrintable(warnings->text()));
+    QVERIFY(warnings->toolTip().contains(QStringLiteral("dome-12")));
+    QVERIFY2(panel.table()->height() > 100, qPrintable(QString::number(panel.table()->height())));
+  }
+
   void stoppingLeavesNothing() {
     Engine engine = knownEngine();
     std::atomic<bool> running{false};

@@ -15,6 +15,7 @@
 #include "gui/document/document.h"
 #include "gui/panels/parameter_panel.h"
 #include "gui/panels/selection_text.h"
+#include "tests/core/pipeline/exact_scene.h"
 #include "tests/gui/fixture.h"
 
 namespace glint::gui {
@@ -146,6 +147,40 @@ class PanelTest : public QObject {
     for (const NumberGroup& group : describeSelection(inspection, {0, "canonical"}, "canonical")) all += group.lines;
     QVERIFY2(all.contains("unreadable: 0000.png: cannot be read"), qPrintable(all));
     QVERIFY(!all.contains(toQString(folder)));
+  }
+
+  /// First of all numbers: in whose coordinates a flash is, where, how sure that is, and what each of both assumptions leaves.
+  void numbersOfAFlashAreOfTheCamera() {
+    using namespace testing_support;
+    const std::shared_ptr<const Scene> scene = flashLitScene(sphere(0.5), 9);
+    InspectionRequest request;
+    request.models = {"limit-angle"};
+    request.train = "0-5";
+    request.noisePx = 0.05;
+    const Inspection carried = inspect(scene, request);
+    const NumberGroup first = describeSelection(carried, {7, "limit-angle"}, "limit-angle").front();
+    QCOMPARE(first.title, QStringLiteral("Light lamp, in the camera's coordinates"));
+    const QStringList lines = first.lines.split('\n');
+    const auto three = [&](const QString& start) {
+      Eigen::Vector3d v(NAN, NAN, NAN);
+      for (const QString& line : lines)
+        if (const QStringList parts = line.split(' ', Qt::SkipEmptyParts); line.startsWith(start) && parts.size() == 6)
+          for (int i = 0; i < 3; ++i) v(i) = parts[2 + i].toDouble();
+      return v;
+    };
+    const Eigen::Vector3d at = three(QStringLiteral("L = ")), sigma = three(QString::fromUtf8("± = "));
+    for (int i = 0; i < 3; ++i) QVERIFY2(std::abs(at(i) - kFlashInCamera(i)) < 5 * sigma(i), qPrintable(first.lines));
+    QVERIFY2(sigma.maxCoeff() < 0.05, qPrintable(first.lines));
+    QVERIFY2(!lines.filter(QStringLiteral("with camera = misses the peaks by ")).isEmpty(), qPrintable(first.lines));
+    QVERIFY2(!lines.filter(QStringLiteral("at rest = misses the peaks by ")).isEmpty(), qPrintable(first.lines));
+    // A statement that they contradict shows both as well, also where nothing answers.
+    request.settings.set("light.frame", std::string("world"));
+    const NumberGroup doubted = describeSelection(inspect(scene, request), {7, "limit-angle"}, "limit-angle").front();
+    QCOMPARE(doubted.title, QStringLiteral("Light lamp"));
+    QVERIFY2(doubted.lines.contains(QStringLiteral("with camera = misses the peaks by ")), qPrintable(doubted.lines));
+    // The numbers of a lamp that stands still begin as ever.
+    const Inspection still = inspect(exactScene(sphere(0.5), 9), InspectionRequest(carried.request));
+    QVERIFY(describeSelection(still, {7, "limit-angle"}, "limit-angle").front().title.startsWith(QStringLiteral("Highlight")));
   }
 
   void numbersGiveDigitsAwayBeforeTheyAreCut() {

@@ -619,5 +619,34 @@ TEST(SceneLegend, AFitThatIsNoEllipsoidIsSaidOnce) {
   }
 }
 
+/// Known lamps have no estimate in the picture, and are said to move all the same; where both are drawn it is said once.
+TEST(SceneLegend, ALampThatMovesWithTheCameraIsSaidToOnce) {
+  const TemporaryFolder folder;
+  const auto inspection = smallInspection(folder.path());
+  inspection->lightFrame.frame = LightFrame::Camera;
+  auto scene = std::make_shared<Scene>(*inspection->scene);
+  for (TrueLight& light : scene->lights) light.known = true;
+  inspection->scene = scene;
+  LayerInput input;
+  input.inspection = inspection.get();
+  input.surfaceKey = inspection->surfaces->keyOf(0);
+  input.scale = sceneScale(*inspection, nullptr, {0, 1, 2}, 1);
+  const LayerContent lamps = trueLightLayer(input), nothing;
+  ASSERT_FALSE(lamps.drawn.empty());
+  EXPECT_NE(lamps.drawn[0].info.text.find("coordinates = of the camera"), std::string::npos) << lamps.drawn[0].info.text;
+  for (const bool estimated : {false, true}) {
+    std::vector<ShownLayer> layers;
+    for (const Layer& layer : sceneLayers()) {
+      const bool on = layer.name == "true-light" || (estimated && layer.name == "light");
+      layers.push_back({on, on ? &lamps : &nothing});
+    }
+    std::vector<std::string> words;
+    for (const auto& entry : legendOf(input, layers).entries) words.push_back(entry.text);
+    const std::string moves = ", moves with the camera";
+    EXPECT_EQ(std::count(words.begin(), words.end(), "light (estimate)" + moves), estimated);
+    EXPECT_EQ(std::count(words.begin(), words.end(), "light (known)" + (estimated ? "" : moves)), 1);
+  }
+}
+
 }  // namespace
 }  // namespace glint::viz

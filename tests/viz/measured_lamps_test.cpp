@@ -112,6 +112,20 @@ TEST(MeasuredLamps, WhatIsHiddenUnknownOrExactIsSaidOrLeftOut) {
   EXPECT_EQ(scene.layer({broken}).drawn.size(), 1U);  // its place alone
 }
 
+TEST(MeasuredLamps, ALampOfOtherCoordinatesIsSaidAndNotDrawn) {
+  Scene scene;
+  LampAnswer flash = placed(), lamp = placed();
+  flash.frame = LightFrame::Camera;
+  lamp.frame = LightFrame::World;
+  const std::size_t alone = scene.layer({lamp}).drawn.size();
+  const LayerContent content = scene.layer({lamp, flash});
+  EXPECT_EQ(content.drawn.size(), alone);
+  ASSERT_EQ(content.remarks.size(), 1U);
+  EXPECT_NE(content.remarks[0].find("other coordinates"), std::string::npos) << content.remarks[0];
+  scene.inspection->lightFrame.frame = LightFrame::Camera;
+  EXPECT_EQ(scene.layer({flash}).drawn.size(), alone);
+}
+
 /// The light of one limit angle stands on the shipped ellipsoid 16 cm from its lamp with a standard deviation of 8 mm: what it
 /// leaves out must stand beside it.
 TEST(EstimatedLight, SaysThatItsDeviationIsOfNoiseAloneAndHowFarTheLampOfALobeIs) {

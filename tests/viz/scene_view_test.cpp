@@ -448,6 +448,25 @@ TEST_F(SceneViewPicture, AMovedCameraStaysWhereItWasPut) {
   EXPECT_NEAR(view.viewPoint().viewAngleDeg, 40, 1e-12);
 }
 
+/// The same numbers mean other places where lights stand still in the cameras: the old view would look past the scene.
+TEST_F(SceneViewPicture, OtherCoordinatesAreShownAsAWhole) {
+  SceneView view, fresh;
+  const auto world = smallInspection(folder_.path());
+  const auto carried = std::make_shared<Inspection>(*world);
+  carried->lightFrame.frame = LightFrame::Camera;
+  carried->scene = std::make_shared<const Scene>(inCameras(*world->scene));
+  carried->surfaces = std::make_shared<const SurfaceCache>(*carried->scene);
+  fresh.setInspection(carried);
+  render(fresh);
+  view.setInspection(world);
+  view.setViewPoint({{1, 2, 3}, {0, 0, 0.1}, {0, 0, 1}, 40});
+  render(view);
+  view.setInspection(carried);
+  render(view);
+  EXPECT_LT((view.viewPoint().position - fresh.viewPoint().position).norm(), 1e-9);
+  EXPECT_LT((view.viewPoint().focalPoint - fresh.viewPoint().focalPoint).norm(), 1e-9);
+}
+
 /// Quadrics that a fit may leave behind where the data do not make an ellipsoid: flagged with their name, never a crash.
 TEST_F(SceneViewPicture, ADegenerateQuadricIsDrawnDashedInRedWithItsName) {
   const auto inspection = smallInspection(folder_.path());

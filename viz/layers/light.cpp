@@ -30,9 +30,15 @@ void addBody(LayerContent& content, const std::vector<Points>& outline, const Co
   if (!circles.empty()) content.add(lineActor(circles, colour, width), info, width);
 }
 
-std::string placeText(const SceneThing& lamp) {
-  if (lamp.place->w() == 0) return line("direction", Eigen::Vector3d(lamp.place->head<3>().normalized()));
-  return line("position", lamp.position(), "m");
+std::string placeText(const LayerInput& in, const SceneThing& lamp) {
+  const LightFrameChoice& choice = in.inspection->lightFrame;
+  const std::string own = nameOf(choice.frameOf(lamp.light));
+  const std::string of = choice.elsewhere.count(lamp.light)   ? "of the scene in this frame; it stands still in the " + own
+                         : choice.frame == LightFrame::Camera ? "of the camera, with which it moves"
+                                                              : "";
+  return (lamp.place->w() == 0 ? line("direction", Eigen::Vector3d(lamp.place->head<3>().normalized()))
+                               : line("position", lamp.position(), "m")) +
+         (of.empty() ? "" : line("coordinates", of));
 }
 
 std::string sizeText(const Lamp& lamp) {
@@ -45,7 +51,7 @@ std::string sizeText(const Lamp& lamp) {
 
 void addEstimate(LayerContent& content, const LayerInput& in, const SceneThing& lamp, double size, Picked info) {
   const Colour colour = colourOf(lamp);
-  info.text += placeText(lamp);
+  info.text += placeText(in, lamp);
   if (lamp.arrow) return addArrow(content, in, lamp, info);
   addBody(content, lamp.chains, colour, 1.5, info);
   const double r = size * 1.6 * in.scale.point;
@@ -132,7 +138,7 @@ LayerContent trueLightLayer(const LayerInput& in) {
                 (lamp.isPoint() ? line("radius", 0.0, "m") : sizeText(lamp));
     const double r = std::max(radiusOf(lamp), 4.2 * in.scale.point);
     const SceneThing drawn = trueLampThing(light, r, in.scale);
-    if (!endsOf(lamp)) info.text += placeText(drawn);
+    if (!endsOf(lamp)) info.text += placeText(in, drawn);
     if (drawn.arrow) {
       addArrow(content, in, drawn, info);
       continue;

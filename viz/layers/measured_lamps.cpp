@@ -77,11 +77,15 @@ void addArrow(LayerContent& content, const LayerInput& in, const LampAnswer& lam
 LayerContent measuredLampsLayer(const LayerInput& in) {
   LayerContent content;
   if (!in.lamps) return content;
-  std::size_t without = 0;
+  std::size_t without = 0, elsewhere = 0;
   for (const LampAnswer& lamp : *in.lamps) {
     if (in.hidden.lights.count(lamp.id)) continue;
     if (lamp.failure) {
       ++without;
+      continue;
+    }
+    if (lamp.frame && *lamp.frame != in.inspection->lightFrame.frame) {
+      ++elsewhere;
       continue;
     }
     const Picked info = infoOf(lamp);
@@ -98,6 +102,9 @@ LayerContent measuredLampsLayer(const LayerInput& in) {
     content.extent.push_back(*lamp.position);
     addRegion(content, lamp, info, width);
   }
+  if (elsewhere > 0)  // its numbers are of other coordinates than the picture's
+    content.remarks.push_back(std::to_string(elsewhere) + " measured " + (elsewhere == 1 ? "lamp stands" : "lamps stand") +
+                              " still in other coordinates than this picture's (light.frame)");
   if (without > 0)
     content.remarks.push_back(std::to_string(without) + " of " + std::to_string(in.lamps->size()) +
                               " measured lamps have no answer (panel Lamps)");

@@ -53,6 +53,27 @@ DiagnoseOptions quick(std::string present = "") {
   return options;
 }
 
+TEST(Diagnosis, AFrameOfTheLightThatTheHighlightsSpeakAgainstIsNamedAndMended) {
+  InspectionRequest request;
+  request.models = {"limit-angle"};
+  request.train = "0-5";
+  for (const bool flash : {true, false}) {
+    request.settings.set("light.frame", std::string(flash ? "world" : "camera"));
+    const Inspection wrong = inspect(flash ? flashLitScene(sphere(0.5), 9) : exactScene(sphere(0.5), 9), request);
+    const std::string stated = flash ? "light.frame=world, but the lamp moves" : "light.frame=camera, but the lamp stands still";
+    const Diagnosis d = diagnose(wrong, quick());
+    ASSERT_FALSE(d.remedies.empty()) << d.verdict;
+    EXPECT_EQ(d.remedies.front().change.set, "light.frame=auto") << d.verdict;
+    EXPECT_LT(d.remedies.front().after.pct(), kExactPct);
+    EXPECT_NE(d.remedies.front().why.find("misses the peaks by"), std::string::npos) << d.remedies.front().why;
+    EXPECT_LT(tableAfter(wrong, d.remedies.front().change, d.present).contourErrorPct.mean, kExactPct);
+    ASSERT_FALSE(d.models.front().causes.empty());
+    EXPECT_TRUE(std::any_of(d.models.front().causes.begin(), d.models.front().causes.end(), [&](const std::string& cause) {
+      return cause.find(stated) != std::string::npos;
+    })) << d.models.front().causes.front();
+  }
+}
+
 TEST(Diagnosis, WhereNothingIsLeftToImproveItSaysSoAndTriesNothing) {
   const Inspection inspection = inspected(exactScene(sphere(0.5), 9), {"limit-angle", "canonical"});
   const Diagnosis d = diagnose(inspection);

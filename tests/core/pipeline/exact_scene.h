@@ -105,6 +105,17 @@ inline std::shared_ptr<Scene> exactScene(const AnalyticSpec& spec, int frames) {
   return exactScene(spec, {{"lamp", {0.1, 0.2, 1.4}}}, frames, [](int) { return std::vector<std::string>{"lamp"}; });
 }
 
+/// The place of a flash, in the coordinates of its camera.
+const Eigen::Vector3d kFlashInCamera(0.05, -0.02, 0.01);
+
+/// exactScene whose lamp is on the camera: its place in the world is another one for every frame.
+inline std::shared_ptr<Scene> flashLitScene(const AnalyticSpec& spec, int frames) {
+  const auto scene = exactScene(spec, frames);
+  for (Frame& f : scene->frames)
+    f.highlights = exactContours(spec, f.camera, {"lamp", f.camera.camFromWorld.inverse() * kFlashInCamera});
+  return scene;
+}
+
 /// exactScene with a lamp that the scene states; the contours are of the lights of exactScene.
 inline std::shared_ptr<Scene> litScene(const AnalyticSpec& surface, int frames) {
   const auto scene = exactScene(surface, frames);

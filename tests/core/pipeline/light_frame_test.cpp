@@ -18,6 +18,7 @@ namespace {
 using namespace testing_support;
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
+using testing::Contains;
 using testing::HasSubstr;
 
 const Vector3d kFlash(0.05, -0.02, 0.01);  // in the camera's frame, m
@@ -143,7 +144,31 @@ TEST(LightFrame, AWrongStatementIsNamed) {
   EXPECT_EQ(in.lightFrame.frame, LightFrame::World);
   EXPECT_THAT(in.lightFrame.doubt, HasSubstr("light.frame=world, but the lamp moves with the camera"));
   // Never an ok answer from the wrong frame.
-  for (const ModelResult::Fit& fit : in.models.at("limit-angle").fits) EXPECT_TRUE(!fit.fit || !fit.fit->poor.empty());
+  for (const ModelResult::Fit& fit : in.models.at("limit-angle").fits) {
+    EXPECT_TRUE(!fit.fit || !fit.fit->poor.empty());
+    // Whether it answers or not, it says what is wrong.
+    EXPECT_THAT(fit.fit ? fit.fit->remarks : std::vector<std::string>{fit.failure()->detail},
+                Contains(HasSubstr(in.lightFrame.doubt)));
+  }
+}
+
+TEST(LightFrame, BeforeACameraThatStandsStillBothStatementsAreRight) {
+  const auto scene = movingScene(
+      14, [](const Camera&) { return Vector3d(0.4, 0.3, 1.9); }, motionOf);
+  for (std::size_t i = 0; i < scene->frames.size(); ++i) {
+    Frame& f = scene->frames[i];
+    f.camera = around(0, 14);
+    AnalyticSpec there = body();
+    there.worldFromSurface = f.worldFromObject;
+    f.highlights = exactContours(there, f.camera, {"lamp", Vector3d(0.4, 0.3, 1.9)});
+  }
+  for (const std::string stated : {"auto", "world", "camera"}) {
+    InspectionRequest request = asked();
+    request.settings.set("light.frame", stated);
+    const Inspection in = inspect(scene, request);
+    EXPECT_EQ(in.lightFrame.doubt, "") << stated;
+    EXPECT_LT(meanPct(in, "limit-angle"), 0.01) << stated;
+  }
 }
 
 TEST(LightFrame, ASingleViewTellsNothing) {

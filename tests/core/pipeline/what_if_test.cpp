@@ -307,6 +307,33 @@ TEST(WhatIf, EveryKnobChangesSomethingAndItsDefaultPutsItBack) {
   }
 }
 
+/// On a sphere the brightest point of a narrow lobe is where the normal halves the angle between camera and lamp.
+TEST(WhatIf, ALampOfTheCameraMovesInTheCoordinatesOfEveryCamera) {
+  const auto scene = litScene(sphere(0.5), 5);
+  scene->lights[0].frame = LightFrame::Camera;
+  scene->lights[0].lamp = lampAt(kFlashInCamera);
+  WhatIf w;
+  w.synthesise = true;
+  w.roughness = 0.02;
+  const std::vector<WhatIfKnob> knobs = whatIfKnobs(*scene, 0, 0);
+  EXPECT_EQ(knobs[0].group, "Light lamp, moves with the camera");
+  EXPECT_NE(knobs[0].spec.help.find("axis of the camera"), std::string::npos) << knobs[0].spec.help;
+  EXPECT_NE(knobs[0].spec.help.find("0.05, -0.02, 0.01 m"), std::string::npos) << knobs[0].spec.help;
+  knobs[0].set(w, 0.3);
+  const auto after = changedScene(*scene, w, 0.5);
+  for (const Frame& f : after->frames) {
+    ASSERT_EQ(f.highlights.size(), 1U) << f.id;
+    const Eigen::Isometry3d worldFromCamera = f.camera.camFromWorld.inverse();
+    const Eigen::Vector3d eye = worldFromCamera.translation(), ray = f.camera.ray(f.highlights[0].peak).direction.normalized();
+    const Eigen::Vector3d middle(0, 0, -0.5), to = eye - middle;
+    const double b = ray.dot(to), t = -b - std::sqrt(b * b - to.squaredNorm() + 0.25);
+    const Eigen::Vector3d p = eye + t * ray, n = (p - middle).normalized();
+    const Eigen::Vector3d lampIs = worldFromCamera * (kFlashInCamera + Eigen::Vector3d(0.3, 0, 0));
+    const Eigen::Vector3d half = ((eye - p).normalized() + (lampIs - p).normalized()).normalized();
+    EXPECT_LT(std::atan2(half.cross(n).norm(), half.dot(n)), 1e-3) << f.id;
+  }
+}
+
 /// Contours of a known lobe tell it again: by the model that inverts the radiance, and roughly by their limit angle alone.
 TEST(WhatIf, ASynthesisStartsFromTheLobeThatTheSceneShows) {
   constexpr double kMade = 0.07;         // another width than that of a WhatIf{}

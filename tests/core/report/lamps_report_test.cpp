@@ -108,8 +108,18 @@ TEST(LampsJson, EachBallHasItsResiduals) {
 TEST(LampsCsv, HasOneRowForEachLamp) {
   EXPECT_EQ(lampsCsv(report()).substr(std::string(kLampsCsvHeader).size()),
             "lamp-001,ok,,001,1,-2,3,0.25,0.25,0.25,0,0,0,0.59999999999999998,-0.47999999999999998,-0.64000000000000001,"
-            "0.57295779513082323,0,0,2.7000000000000002,0.29999999999999999,2,1\n"
-            "lamp-002,failed,\"no highlight: nothing, \"\"at all\"\"\",002,,,,,,,,,,,,,,,,,,0,0\n");
+            "0.57295779513082323,0,0,2.7000000000000002,0.29999999999999999,2,1,\n"
+            "lamp-002,failed,\"no highlight: nothing, \"\"at all\"\"\",002,,,,,,,,,,,,,,,,,,0,0,\n");
+}
+
+TEST(LampsCsv, SaysInWhatALampStandsStill) {
+  LampsReport r = report();
+  r.lamps[0].frame = LightFrame::Camera;
+  r.lamps[1].frame = LightFrame::World;
+  const std::string csv = lampsCsv(r);
+  EXPECT_THAT(csv, testing::HasSubstr(",dropped,frame\n"));
+  EXPECT_THAT(csv, testing::HasSubstr(",2,1,camera\n"));
+  EXPECT_THAT(csv, testing::HasSubstr(",0,0,world\n"));
 }
 
 // Every photograph in the frame of its own camera: a camera that looks along the world's x sees a lamp at +x in front of it.
@@ -134,6 +144,26 @@ TEST(LampLines, AreInTheCamerasFrame) {
   EXPECT_EQ(lines[0].direction, Eigen::Vector3d(0, 0, 1));
   ASSERT_EQ(warnings.size(), 1U);
   EXPECT_THAT(warnings[0], testing::HasSubstr("1 photographs that show several lamps"));
+}
+
+// A flash is measured in the camera's coordinates: no pose turns it, whichever coordinates the scene is in.
+TEST(LampLines, OfALampThatMovesWithTheCameraAreTheSameForEveryCamera) {
+  Scene scene;
+  Frame f;
+  f.id = "001";
+  f.image = "/shots/001.png";
+  scene.frames = {f, f};
+  scene.frames[1].id = "002";
+  scene.frames[1].camera.camFromWorld.linear() << 0, -1, 0, 0, 0, -1, 1, 0, 0;
+  LampAnswer flash = answered();
+  flash.frame = LightFrame::Camera;
+  flash.direction = {0.6, 0, -0.8};
+  flash.frames = {"001", "002"};
+  std::vector<std::string> warnings;
+  const std::vector<LampLine> lines = lampLinesOf(scene, {flash}, warnings);
+  ASSERT_EQ(lines.size(), 2U);
+  for (const LampLine& line : lines) EXPECT_EQ(line.direction, flash.direction);
+  EXPECT_TRUE(warnings.empty());
 }
 
 }  // namespace glint::lamps_report_tests
