@@ -129,13 +129,15 @@ std::optional<Vignetting> vignettingOf(const TexturePanel& panel) {
   if (points.size() < kFewestFallPoints) return std::nullopt;
   std::vector<Eigen::Vector2d> middles;
   for (const TextureView& view : panel.views()) middles.emplace_back((view.value.width - 1) / 2.0, (view.value.height - 1) / 2.0);
-  const FittedFall fall = fittedFall(rowsOf(points, middles, radial), 1), any = fittedFall(rowsOf(points, middles, anySmooth), 5);
+  const FittedFall fall = fittedFall(rowsOf(points, middles, radial), 1);
   const Vignetting found{-fall.terms(0), fall.sigma(0)};
   const double k = found.cornerLoss;
+  if (!(k > kLeastLoss && k > kSure * found.sigma)) return std::nullopt;
+  const FittedFall any = fittedFall(rowsOf(points, middles, anySmooth), 5);
   const auto isAlike = [&](double along) { return -along > k / kAlike && -along < k * kAlike; };
   const bool round = std::abs(any.terms(0)) < kSlope * k && std::abs(any.terms(1)) < kSlope * k && isAlike(any.terms(2)) &&
                      isAlike(any.terms(4));
-  return k > kLeastLoss && k > kSure * found.sigma && round ? std::optional(found) : std::nullopt;
+  return round ? std::optional(found) : std::nullopt;
 }
 
 std::string vignettingRemark(const std::optional<Vignetting>& found, std::size_t views, const CameraResponse& response) {
