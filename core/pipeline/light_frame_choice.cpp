@@ -167,6 +167,12 @@ std::map<std::string, std::vector<PeakView>> peakViews(const Scene& scene, const
   const auto hasOwnDepth = [&](int frame) { return scene.frames[static_cast<std::size_t>(frame)].surface.empty(); };
   const bool depthAlone = std::all_of(training.begin(), training.end(), hasOwnDepth);
   std::map<std::string, std::vector<PeakView>> views;
+  const auto stays = [&](int frame) {
+    return scene.frames[static_cast<std::size_t>(frame)].camera.camFromWorld.isApprox(
+        scene.frames[static_cast<std::size_t>(training.front())].camera.camFromWorld);
+  };
+  if (depthAlone && (settings.text("light.frame") != "auto" || std::all_of(training.begin(), training.end(), stays)))
+    return views;  // nothing would be told that is worth reading maps
   for (const int frame : evenly(training, depthAlone ? kMostDepthMaps : kMostViews)) {
     const FrameEvidence& e = evidence[static_cast<std::size_t>(frame)];
     if (e.frame < 0 || e.highlights.empty() || (!depthAlone && hasOwnDepth(frame))) continue;

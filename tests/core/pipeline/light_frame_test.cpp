@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <functional>
+#include <opencv2/imgcodecs.hpp>
 
 #include "core/pipeline/inspection.h"
 #include "core/pipeline/light_frame_choice.h"
@@ -11,6 +12,7 @@
 #include "core/pipeline/summary.h"
 #include "core/surface/posed_surface.h"
 #include "tests/core/pipeline/exact_scene.h"
+#include "tests/core/scene/scene_fixture.h"
 #include "tests/shared_data.h"
 
 namespace glint::light_frame_tests {
@@ -175,6 +177,33 @@ TEST(LightFrame, ASingleViewTellsNothing) {
   const Inspection in = inspect(flashScene(14), asked("first:1"));
   EXPECT_EQ(in.lightFrame.frame, LightFrame::World);
   EXPECT_FALSE(in.lightFrame.byLight.at("lamp").camera);
+}
+
+/// Each frame gets the depth of the body in place of the body, as a depth camera would measure it without noise.
+void measureDepth(Scene& scene, const std::filesystem::path& folder) {
+  const std::shared_ptr<const Surface> surface = makeAnalytic(body());
+  for (Frame& f : scene.frames) {
+    cv::Mat depth(f.camera.height, f.camera.width, CV_32F, cv::Scalar(0));
+    for (int y = 0; y < depth.rows; ++y)
+      for (int x = 0; x < depth.cols; ++x)
+        if (const Outcome<SurfacePoint> hit = surface->firstHit(f.camera.ray({double(x), double(y)})))
+          depth.at<float>(y, x) = static_cast<float>(f.camera.depth(hit->position));
+    f.surface.clear();
+    f.depth = folder / (f.id + ".tiff");
+    ASSERT_TRUE(cv::imwrite(f.depth.string(), depth, {cv::IMWRITE_TIFF_COMPRESSION, 1}));
+  }
+}
+
+TEST(LightFrame, DepthMapsOfTheFramesTellIt) {
+  const TemporaryFolder folder;
+  const auto scene = flashScene(8);
+  measureDepth(*scene, folder.path());
+  InspectionRequest request = asked("first:5");
+  request.models = {"limit-angle"};
+  const Inspection in = inspect(scene, request);
+  EXPECT_EQ(in.lightFrame.frame, LightFrame::Camera) << in.lightFrame.reason;
+  EXPECT_LT((lightOfIt(in).position() - kFlash).norm(), 5e-3);
+  EXPECT_LT(meanPct(in, "limit-angle"), 0.5);
 }
 
 const Vector3d kStill(0.4, 0.3, 1.9);  // in the world, m
