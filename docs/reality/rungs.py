@@ -159,8 +159,8 @@ RENDERED = [
     Rung("dome-mesh", "the same over a mesh with broad waves", KNOWN, render=dict(DOME, waves=0.08), train="0-11"),
     Rung("known-flash", "known lamp fixed to the camera", KNOWN, render={"lamps": [FLASH]}),
     Rung("flash-and-lamp", "a flash on the camera beside a lamp that stands still, unlabelled", r"both kinds|with the camera",
-         render={"lamps": [dict(LAMP, power=90.0), dict(LAMP, frame="camera", position=[0.3, -0.12, 0.05])],
-                 "roughness": [0.36, 0.36]}),
+         render={"lamps": [dict(LAMP, position=[-0.7, 0.7, 1.1], power=60.0),
+                           dict(LAMP, frame="camera", position=[0.25, -0.12, 0.05])], "roughness": [0.36, 0.36]}),
     Rung("dome-three", "three known distant lamps in each photograph, still camera", KNOWN, train="0-11",
          render=dict(BALL, on=[[k, (k + 1) % 13, (k + 7) % 13] for k in range(13)], roughness=[0.39, 0.39])),
 ]

@@ -63,8 +63,8 @@ def test_every_number_of_evaluate(session, program):
             if stated["q_dual"]:
                 assert np.array_equal(made.fit.q_dual, stated["q_dual"])
             assert list(made.fit.residual_px) == stated["residual_px"]
-        errors = inspection.summary(name)["contour_error_pct"]
-        assert errors["mean"] == model["summary"]["contour_error_pct"]["mean"]
+        mean, stated = inspection.summary(name)["contour_error_pct"]["mean"], model["summary"]["contour_error_pct"]["mean"]
+        assert np.isnan(mean) if stated is None else mean == stated  # a model that fails has no error
 
 
 def test_the_same_with_settings_frames_and_level(program):
