@@ -101,8 +101,12 @@ class BundlerWords {
     if (to.words.empty()) to.number = row_.number;
     to.words.push_back(row_.words[word_]);
   }
+  /// Stays at the last word where the file ends: its reader may go on without what is missing.
   void advance(const std::string& what) {
-    if (++word_ < row_.words.size()) return;
+    if (word_ + 1 < row_.words.size()) {
+      ++word_;
+      return;
+    }
     row_ = rows_.need(what);
     word_ = 0;
   }

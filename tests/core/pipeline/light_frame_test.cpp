@@ -202,7 +202,7 @@ TEST(LightFrame, DepthMapsOfTheFramesTellIt) {
   request.models = {"limit-angle"};
   const Inspection in = inspect(scene, request);
   EXPECT_EQ(in.lightFrame.frame, LightFrame::Camera) << in.lightFrame.reason;
-  EXPECT_LT((lightOfIt(in).position() - kFlash).norm(), 5e-3);
+  EXPECT_LT((lightOfIt(in).position() - kFlash).norm(), 0.02);  // 1 % of the distance: normals come from neighbouring pixels
   EXPECT_LT(meanPct(in, "limit-angle"), 0.5);
 }
 
