@@ -86,43 +86,21 @@ std::vector<double> sharesOf(const std::vector<double>& meanSquares, double free
   return shares;
 }
 
+/// Beside a fit that explains its views, one that does not is no alternative.
+PoorFits alternativesMayBe(const ModelFit& fit) { return fit.poor.empty() ? PoorFits::Refuse : PoorFits::Take; }
+
 }  // namespace
 
-FittedBand bandOf(const HighlightModel& model, const ModelFit& fit, const FitInput& input, const Settings& settings,
-                  bool surfaceRefined) {
-  FittedBand result;
-  const std::shared_ptr<Band> band = Band::of(model, fit, input.views, settings);
-  if (!band) {
-    result.remarks.push_back("the fit has no uncertainty, so its predictions have no band");
-    return result;
-  }
-  result.band = band;
-  // Beside a fit that explains its views, one that does not is no alternative.
-  const PoorFits poor = fit.poor.empty() ? PoorFits::Refuse : PoorFits::Take;
-  if (surfaceRefined) band->addOwnCovariance();
-  if (!input.views.empty() && input.views.front().known)
-    if (std::optional<ModelFit> stated = movedAsStated(fit, *input.views.front().known)) band->addStated(*std::move(stated));
-
-  // Other lobes, or reflectance beside the limit angle. One that the evidence prefers is away by d for certain: uniform between
-  // -d and d; several that it likes alike are a mixture, whose variance is d^2 times the share.
-  struct Other {
-    const HighlightModel* model;
-    ModelFit fit;
-    std::string name;
-  };
-  std::vector<Other> others;
-  std::vector<double> squares{meanSquare(model, fit, input, settings)};
+std::vector<OtherFit> otherFits(const HighlightModel& model, const ModelFit& fit, const FitInput& input,
+                                const Settings& settings) {
+  std::vector<OtherFit> others;
   FitInput anew = input;
   anew.pixels.fit.reset();  // it is that of the lobe chosen
   const auto tryOther = [&](const HighlightModel& m, const Settings& with, const std::string& name) {
-    Outcome<ModelFit> other = accepted(m.fit(anew, with), poor);
-    const double square = other ? meanSquare(m, *other, input, settings) : std::nan("");
-    if (!std::isfinite(square)) return;
-    squares.push_back(square);
-    others.push_back({&m, std::move(*other), name});
+    Outcome<ModelFit> other = accepted(m.fit(anew, with), alternativesMayBe(fit));
+    if (other) others.push_back({&m, std::move(*other), name});
   };
-  const ReflectanceFit* const fitted = fit.as<ReflectanceFit>();
-  if (fitted) {
+  if (const ReflectanceFit* const fitted = fit.as<ReflectanceFit>()) {
     for (const std::string& lobe : paramSpec("fit.lobe").choices) {
       if (lobe == "auto" || lobe == nameOf(fitted->lobe)) continue;
       Settings with = settings;
@@ -136,21 +114,48 @@ FittedBand bandOf(const HighlightModel& model, const ModelFit& fit, const FitInp
     free.set("fit.lobe", std::string("auto"));  // a lobe that was asked for is not one that the limit angle is judged by
     tryOther(radianceModel(), free, radianceModel().id());
   }
+  return others;
+}
+
+FittedBand bandOf(const HighlightModel& model, const ModelFit& fit, const FitInput& input, const Settings& settings,
+                  const std::vector<OtherFit>& others, bool surfaceRefined) {
+  FittedBand result;
+  const std::shared_ptr<Band> band = Band::of(model, fit, input.views, settings);
+  if (!band) {
+    result.remarks.push_back("the fit has no uncertainty, so its predictions have no band");
+    return result;
+  }
+  result.band = band;
+  const PoorFits poor = alternativesMayBe(fit);
+  if (surfaceRefined) band->addOwnCovariance();
+  if (!input.views.empty() && input.views.front().known)
+    if (std::optional<ModelFit> stated = movedAsStated(fit, *input.views.front().known)) band->addStated(*std::move(stated));
+
+  std::vector<const OtherFit*> counted;
+  std::vector<double> squares{meanSquare(model, fit, input, settings)};
+  for (const OtherFit& other : others) {
+    const double square = meanSquare(*other.model, other.fit, input, settings);
+    if (!std::isfinite(square)) continue;
+    squares.push_back(square);
+    counted.push_back(&other);
+  }
   if (std::isfinite(squares[0])) {
     const std::vector<double> shares = sharesOf(squares, fit.uncertainty->degreesOfFreedom);
-    for (std::size_t i = 0; i < others.size(); ++i) {
+    for (std::size_t i = 0; i < counted.size(); ++i) {
       const double share = shares[i + 1];
       if (share < kLeastShare) continue;
       if (share > 0.5)
-        result.remarks.push_back(others[i].name + " explains the contours better" +
+        result.remarks.push_back(counted[i]->name + " explains the contours better" +
                                  formatted(": %.3g px remain instead of %.3g", std::sqrt(squares[i + 1]), std::sqrt(squares[0])));
-      band->add({others[i].model, std::move(others[i].fit), {}, nullptr, share / (1 + 2 * share)});
+      // One that the evidence prefers is away by d for certain: uniform between -d and d; several that it likes alike are a
+      // mixture, whose variance is d^2 times the share.
+      band->add({counted[i]->model, counted[i]->fit, {}, nullptr, share / (1 + 2 * share)});
     }
   }
 
   // Pixels are not carried to other cameras: what a tolerance moves is then told by contours, before and after.
   std::shared_ptr<const ModelFit> reference;
-  if (fitted && fitted->evidence == "pixels") {
+  if (const ReflectanceFit* const fitted = fit.as<ReflectanceFit>(); fitted && fitted->evidence == "pixels") {
     const Outcome<ModelFit> fromContours = fitWith(
         input, [](const Camera& c) { return c; }, model, settings, poor);
     if (fromContours) reference = std::make_shared<const ModelFit>(*fromContours);

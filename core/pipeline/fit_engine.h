@@ -45,11 +45,22 @@ struct FittedBand {
   std::vector<std::string> remarks;
 };
 
-/// The band of a fit with its alternatives: the other lobes of a reflectance fit, reflectance beside the limit angle, each by the
-/// share of evidence that its residuals leave it; and the fit repeated with the cameras that a scale or focal length off by its
-/// stated tolerance (input.scale_tolerance, input.focal_tolerance) amounts to. A few fits; nothing is cached.
-/// @param surfaceRefined  the views' surfaces are corrected depth maps or meshes
+/// Another model, or the same one with another lobe, fitted to the same evidence.
+struct OtherFit {
+  const HighlightModel* model = nullptr;
+  ModelFit fit;
+  std::string name;  ///< "the lobe ggx"
+};
+/// The other lobes of a reflectance fit; reflectance beside the limit angle. What does not explain its views stands beside
+/// nothing but a poor fit. A few fits, none of them cached.
+std::vector<OtherFit> otherFits(const HighlightModel& model, const ModelFit& fit, const FitInput& input,
+                                const Settings& settings);
+
+/// The band of a fit with its alternatives: others by the share of evidence that their residuals leave them; and the fit repeated
+/// with the cameras that a scale or focal length off by its stated tolerance (input.scale_tolerance, input.focal_tolerance)
+/// amounts to.
+/// @param others  otherFits() of the fit. @param surfaceRefined  the views' surfaces are corrected depth maps or meshes
 FittedBand bandOf(const HighlightModel& model, const ModelFit& fit, const FitInput& input, const Settings& settings,
-                  bool surfaceRefined);
+                  const std::vector<OtherFit>& others, bool surfaceRefined);
 
 }  // namespace glint

@@ -10,15 +10,16 @@
 
 #include "core/base/number_text.h"
 #include "core/base/numeric.h"
+#include "core/base/progress.h"
 #include "core/base/words.h"
 #include "core/model/models.h"
 #include "core/model/pixel_evidence.h"
 #include "core/pipeline/carried.h"
 #include "core/pipeline/fit_engine.h"
+#include "core/pipeline/known_lamps.h"
 #include "core/pipeline/lobe_stage.h"
 
 namespace glint {
-
 FitInput fitInputOf(const Inspection& in, const HighlightModel& model, const FitKey& key) {
   std::vector<TrainingView> views = in.viewsOf(key);
   // The stage's fit is of all views of the group: it serves where none of them lost its pixels since.
@@ -44,10 +45,66 @@ std::optional<ModelResult::Fit> fitAtObservedLevel(const ModelResult::Fit& fit, 
   return std::nullopt;
 }
 
-FittedBand bandOf(const Inspection& in, const HighlightModel& model, const ModelResult::Fit& fit) {
+namespace {
+
+/// Two fits of known lamps of one material: what else explains the one explains the other, too.
+bool shareOthers(const Inspection& in, const ModelResult::Fit& a, const ModelResult::Fit& b) {
+  const std::optional<KnownLamp> lampA = knownLamp(*in.scene, a.light), lampB = knownLamp(*in.scene, b.light);
+  if (!a.fit || !b.fit || a.surface != b.surface || !lampA || !lampB || !shareMaterial(*lampA, *lampB)) return false;
+  const ReflectanceFit* const lobeA = a.fit->as<ReflectanceFit>();
+  const ReflectanceFit* const lobeB = b.fit->as<ReflectanceFit>();
+  if (lobeA && lobeB) return lobeA->lobe == lobeB->lobe && lobeA->evidence == lobeB->evidence && a.fit->poor == b.fit->poor;
+  return a.fit->as<LimitAngleFit>() && b.fit->as<LimitAngleFit>() && a.fit->poor == b.fit->poor;
+}
+
+std::vector<OtherFit> otherFitsOf(const Inspection& in, const HighlightModel& model, const ModelResult::Fit& fit) {
   if (!fit.fit) return {};
-  return bandOf(model, *fit.fit, fitInputOf(in, model, fit.key()), in.request.settings,
+  std::vector<OtherFit> others = otherFits(model, *fit.fit, fitInputOf(in, model, fit.key()), in.request.settings);
+  for (OtherFit& other : others) other.fit.light = fit.light;
+  return others;
+}
+
+FittedBand bandOf(const Inspection& in, const HighlightModel& model, const ModelResult::Fit& fit, std::vector<OtherFit> others) {
+  if (!fit.fit) return {};
+  for (OtherFit& other : others) {
+    if (other.fit.light == fit.light) continue;
+    other.fit.lightEstimate = fit.fit->lightEstimate;  // the material under this lamp
+    other.fit.hints.clear();                           // they lie where the other lamp's views were carried
+  }
+  return bandOf(model, *fit.fit, fitInputOf(in, model, fit.key()), in.request.settings, others,
                 model.needsLight() && in.corrections.count(fit.key()) > 0);
+}
+
+}  // namespace
+
+std::vector<FittedBand> bandsOf(const Inspection& in, const HighlightModel& model, const std::vector<ModelResult::Fit>& fits,
+                                const ProgressFn& progress) {
+  const auto leaderOf = [&](std::size_t i) {
+    for (std::size_t k = 0; k < i; ++k)
+      if (shareOthers(in, fits[k], fits[i])) return k;
+    return i;
+  };
+  std::vector<std::size_t> leaders, leading;
+  for (std::size_t i = 0; i < fits.size(); ++i)
+    if (leaders.push_back(leaderOf(i)); leaders[i] == i) leading.push_back(i);
+  std::vector<std::vector<OtherFit>> others(fits.size());
+  std::vector<FittedBand> bands(fits.size());
+  const std::string stage = "band " + model.id();
+  parallelFor(
+      static_cast<int>(leading.size()),
+      [&](int k) {
+        const std::size_t i = leading[static_cast<std::size_t>(k)];
+        others[i] = otherFitsOf(in, model, fits[i]);
+      },
+      progress, stage);
+  parallelFor(
+      static_cast<int>(fits.size()),
+      [&](int k) {
+        const std::size_t i = static_cast<std::size_t>(k);
+        bands[i] = bandOf(in, model, fits[i], others[leaders[i]]);
+      },
+      progress, stage);
+  return bands;
 }
 
 bool isSeen(const Inspection& r, const std::string& light) {
@@ -72,6 +129,14 @@ std::string mergedRemark(const Inspection& r, const ModelFit& fit) {
   return "also on in " + std::to_string(most) + " of " + std::to_string(fit.frames.size()) +
          " training frames, without a separate highlight: " + names +
          "; where highlights of several lights merge, the estimated light lies between these lights";
+}
+
+std::string oneViewRemark(const Inspection& r, const ModelFit& fit) {
+  const auto isFirst = [&](int frame) { return frame == fit.frames.front(); };
+  if (fit.frames.empty() || !std::all_of(fit.frames.begin(), fit.frames.end(), isFirst)) return "";
+  if (r.train.perSurface || knownLamp(*r.scene, fit.light)) return "";
+  return "it rests on one view, frame " + r.scene->frames[std::size_t(fit.frames.front())].id +
+         ": many lamps and lobes fit one view, so that neither the residual nor the band shows an error";
 }
 
 std::string repeatedRemark(const Inspection& r, const ModelFit& fit) {

@@ -21,8 +21,10 @@ std::optional<ModelResult::Fit> fitAtObservedLevel(const ModelResult::Fit& fit, 
                                                    const FrameEvidence& evidence, const Camera& camera, const Surface* surface,
                                                    const Settings& settings);
 
-/// The band of an inspection's fit; empty, without words, if the fit failed or no training view is its own.
-FittedBand bandOf(const Inspection& inspection, const HighlightModel& model, const ModelResult::Fit& fit);
+/// The bands of an inspection's fits of one model, in their order; empty, without words, where a fit failed or no training view
+/// is its own. Known lamps of one material share what else explains it.
+std::vector<FittedBand> bandsOf(const Inspection& inspection, const HighlightModel& model,
+                                const std::vector<ModelResult::Fit>& fits, const ProgressFn& progress = {});
 
 /// Where nobody states which lamps are on: what other lights no training frame shows, and in how many frames this one has no
 /// highlight although it would be seen there. "" where that is nothing.
@@ -33,6 +35,9 @@ std::string switchedRemark(const Inspection& inspection, const ModelFit& fit,
 bool isSeen(const Inspection& inspection, const std::string& light);
 /// Lights on in most frames of a fit that show no highlight of their own: this one's may be theirs, too. "" without such lights.
 std::string mergedRemark(const Inspection& inspection, const ModelFit& fit);
+/// That the fit rests on one frame, where several surfaces do not ask for that: its residual and its band cannot show a wrong
+/// lamp, since one highlight of one view fits many. "" where several frames hold it, or the scene states the lamp.
+std::string oneViewRemark(const Inspection& inspection, const ModelFit& fit);
 /// Training frames that show the fit's light and have no view because they repeat another one. "" without such frames.
 std::string repeatedRemark(const Inspection& inspection, const ModelFit& fit);
 /// How many training highlights of the fit's light serve although the image's border cuts them. "" without such highlights.

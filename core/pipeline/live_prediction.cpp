@@ -68,12 +68,13 @@ LivePredictor::LivePredictor(std::shared_ptr<const Scene> scene, const Inspectio
   inspection_ = answer(std::move(scene), {fits, Question::Part::Frame, train.frames.front()}, progress);
   inspection_.request = request;
   if (request.settings.flag("predict.band"))
-    for (auto& [name, result] : inspection_.models)
-      for (ModelResult::Fit& fit : result.fits) {
-        FittedBand band = bandOf(inspection_, modelByName(name), fit);
-        fit.bandRemarks = std::move(band.remarks);
-        if (band.band) bands_.emplace(std::pair(name, fit.key()), std::move(band.band));
+    for (auto& [name, result] : inspection_.models) {
+      std::vector<FittedBand> bands = bandsOf(inspection_, modelByName(name), result.fits, progress);
+      for (std::size_t i = 0; i < bands.size(); ++i) {
+        result.fits[i].bandRemarks = std::move(bands[i].remarks);
+        if (bands[i].band) bands_.emplace(std::pair(name, result.fits[i].key()), std::move(bands[i].band));
       }
+    }
   const std::vector<Frame>& frames = inspection_.scene->frames;
   const SurfaceCache& surfaces = *inspection_.surfaces;
   bool oneCamera = true, oneSurface = true;

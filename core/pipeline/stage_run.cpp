@@ -463,6 +463,7 @@ ModelResult::Fit StageRun::fitOf(const HighlightModel& model, const FitKey& key,
   };
   add(r_.lightFrame.doubt);
   add(mergedRemark(r_, fit));
+  add(oneViewRemark(r_, fit));
   add(repeatedRemark(r_, fit));
   add(cutRemark(r_, fit));
   add(byHandRemark(r_, fit));
@@ -486,15 +487,11 @@ std::vector<std::shared_ptr<const Band>> StageRun::bandsOf(const HighlightModel&
   std::vector<std::shared_ptr<const Band>> bands(result.fits.size());
   for (ModelResult::Fit& fit : result.fits) fit.bandRemarks.clear();
   if (!r_.request.settings.flag("predict.band")) return bands;
-  parallelFor(
-      static_cast<int>(bands.size()),
-      [&](int i) {
-        ModelResult::Fit& fit = result.fits[static_cast<std::size_t>(i)];
-        FittedBand band = bandOf(r_, model, fit);
-        bands[static_cast<std::size_t>(i)] = std::move(band.band);
-        fit.bandRemarks = std::move(band.remarks);
-      },
-      progress_, "band " + model.id());
+  std::vector<FittedBand> found = glint::bandsOf(r_, model, result.fits, progress_);
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    bands[i] = std::move(found[i].band);
+    result.fits[i].bandRemarks = std::move(found[i].remarks);
+  }
   return bands;
 }
 

@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 
 #include "core/base/numeric.h"
+#include "core/model/models.h"
+#include "core/pipeline/fits.h"
 #include "core/pipeline/inspection.h"
 #include "core/pipeline/live_prediction.h"
 #include "core/pipeline/pipeline.h"
@@ -196,6 +198,31 @@ TEST(KnownLamps, TheStatedUncertaintyIsInTheBand) {
   EXPECT_GT(widths[1], 5 * widths[0]);
   EXPECT_GT(widths[1], 10 * turned);  // px: the contours' radii are some 20 to 60 px
   EXPECT_LT(widths[1], 90 * turned);
+}
+
+/// What else explains the material is fitted under one lamp and stands for all: each band is as if fitted under its own.
+TEST(KnownLamps, BandsShareWhatElseExplainsTheMaterial) {
+  InspectionRequest request = domeRequest();
+  request.train = "0-4";
+  request.settings.set("predict.band", true);
+  for (const double at : {0.0, 2.5}) {
+    const Inspection in = inspect(domeScene(6, at, 1, 0.02), request);
+    const HighlightModel& model = modelByName("limit-angle");
+    const ModelResult& result = in.models.at("limit-angle");
+    for (const FrameComparison& c : result.frames) {
+      const ModelResult::Fit& fit = result.fits[std::size_t(c.fit)];
+      ASSERT_TRUE(fit.fit && c.prediction.highlights().size() == 1u) << c.light;
+      const FitInput input = fitInputOf(in, model, fit.key());
+      const std::vector<OtherFit> own = otherFits(model, *fit.fit, input, in.request.settings);
+      ASSERT_THAT(own, SizeIs(1)) << "reflectance stands beside it";
+      const FittedBand band = bandOf(model, *fit.fit, input, in.request.settings, own, false);
+      const PredictedHighlight& shown = c.prediction.highlights()[0];
+      const Camera camera = in.cameraFor(c.frame, c.light);
+      const std::vector<double> alone = band.band->sigmaPx(shown, camera, surfaceOfModel(in, model, c.frame, c.light).get());
+      ASSERT_EQ(alone.size(), shown.sigmaPx.size());
+      for (std::size_t i = 0; i < alone.size(); ++i) EXPECT_NEAR(shown.sigmaPx[i], alone[i], 1e-3 * alone[i]) << c.light;
+    }
+  }
 }
 
 TEST(KnownLamps, SeveralThatAreOnAreToldApart) {

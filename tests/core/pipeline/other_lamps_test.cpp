@@ -136,6 +136,33 @@ TEST(OtherLamps, NoiseMovesContoursByLittle) {
   EXPECT_LT(offPct(s, inspectedLamps(s), "reflectance"), 0.4);
 }
 
+/// One photograph fits many lamps: its answer is given, and what it rests on is said. The other lamp has four.
+TEST(OtherLamps, ALampOfOnePhotographIsSaidToRestOnIt) {
+  const TemporaryFolder folder;
+  Shown s = shownUnder(folder, 1);
+  TrueLight other;
+  other.id = "B";
+  other.lamp = lampAt({-0.5, 0, 2.1});
+  Frame& first = s.scene->frames[0];
+  first.lightsOn = {"B"};
+  Image image = renderRadiance(*makeAnalytic(*s.scene->surfaces["body"].analytic()), first.camera, {other}, s.material).specular;
+  const float top = *std::max_element(image.data.begin(), image.data.end());
+  for (float& v : image.data) v /= top;
+  cv::imwrite(first.radiance.string(), cv::Mat(image.height, image.width, CV_32F, image.data.data()),
+              {cv::IMWRITE_TIFF_COMPRESSION, 1});
+  const Inspection r = inspectedLamps(s);
+  int ofOne = 0;
+  for (const ModelResult::Fit& fit : r.models.at("reflectance").fits) {
+    ASSERT_TRUE(fit.fit) << fit.light << ": " << fit.fit.failure().message();
+    const bool said = std::any_of(fit.fit->remarks.begin(), fit.fit->remarks.end(), [](const std::string& remark) {
+      return remark.find("rests on one view, frame 0") != std::string::npos;
+    });
+    EXPECT_EQ(said, fit.light == "B") << fit.light;
+    ofOne += fit.fit->frames == std::vector<int>{0};
+  }
+  EXPECT_EQ(ofOne, 1);
+}
+
 /// Where tails do not reach, pixels stay as they are to the last bit; so they do under one lamp.
 TEST(OtherLamps, ShortTailsChangeNothing) {
   const TemporaryFolder folder;
