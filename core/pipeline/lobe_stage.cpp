@@ -7,7 +7,6 @@
 #include <map>
 #include <set>
 
-#include "core/base/evenly.h"
 #include "core/base/number_text.h"
 #include "core/base/progress.h"
 #include "core/geometry/transforms.h"
@@ -17,6 +16,7 @@
 #include "core/model/reflectance_settings.h"
 #include "core/pipeline/carried.h"
 #include "core/pipeline/depth_motion.h"
+#include "core/pipeline/diffuse_checks.h"
 #include "core/pipeline/evidence.h"
 #include "core/pipeline/hand_edits.h"
 #include "core/pipeline/highlight_motion.h"
@@ -24,10 +24,8 @@
 #include "core/pipeline/response_check.h"
 #include "core/pipeline/stage_inputs.h"
 #include "core/pipeline/training.h"
-#include "core/pipeline/vignetting_check.h"
 #include "core/reflectance/other_lamps.h"
 #include "core/reflectance/pixel_fit.h"
-#include "core/surface/posed_surface.h"
 
 namespace glint {
 
@@ -285,46 +283,6 @@ std::map<std::string, std::vector<LampLight>> otherLampsIn(const Inspection& lob
   return others;
 }
 
-bool isPhotograph(const Frame& frame, FrameSource source) {
-  return !frame.image.empty() && (source == FrameSource::Image || frame.radiance.empty());
-}
-
-/// Light that falls towards the corners of the training frames' photographs, by surface.
-void addVignetting(Inspection& r, const std::vector<int>& frames, const SurfaceOfFrame& surfaceOf) {
-  constexpr std::size_t kMostViews = 6, kFewestViews = 4;  // more tell no more; of three, each point has hardly two more
-  const EvidenceInputs& asked = r.inputs.lobes->evidence;
-  // The same points of the object are asked, wherever it stands.
-  const Scene around = standsStill(*r.scene) ? Scene() : inObject(*r.scene);
-  const Scene& scene = around.frames.empty() ? *r.scene : around;
-  std::map<std::string, std::vector<int>> bySurface;
-  for (const int f : frames) {
-    const Frame& frame = r.scene->frames[static_cast<std::size_t>(f)];
-    if (isPhotograph(frame, asked.source) && !frame.surface.empty() &&
-        frame.lightsOn == r.scene->frames[static_cast<std::size_t>(frames.front())].lightsOn)
-      bySurface[r.surfaces->keyOf(f)].push_back(f);
-  }
-  for (const auto& [key, own] : bySurface) {
-    std::shared_ptr<const Surface> surface = surfaceOf(own.front());
-    if (!surface || own.size() < kFewestViews) continue;
-    surface = movedTo(Eigen::Isometry3d::Identity(), std::move(surface));
-    std::vector<TextureView> views;
-    for (const int f : evenly(own, kMostViews)) {
-      Outcome<TextureView> view = textureView(scene, f, asked.source, asked.detect, *surface);
-      if (!view) continue;
-      view->spots = lobeSpots(r.evidence[static_cast<std::size_t>(f)].highlights);
-      views.push_back(*std::move(view));
-    }
-    if (views.size() < kFewestViews) continue;
-    const std::size_t count = views.size();
-    const std::string remark = vignettingRemark(vignettingOf(TexturePanel(std::move(views), surface)), count,
-                                                scene.frames[static_cast<std::size_t>(own.front())].response);
-    if (remark.empty()) continue;
-    for (const int f : own)
-      for (const Highlight& h : r.evidence[static_cast<std::size_t>(f)].highlights)
-        if (std::string& said = r.responseDoubts[r.keyFor(f, h.light)]; said.empty()) said = remark;
-  }
-}
-
 }  // namespace
 
 bool looksAtPixels(const InspectionRequest& request) {
@@ -397,8 +355,10 @@ void fitLobes(Inspection& r, const SurfaceOfFrame& surfaceOf, bool together, con
       r.patches[s.ids[i]] = s.views[i].pixels;
       groups[r.keyFor(s.views[i].frame, s.views[i].highlight.light)].push_back(s.views[i]);
     }
-  addVignetting(r, frames, surfaceOf);
+  const std::vector<SightedSurface> sighted = sightedSurfaces(r, frames, surfaceOf);
+  addVignetting(r, sighted);
   fitLobesOf(r, groups, progress);
+  addSecondLobes(r, sighted, groups);
 }
 
 std::map<FitKey, CutUse> useOfCut(const Inspection& r, CutUse few) {

@@ -309,6 +309,7 @@ std::vector<std::vector<TexturePanel::Sample>> TexturePanel::sightings(int point
     overSurface(view, step, [&](int, int, const SurfacePoint& at) {
       look(at, -1, asTheyAre, samples);
       std::erase_if(samples, [](const Sample& s) { return s.radius2 < kSurelyBeside2; });
+      for (Sample& s : samples) s.point = at;
       if (samples.size() > 1) found.push_back(samples);
     });
   }

@@ -49,6 +49,7 @@ class TexturePanel {
     Pixel at{0, 0};                    ///< measured
     double value = 0, radius2 = 0;     ///< of the nearest spot
     std::array<double, 2> tail{0, 0};  ///< Gaussian, GGX; in values
+    SurfacePoint point{};              ///< of sightings() alone
   };
 
   TexturePanel(std::vector<TextureView> views, std::shared_ptr<const Surface> surface);

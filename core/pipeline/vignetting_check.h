@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/pipeline/texture_panel.h"
+#include "core/pipeline/sighting_fit.h"
 #include "core/scene/camera_response.h"
 
 namespace glint {
@@ -20,8 +20,9 @@ struct Vignetting {
 /// tails,
 /// with a gain for each view, D eliminated, and the spots' tails as two more shares. It is believed only if the light falls alike
 /// across and along the image and has no slope: what changes with the view otherwise (a lamp that moves, long tails) does not.
+/// @param points  brightSightings() of the panel
 /// @return  nothing where the light does not fall by a seventh, or the views do not tell
-std::optional<Vignetting> vignettingOf(const TexturePanel& panel);
+std::optional<Vignetting> vignettingOf(const TexturePanel& panel, const std::vector<PointSamples>& points);
 
 /// A sentence about it, with what undoes it; "" for nothing.
 /// @param response  of the views' images

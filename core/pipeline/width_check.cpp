@@ -12,14 +12,14 @@
 namespace glint {
 namespace {
 
-constexpr double kClearGain = 0.5;      // of the robust sum that a common width leaves; a panel's widths leave 0.7 of it
-constexpr double kMostViews = 2.0 / 3;  // of them must be described by a width of their own
-constexpr std::size_t kLeastViews = 4;  // a light has three unknowns, and each view brings its own width
-constexpr double kVisibleRatio = 0.1;   // of the width, in logarithms: less moves a contour by less than a twentieth
-constexpr double kSigmas = 3;           // of the widths' own uncertainty
-constexpr double kMostBySlant = 1.0;    // of d log width / d sin^2 of the incidence: a lamp that outweighs the lobe
-constexpr double kLeastBySlant = -0.3;  // Fresnel's law and shadowing narrow a lobe by less
-constexpr double kBackAndForth = 1.6;   // times the range: the way through widths from place to place; exposures go further
+constexpr double kClearGain = 0.5;        // of the robust sum that a common width leaves; a panel's widths leave 0.7 of it
+constexpr double kMostOfViews = 2.0 / 3;  // of them must be described by a width of their own
+constexpr std::size_t kLeastViews = 4;    // a light has three unknowns, and each view brings its own width
+constexpr double kVisibleRatio = 0.1;     // of the width, in logarithms: less moves a contour by less than a twentieth
+constexpr double kSigmas = 3;             // of the widths' own uncertainty
+constexpr double kMostBySlant = 1.0;      // of d log width / d sin^2 of the incidence: a lamp that outweighs the lobe
+constexpr double kLeastBySlant = -0.3;    // Fresnel's law and shadowing narrow a lobe by less
+constexpr double kBackAndForth = 1.6;     // times the range: the way through widths from place to place; exposures go further
 
 struct WidthAtPlace {
   std::size_t view;
@@ -91,7 +91,7 @@ std::optional<WidthGroups> groupedByPlace(const OwnWidths& widths) {
     else
       groups.both.push_back(v);
   }
-  if (seen < kLeastViews || double(items.size()) < kMostViews * double(seen)) return std::nullopt;
+  if (seen < kLeastViews || double(items.size()) < kMostOfViews * double(seen)) return std::nullopt;
   if (!(widths.cost < kClearGain * widths.commonCost)) return std::nullopt;
   const double slope = slopeBySlant(items);
   for (WidthAtPlace& i : items) i.log -= slope * i.slant;
