@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "core/advise/camera_doubts.h"
 #include "core/advise/known_lamp_check.h"
 #include "core/advise/likely_mistakes.h"
 #include "core/base/number_text.h"
@@ -19,6 +20,7 @@
 #include "core/pipeline/evidence.h"
 #include "core/pipeline/fit_engine.h"
 #include "core/pipeline/light_frame_choice.h"
+#include "core/pipeline/smoothed_mesh.h"
 #include "core/pipeline/training.h"
 #include "core/surface/mesh_policy.h"
 
@@ -39,7 +41,10 @@ constexpr double kHalfGain = 0.7;       // of a half's residual as given that a 
 // By how much mirrored rays pass a lamp, rad. Off-specular peaks, blur and lamps with a size move them by a few degrees.
 constexpr double kMeets = 0.05, kMayMeet = 0.2;
 
-constexpr double kDegrees = 180 / double(EIGEN_PI);
+constexpr double kSameMiss = 1e-9;  // rad: the digits of the rays
+// Share of the radius, without the noise of points, above which a light explains contours poorly: photographs of 8 bits leave 1 to
+// 3 %; a mesh that is a tenth too large leaves 4.5 %.
+constexpr double kPoorlyRadii = 0.04;
 
 class Check {
  public:
@@ -53,7 +58,10 @@ class Check {
   CameraCheck run() {
     gather();
     result_.views = static_cast<int>(views_.size());
-    if (dark_ > 0 && dark_ == static_cast<int>(searched_.size())) sayThatNoneIsFound();
+    if (dark_ > 0 && dark_ == static_cast<int>(searched_.size()))
+      result_.findings.push_back(noHighlightText(scene_, searched_, settings_));
+    else if (2 * dark_ > static_cast<int>(searched_.size()))
+      result_.findings.push_back(formatted("%d of %zu frames that were looked at show no highlight", dark_, searched_.size()));
     if (!result_.whyNot.empty()) return std::move(result_);
     if (result_.views < kLeastViews) {
       result_.whyNot =
@@ -66,7 +74,7 @@ class Check {
       result_.lightFrame = choice.reason;
       return std::move(result_);
     }
-    if (asGiven_ && asGiven_->miss < EIGEN_PI / 2) result_.missDeg = asGiven_->miss * kDegrees;
+    if (asGiven_ && asGiven_->miss < EIGEN_PI / 2) result_.missDeg = degrees(asGiven_->miss);
     const std::optional<Fitted> given = asGiven_ ? fit({}, *asGiven_, agreeing(*asGiven_), {}) : std::nullopt;
     add("as given", given);
     // Below that nothing else could be clearly better.
@@ -77,7 +85,9 @@ class Check {
         sayThatNothingFits(given);
       else if (given)
         intrinsics(*given);
+      if (given && result_.findings.empty()) sayThatItFitsPoorly(*given);
     }
+    if (given) sayWhoIsOutvoted();
     return std::move(result_);
   }
 
@@ -252,7 +262,9 @@ class Check {
     int place = 0;
     for (const LikelyMistake& mistake : likelyMistakes()) {
       const std::optional<SharedLamp> lamp = lampAfter(mistake.undoing);
-      if (lamp && lamp->miss < kMayMeet) list.push_back({&mistake, place, *lamp, {}});
+      // A ball that is turned about its centre is the same ball.
+      const bool changes = !lamp || !asGiven_ || std::abs(lamp->miss - asGiven_->miss) > kSameMiss;
+      if (lamp && lamp->miss < kMayMeet && changes) list.push_back({&mistake, place, *lamp, {}});
       ++place;
     }
     std::stable_sort(list.begin(), list.end(), [](const Suspect& a, const Suspect& b) { return a.step() < b.step(); });
@@ -279,7 +291,8 @@ class Check {
     if (!best || !clearlyBetter(*best->fitted, best->lamp, given)) {
       // Where no light explains anything else, coarse images may leave more.
       const auto fitted = std::count_if(list.begin(), list.end(), [](const Suspect& s) { return s.fitted.has_value(); });
-      if (!best || given || fitted != 1 || best->fitted->rmsPx > kCoarsePx) return false;
+      if (!best || given || fitted != 1 || best->fitted->rmsPx > std::min(kCoarsePx, kNothingRadii * radiusOf(best->lamp)))
+        return false;
     }
     accuse(*best->mistake, given || best->fitted->rmsPx <= kGoodRadii * radiusOf(best->lamp), fittedText(*best->fitted, given));
     return true;
@@ -299,22 +312,11 @@ class Check {
     return std::isfinite(diagonal) && diagonal > 0 ? std::optional(diagonal) : std::nullopt;
   }
 
-  /// Mean square of the misses of three quarters of the views.
-  static double costOf(const std::optional<SharedLamp>& lamp) {
-    if (!lamp) return EIGEN_PI * EIGEN_PI;
-    std::vector<double> misses = lamp->misses;
-    std::sort(misses.begin(), misses.end());
-    const std::size_t n = (3 * misses.size() + 3) / 4;
-    double sum = 0;
-    for (std::size_t i = 0; i < n; ++i) sum += misses[i] * misses[i] / double(n);
-    return sum;
-  }
-
   /// The shift of the mesh after which mirrored rays pass one lamp best: steps along and between the axes, halved if none helps.
   Eigen::Vector3d shiftByRays(double size) const {
     constexpr double kLast = 0.002;  // of the size
     constexpr int kMostTries = 1500, kWays = 27;
-    const double given = costOf(asGiven_);
+    const double given = squaredMiss(asGiven_);
     Eigen::Vector3d best(0, 0, 0);
     double least = given;
     for (const double first : {0.08, 0.02}) {  // of the size: long steps lead past a near valley, short ones end in a shallow one
@@ -325,7 +327,7 @@ class Check {
         const Eigen::Vector3d from = at;
         for (int k = 0; k < kWays; ++k, ++tries) {
           const Eigen::Vector3d trial = from + step * Eigen::Vector3d(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
-          const double cost = costOf(lampAfter(shiftedBy(trial)));
+          const double cost = squaredMiss(lampAfter(shiftedBy(trial)));
           if (!(cost < here)) continue;
           here = cost;
           at = trial;
@@ -409,46 +411,6 @@ class Check {
     return !given || given->rmsPx > std::max(kNothingRadii * radiusOf(*asGiven_), kCoarsePx);
   }
 
-  static std::string missText(const std::optional<SharedLamp>& lamp) {
-    return lamp && lamp->miss < EIGEN_PI / 2 ? formatted("%.2g degrees", lamp->miss * kDegrees)
-                                             : std::string("more than can be measured");
-  }
-
-  /// Views from whose camera the surface is seen whichever way one looks.
-  int insideOfSurface() const {
-    int inside = 0;
-    for (const View& v : views_) {
-      const Eigen::Vector3d eye = cameraOf(v).centreInWorld();
-      bool closed = true;
-      for (int k = 0; k < 27 && closed; ++k) {
-        const Eigen::Vector3d way(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
-        closed = way.isZero() || v.surface->firstHit({eye, way.normalized()});
-      }
-      inside += closed;
-    }
-    return inside;
-  }
-
-  void sayThatNoneIsFound() {
-    Settings fine = settings_;
-    constexpr double kLeastAreaPx2 = 3;  // smaller ones have no shape
-    fine.set("detect.min_area", kLeastAreaPx2);
-    std::vector<double> areas;
-    for (const int frame : searched_) {
-      const FrameEvidence evidence = gatherEvidence(scene_, frame, FrameSource::Radiance, fine);
-      if (!evidence.highlights.empty()) areas.push_back(evidence.highlights.front().areaPx2);
-    }
-    const bool found = 2 * areas.size() > searched_.size();
-    result_.findings.push_back(
-        found
-            ? formatted("the highlights are too small: %zu of %zu frames show one, of about %.2g px^2 (median), and detection "
-                        "takes them from %g px^2 on (--set detect.min_area=%.2g; photographs of more pixels are better)",
-                        areas.size(), searched_.size(), upperMedian(areas), settings_.number("detect.min_area"), kLeastAreaPx2)
-            : formatted("no highlight was found in any of %zu frames (are they the right photographs? Is the background brighter "
-                        "than the highlight, or the mask of another part?)",
-                        searched_.size()));
-  }
-
   /// Where the lamp stands still, as evaluations choose it.
   LightFrameChoice lightFrame() const {
     std::vector<FrameEvidence> evidence(scene_.frames.size());
@@ -460,32 +422,72 @@ class Check {
     return chooseLightFrame(scene_, surfaces_, frames, evidence, settings_);
   }
 
+  /// The views as they are given, each with the highlight of the lamp that they share.
+  std::vector<TrainingView> viewsAsGiven() const {
+    std::vector<TrainingView> views;
+    for (std::size_t i = 0; i < views_.size() && asGiven_; ++i)
+      if (asGiven_->chosen[i] >= 0)
+        views.push_back(trainingView(views_[i].evidence, asGiven_->chosen[i], cameraOf(views_[i]), views_[i].surface));
+    return views;
+  }
+
+  /// What evaluations take off, or smooth: here it hides whether the scene fits.
+  bool isSaidByEvaluations() {
+    const auto textured =
+        std::count_if(views_.begin(), views_.end(), [](const View& v) { return v.evidence.structure.isTexture(); });
+    if (asGiven_ && asGiven_->miss < kMeets && 2 * textured > std::ssize(views_)) {
+      result_.hypotheses.clear();
+      result_.whyNot =
+          "the surface is textured, which one photograph alone does not tell from a highlight; evaluations take the "
+          "texture off (detect.texture)";
+      return true;
+    }
+    if (scene_.surfaces.size() != 1) return false;
+    const std::vector<TrainingView> views = viewsAsGiven();
+    if (views.empty()) return false;
+    const std::optional<SmoothedMesh> smoothed =
+        smoothedMesh(views, estimateLight(views, settings_), scene_.surfaces.begin()->first, settings_);
+    if (smoothed) result_.findings.push_back(smoothed->remark());
+    return smoothed.has_value();
+  }
+
   void sayThatNothingFits(const std::optional<Fitted>& given) {
-    const double fixed = asGiven_ ? asGiven_->miss : EIGEN_PI;
-    const int inside = insideOfSurface();
-    int beside = 0;
-    for (std::size_t i = 0; i < views_.size(); ++i) beside += !asGiven_ || asGiven_->chosen[i] < 0;
-    std::string words = formatted("no light explains the highlights of %d frames", result_.views);
-    if (given)
-      words += formatted("; the best light leaves %.2g px, %.0f %% of their radius", given->rmsPx,
-                         100 * given->rmsPx / radiusOf(*asGiven_));
-    if (fixed < kMeets)
-      words += formatted(
-          "; their positions fit: the mirrored rays miss one lamp by only %.2g degrees. Their shapes do not: no model covers "
-          "this scene "
-          "(print or wood under the highlight, bumps of a scanned mesh, brushed metal, several lamps in one highlight)",
-          fixed * kDegrees);
-    else
-      words += formatted(
-          "; undoing one of %zu likely mistakes does not help: mesh, poses and photographs do not belong together (the mirrored "
-          "rays miss "
-          "the best lamp by %s%s%s). Is it the mesh of another object, or is it shifted, deformed or bumpy? Are the poses those "
-          "of other "
-          "photographs? Does the lamp move?",
-          result_.hypotheses.size() - 1, missText(asGiven_).c_str(),
-          beside ? formatted("; in %d frames every highlight lies beside the surface", beside).c_str() : "",
-          inside ? formatted("; %d cameras are inside the surface", inside).c_str() : "");
-    result_.findings.push_back(words);
+    if (isSaidByEvaluations()) return;
+    Unexplained found;
+    found.views = result_.views;
+    if (given) found.leftPx = given->rmsPx, found.radiusPx = radiusOf(*asGiven_);
+    found.missRad = asGiven_ ? asGiven_->miss : EIGEN_PI;
+    std::vector<EyeAndSurface> eyes;
+    for (std::size_t i = 0; i < views_.size(); ++i) {
+      found.beside += !asGiven_ || asGiven_->chosen[i] < 0;
+      eyes.emplace_back(cameraOf(views_[i]).centreInWorld(), views_[i].surface);
+    }
+    found.inside = insideOfSurfaces(eyes);
+    found.mistakesTried = static_cast<int>(result_.hypotheses.size()) - 1;
+    result_.findings.push_back(nothingFitsText(found, kMeets));
+  }
+
+  /// A light that leaves more than photographs do, though no mistake that is known explains it.
+  void sayThatItFitsPoorly(const Fitted& given) {
+    double noise = 0;
+    const std::vector<int> list = agreeing(*asGiven_);
+    for (const int i : list) {
+      const std::size_t view = static_cast<std::size_t>(i);
+      const Highlight& h = views_[view].evidence.highlights[static_cast<std::size_t>(asGiven_->chosen[view])];
+      noise += std::pow(noisePx(h.contour), 2) / double(list.size());
+    }
+    const double left = std::sqrt(std::max(0.0, given.rmsPx * given.rmsPx - noise)), radius = radiusOf(*asGiven_);
+    if (left > kPoorlyRadii * radius) result_.findings.push_back(fitsPoorlyText(list.size(), given.rmsPx, left / radius));
+  }
+
+  void sayWhoIsOutvoted() {
+    const std::vector<int> list = agreeing(*asGiven_);
+    std::vector<Outvoted> others;
+    for (std::size_t i = 0; i < views_.size(); ++i)
+      if (std::find(list.begin(), list.end(), static_cast<int>(i)) == list.end())
+        others.push_back({scene_.frames[static_cast<std::size_t>(views_[i].evidence.frame)].id, asGiven_->misses[i]});
+    if (const std::string words = outvotedText(others, static_cast<int>(list.size())); !words.empty())
+      result_.findings.push_back(words);
   }
 
   static CameraChange along(const CameraChange& direction, double by) {

@@ -82,4 +82,14 @@ std::optional<SharedLamp> sharedLamp(const Views& views) {
   return best;
 }
 
+double squaredMiss(const std::optional<SharedLamp>& lamp) {
+  if (!lamp) return EIGEN_PI * EIGEN_PI;
+  std::vector<double> misses = lamp->misses;
+  std::sort(misses.begin(), misses.end());
+  const std::size_t n = (3 * misses.size() + 3) / 4;
+  double sum = 0;
+  for (std::size_t i = 0; i < n; ++i) sum += misses[i] * misses[i] / double(n);
+  return sum;
+}
+
 }  // namespace glint

@@ -23,4 +23,7 @@ struct SharedLamp {
 /// @return nothing if fewer than two views have a ray
 std::optional<SharedLamp> sharedLamp(const std::vector<std::vector<ReflectedRay>>& views);
 
+/// Mean square of the least three quarters of the misses, rad^2; pi^2 without a lamp.
+double squaredMiss(const std::optional<SharedLamp>& lamp);
+
 }  // namespace glint
