@@ -185,6 +185,7 @@ float grey(const Image& image, std::size_t pixel) {
 
 /// Shade per pixel for a texture, mean of the channels; 0 off the surface.
 Outcome<Image> shadeFor(const Canvas& canvas, const RetextureRequest& r, const PredictedRadiance& h, Retextured& result) {
+  if (r.shading == ShadingSource::None) return Image(canvas.camera.width, canvas.camera.height, 1, 1.f);
   const bool lambert = canvas.lambert && *canvas.lambert;
   if (r.shading == ShadingSource::Lambert && !lambert)
     return canvas.lambert
@@ -243,7 +244,8 @@ Outcome<Image> textured(const Canvas& canvas, const RetextureRequest& r, const P
   if (!shade) return shade.failure();
   const TextureCoordinates map(*canvas.in.scene, canvas.frame, *canvas.surface, r.mapping, r.repeat);
   const TexturePyramid texture(r.picture);
-  const double albedo = r.albedo.value_or(texture.mean());
+  const bool light = r.shading == ShadingSource::None;
+  const double albedo = r.albedo.value_or(light ? 1 : texture.mean());
   if (!(albedo > 0))
     return Failure{Reason::NotSupported, "the texture is black, so its mean cannot take the place of the surface's albedo"};
   const std::vector<Eigen::Vector2f> uv = coordinatesIn(canvas, map, progress);
@@ -259,6 +261,7 @@ Outcome<Image> textured(const Canvas& canvas, const RetextureRequest& r, const P
     }
   result.remarks.push_back("assumed: the texture lies by " + map.words() + "; " +
                            (r.albedo ? formatted("the surface's albedo was %.3g", *r.albedo)
+                            : light  ? std::string("its colour is the light that the surface sends")
                                      : std::string("its mean reflects as much as the surface did")));
   return base;
 }
