@@ -224,13 +224,15 @@ std::vector<Eigen::Vector2f> coordinatesIn(const Canvas& canvas, const TextureCo
 }
 
 /// Size of a pixel in textures, from its right and lower neighbours; whole turns between them do not count.
-double footprintAt(const std::vector<Eigen::Vector2f>& uv, std::size_t i, int x, int y, const Camera& camera) {
+/// @param shape  width and height of the texture over the larger one: pixels of a texture are square
+double footprintAt(const std::vector<Eigen::Vector2f>& uv, std::size_t i, int x, int y, const Camera& camera,
+                   const Eigen::Vector2d& shape) {
   double most = 0;
   const auto towards = [&](std::size_t j) {
     if (!uv[j].allFinite()) return;
     Eigen::Vector2d d = (uv[j] - uv[i]).cast<double>();
     d -= d.array().round().matrix();
-    most = std::max(most, d.norm());
+    most = std::max(most, d.cwiseProduct(shape).norm());
   };
   if (x + 1 < camera.width) towards(i + 1);
   if (y + 1 < camera.height) towards(i + std::size_t(camera.width));
@@ -251,12 +253,13 @@ Outcome<Image> textured(const Canvas& canvas, const RetextureRequest& r, const P
   const std::vector<Eigen::Vector2f> uv = coordinatesIn(canvas, map, progress);
   if (std::none_of(uv.begin(), uv.end(), [](const Eigen::Vector2f& p) { return p.allFinite(); }))
     return Failure{Reason::NoSurface, "no pixel of the frame shows the surface"};
+  const Eigen::Vector2d size(r.picture.width, r.picture.height), shape = size / size.maxCoeff();
   Image base = canvas.pixels->linear;
   for (int y = 0; y < base.height; ++y)
     for (int x = 0; x < base.width; ++x) {
       const std::size_t i = std::size_t(y) * std::size_t(base.width) + std::size_t(x);
       if (!uv[i].allFinite() || !canvas.pixels->glossy[i]) continue;
-      const Eigen::Vector3d t = texture.at(uv[i].cast<double>(), footprintAt(uv, i, x, y, canvas.camera));
+      const Eigen::Vector3d t = texture.at(uv[i].cast<double>(), footprintAt(uv, i, x, y, canvas.camera, shape));
       for (int c = 0; c < 3; ++c) base.at(x, y, c) = float(t(c) * shade->data[i] / albedo);
     }
   result.remarks.push_back("assumed: the texture lies by " + map.words() + "; " +
