@@ -21,7 +21,7 @@ struct TextureArguments : InspectionArguments {
 };
 
 SurfaceTextureRequest wishOf(const TextureArguments& a) {
-  constexpr double kMostRepeats = 1e4;  // as of retexture
+  constexpr double kMostRepeats = 1e4;  // as retexture
   if (!(a.repeat > 0 && a.repeat <= kMostRepeats)) throw InputError("", "--repeat", "must be above 0, at most 10000");
   if (a.size < 0 || a.size > kWidestTexture)
     throw InputError("", "--size", "must be 1 to " + std::to_string(kWidestTexture) + " px, or 0");

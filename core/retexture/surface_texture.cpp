@@ -26,7 +26,7 @@ constexpr double kGrazing = 0.25;       // cosine: beyond it a pixel covers four
 constexpr double kInHighlight2 = 4;     // squared radii at half of the peak: farther in, its light is no tail any more
 constexpr double kFromHighlight2 = 36;  // at six radii also a long tail has faded to half a percent
 constexpr std::size_t kViewsKept = 7;   // of a texel: three of them may show what does not belong there
-constexpr double kLeastShare = 0.05;    // of the best view's weight: less says nothing beside it
+constexpr double kLeastOfBest = 0.05;   // of the best view's weight: less says nothing beside it
 constexpr float kLeastWeight = 1e-4f, kMostWeight = 1e4f;  // what a half float holds to three digits
 constexpr double kApartPixels = 8;                         // between neighbours: a slope of kGrazing takes six at most
 constexpr double kSteadySteps = 4;                         // of the median one: longer ones may cross a seam
@@ -221,7 +221,7 @@ std::pair<Eigen::Vector3f, float> TexelViews::middleOf(std::size_t texel, double
     std::size_t n = 0;
     sum = 0;
     for (std::size_t k = 0; k < t.kept(); ++k)
-      if (const double w = float(t.best[k].weight); w >= kLeastShare * best)
+      if (const double w = float(t.best[k].weight); w >= kLeastOfBest * best)
         sorted[n++] = {float(t.best[k].value[c]), w}, sum += w;
     std::sort(sorted.begin(), sorted.begin() + std::ptrdiff_t(n));
     double before = 0, mean = 0, low = sorted[0].first, high = low;

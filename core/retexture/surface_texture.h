@@ -33,10 +33,10 @@ struct SurfaceTexture {
   std::vector<std::string> remarks;  ///< what may not hold, for the user
 };
 
-/// A picture of the surface in the coordinates of TextureCoordinates, so that retexture() puts it back where it was. Texels between
-/// the pixels of a frame are interpolated in linear light. Each texel keeps its seven best views (by angle, resolution and distance
-/// from highlights) and becomes the mean of their middle half. Frames are read one after the other; each is brought to the
-/// exposure of those before it, by the median ratio of the texels that they share.
+/// A picture of the surface in the coordinates of TextureCoordinates, so that retexture() puts it back where it was. Texels
+/// between the pixels of a frame are interpolated in linear light. Each texel keeps its seven best views (by angle,
+/// resolution and distance from highlights) and becomes the mean of their middle half. Frames are read one after the other;
+/// each is brought to the exposure of those before it, by the median ratio of the texels that they share.
 /// @param inspection  with the highlights of all frames, and with lights where shading is divided out
 /// NotSupported for frames without photographs, and for surfaces that differ between frames and have no coordinates of their own;
 /// NoSurface; NoLight where shading is divided out; the first frame's failure where all fail. Stopped.
