@@ -399,7 +399,10 @@ void addTextureRemarks(const TexelViews& texels, bool withoutShading, SurfaceTex
   const auto& gains = texels.gains();
   const auto [least, most] = std::minmax_element(gains.begin(), gains.end());
   if (!withoutShading && *least < *most)
-    result.remarks.push_back(formatted("exposures differ by a factor of %.2f; all frames are brought to one", *most / *least));
+    result.remarks.push_back(
+        formatted("the frames' brightness differs by a factor of %.2f, and all are brought to one; where the "
+                  "light moves over the surface, --shading remove is better",
+                  *most / *least));
   if (const double share = texels.severalPlaces(); share > kSeveralPlaces)
     result.remarks.push_back(
         formatted("%.0f %% of the texels lie on several places of the surface, whose colours are mixed there; another --mapping "
