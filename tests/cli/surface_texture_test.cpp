@@ -25,7 +25,7 @@ Eigen::Vector3d paintAt(const Eigen::Vector3d& p) {
 double edgeAt(const Eigen::Vector3d& p) { return (p / 0.4 - (p / 0.4).array().round().matrix()).cwiseAbs().minCoeff() * 0.4; }
 double shadeAt(const Eigen::Vector3d& p) {
   const Eigen::Vector3d to = kLamp - p;
-  return 9 * std::max(0.0, p.dot(to.normalized())) / to.squaredNorm();
+  return 6 * std::max(0.0, p.dot(to.normalized())) / to.squaredNorm();
 }
 /// The place of a texel, by the formulas of longitude and latitude.
 Eigen::Vector3d pointOf(double u, double v) {
@@ -93,11 +93,11 @@ class PaintedBall : public testing::Test {
           if (root < 0) continue;
           const Eigen::Vector3d p = eye + (-b - std::sqrt(root)) * ray;
           const double half = std::acos(std::min(1.0, p.dot(((kLamp - p).normalized() - ray).normalized())));
-          sum += (paintAt(p) * shadeAt(p) + Eigen::Vector3d::Constant(0.6 * std::exp(-std::pow(half / 0.1, 2)))) / 4;
+          sum += (paintAt(p) * shadeAt(p) + Eigen::Vector3d::Constant(0.4 * std::exp(-std::pow(half / 0.1, 2)))) / 4;
         }
         for (int c = 0; c < 3; ++c)
-          image.at<cv::Vec3b>(y, x)[2 - c] =
-              cv::saturate_cast<unsigned char>(toCode(std::min(1.0, exposure * sum(c))) + noise * gauss(engine));
+          image.at<cv::Vec3b>(y, x)[2 - c] = cv::saturate_cast<unsigned char>(toCode(std::min(1.0, exposure * sum(c))) +
+                                                                              (sum(c) > 0 ? noise : 0) * gauss(engine));
       }
     return image;
   }
