@@ -22,6 +22,7 @@ Command retextureCommand();
 Command settingsCommand();
 Command shareCommand();
 Command synthCommand();
+Command textureCommand();
 Command tradeoffCommand();
 
 }  // namespace glint::cli

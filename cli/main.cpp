@@ -15,6 +15,7 @@ int main(int argc, char** argv) {
         reconstructCommand(),
         predictCommand(),
         retextureCommand(),
+        textureCommand(),
         evaluateCommand(),
         diagnoseCommand(),
         tradeoffCommand(),

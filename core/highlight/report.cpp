@@ -165,10 +165,10 @@ Image drawDetection(const Image& photograph, const Camera& camera, const std::ve
 }
 
 void writePng(const std::filesystem::path& file, const Image& image) {
-  require(image.channels == 3 && !image.empty(), "writePng: a colour image");
-  cv::Mat mat(image.height, image.width, CV_32FC3, const_cast<float*>(image.data.data())), bytes;
-  mat.convertTo(bytes, CV_8UC3, 255);
-  cv::cvtColor(bytes, bytes, cv::COLOR_RGB2BGR);
+  require((image.channels == 3 || image.channels == 4) && !image.empty(), "writePng: a colour image");
+  cv::Mat mat(image.height, image.width, CV_MAKETYPE(CV_32F, image.channels), const_cast<float*>(image.data.data())), bytes;
+  mat.convertTo(bytes, CV_8U, 255);
+  cv::cvtColor(bytes, bytes, image.channels == 4 ? cv::COLOR_RGBA2BGRA : cv::COLOR_RGB2BGR);
   // In memory first: libpng's own writing prints, and crashes in a worker thread, when the disk is full.
   std::vector<unsigned char> encoded;
   bool done = false;

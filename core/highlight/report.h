@@ -54,7 +54,7 @@ std::string detectionJson(const std::string& input, double level, const std::str
 /// when clipped), drawn anti-aliased at a scale of at least 2 so that sub-pixel positions can be seen.
 Image drawDetection(const Image& photograph, const Camera& camera, const std::vector<Highlight>& highlights);
 
-/// Writes sRGB 0..1 as 8-bit PNG, atomically. InputError if it cannot be written.
+/// Writes sRGB 0..1, with or without alpha, as 8-bit PNG, atomically. InputError if it cannot be written.
 void writePng(const std::filesystem::path& file, const Image& image);
 
 }  // namespace glint

@@ -185,6 +185,7 @@ float grey(const Image& image, std::size_t pixel) {
 
 /// Shade per pixel for a texture, mean of the channels; 0 off the surface.
 Outcome<Image> shadeFor(const Canvas& canvas, const RetextureRequest& r, const PredictedRadiance& h, Retextured& result) {
+  if (r.shading == ShadingSource::None) return Image(canvas.camera.width, canvas.camera.height, 1, 1.f);
   const bool lambert = canvas.lambert && *canvas.lambert;
   if (r.shading == ShadingSource::Lambert && !lambert)
     return canvas.lambert
@@ -223,13 +224,15 @@ std::vector<Eigen::Vector2f> coordinatesIn(const Canvas& canvas, const TextureCo
 }
 
 /// Size of a pixel in textures, from its right and lower neighbours; whole turns between them do not count.
-double footprintAt(const std::vector<Eigen::Vector2f>& uv, std::size_t i, int x, int y, const Camera& camera) {
+/// @param shape  width and height of the texture over the larger one: pixels of a texture are square
+double footprintAt(const std::vector<Eigen::Vector2f>& uv, std::size_t i, int x, int y, const Camera& camera,
+                   const Eigen::Vector2d& shape) {
   double most = 0;
   const auto towards = [&](std::size_t j) {
     if (!uv[j].allFinite()) return;
     Eigen::Vector2d d = (uv[j] - uv[i]).cast<double>();
     d -= d.array().round().matrix();
-    most = std::max(most, d.norm());
+    most = std::max(most, d.cwiseProduct(shape).norm());
   };
   if (x + 1 < camera.width) towards(i + 1);
   if (y + 1 < camera.height) towards(i + std::size_t(camera.width));
@@ -243,22 +246,25 @@ Outcome<Image> textured(const Canvas& canvas, const RetextureRequest& r, const P
   if (!shade) return shade.failure();
   const TextureCoordinates map(*canvas.in.scene, canvas.frame, *canvas.surface, r.mapping, r.repeat);
   const TexturePyramid texture(r.picture);
-  const double albedo = r.albedo.value_or(texture.mean());
+  const bool light = r.shading == ShadingSource::None;
+  const double albedo = r.albedo.value_or(light ? 1 : texture.mean());
   if (!(albedo > 0))
     return Failure{Reason::NotSupported, "the texture is black, so its mean cannot take the place of the surface's albedo"};
   const std::vector<Eigen::Vector2f> uv = coordinatesIn(canvas, map, progress);
   if (std::none_of(uv.begin(), uv.end(), [](const Eigen::Vector2f& p) { return p.allFinite(); }))
     return Failure{Reason::NoSurface, "no pixel of the frame shows the surface"};
+  const Eigen::Vector2d size(r.picture.width, r.picture.height), shape = size / size.maxCoeff();
   Image base = canvas.pixels->linear;
   for (int y = 0; y < base.height; ++y)
     for (int x = 0; x < base.width; ++x) {
       const std::size_t i = std::size_t(y) * std::size_t(base.width) + std::size_t(x);
       if (!uv[i].allFinite() || !canvas.pixels->glossy[i]) continue;
-      const Eigen::Vector3d t = texture.at(uv[i].cast<double>(), footprintAt(uv, i, x, y, canvas.camera));
+      const Eigen::Vector3d t = texture.at(uv[i].cast<double>(), footprintAt(uv, i, x, y, canvas.camera, shape));
       for (int c = 0; c < 3; ++c) base.at(x, y, c) = float(t(c) * shade->data[i] / albedo);
     }
   result.remarks.push_back("assumed: the texture lies by " + map.words() + "; " +
                            (r.albedo ? formatted("the surface's albedo was %.3g", *r.albedo)
+                            : light  ? std::string("its colour is the light that the surface sends")
                                      : std::string("its mean reflects as much as the surface did")));
   return base;
 }

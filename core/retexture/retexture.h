@@ -22,8 +22,9 @@ enum class ShadingSource {
   Auto,     ///< Lambert where the model or the inspection knows a light, else Frame
   Lambert,  ///< a matt surface of one albedo under the estimated lights, fitted to the frame (core/retexture/shading.h)
   Frame,    ///< the frame itself without its highlight: what is painted on the surface shows through
+  None,     ///< 1: the texture is the light that the surface sends, as `glint texture` measures it
 };
-inline const std::vector<std::string> kShadingSources{"auto", "lambert", "frame"};
+inline const std::vector<std::string> kShadingSources{"auto", "lambert", "frame", "none"};
 /// std::invalid_argument for another name.
 ShadingSource shadingSourceNamed(const std::string& name);
 

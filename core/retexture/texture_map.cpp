@@ -8,6 +8,8 @@
 #include <tuple>
 #include <utility>
 
+#include "core/surface/posed_surface.h"
+
 namespace glint {
 namespace {
 
@@ -98,11 +100,13 @@ TextureCoordinates::TextureCoordinates(const Scene& scene, int frame, const Surf
                                        double repeat)
     : repeat_(repeat) {
   require(repeat > 0 && std::isfinite(repeat), "TextureCoordinates: repeat > 0");
-  const std::string& name = scene.frames.at(std::size_t(frame)).surface;
+  const Frame& about = scene.frames.at(std::size_t(frame));
+  const std::string& name = about.surface;
+  if (!standsStill(about)) objectFromScene_ = about.worldFromObject.inverse();
   if (const AnalyticSpec* const formula = scene.formulaOf(name); formula && mapping == TextureMapping::Natural)
     std::tie(map_, words_) = naturalMap(*formula);
   if (map_) return;
-  const Eigen::AlignedBox3d box = surface.bounds();
+  const Eigen::AlignedBox3d box = objectOf(surface).bounds();
   const bool bounded = !name.empty() && box.sizes().allFinite() && box.sizes().maxCoeff() > 0;
   const double side = bounded ? box.sizes().maxCoeff() : 1;
   const Eigen::Vector3d origin = bounded ? Eigen::Vector3d(box.center()) : Eigen::Vector3d::Zero();
@@ -126,6 +130,14 @@ TextureCoordinates::TextureCoordinates(const Scene& scene, int frame, const Surf
       words_ = "a box around the surface" + scale + "; it has seams where the normal changes its side";
       return;
   }
+}
+
+Eigen::Vector2d TextureCoordinates::at(const SurfacePoint& p) const {
+  if (!objectFromScene_) return repeat_ * map_(p);
+  SurfacePoint there = p;
+  there.position = *objectFromScene_ * p.position;
+  there.normal = objectFromScene_->linear() * p.normal;
+  return repeat_ * map_(there);
 }
 
 TexturePyramid::TexturePyramid(const Image& linear) {

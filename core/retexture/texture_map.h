@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,18 +28,19 @@ TextureMapping textureMappingNamed(const std::string& name);
 ///   sphere, ellipsoid  longitude / 2 pi and latitude / pi (of the sphere that the semi-axes stretch), axis = local z
 ///   cylinder   angle / 2 pi and local y over the girth;     torus  the two angles / 2 pi
 /// Planar and Box: one texture across the bounding box's largest side; for depth maps, whose box varies, and surfaces without
-/// bounds, one per metre.
+/// bounds, one per metre. On an object that moves the texture moves with it: world coordinates are those of the object.
 class TextureCoordinates {
  public:
   /// @param frame  whose surface it is. @param repeat  textures in place of one, > 0
   TextureCoordinates(const Scene& scene, int frame, const Surface& surface, TextureMapping mapping, double repeat);
-  Eigen::Vector2d at(const SurfacePoint& p) const { return repeat_ * map_(p); }
+  Eigen::Vector2d at(const SurfacePoint& p) const;
   const std::string& words() const { return words_; }  ///< what was taken, for the user: "longitude and latitude"
 
  private:
   std::function<Eigen::Vector2d(const SurfacePoint&)> map_;
   double repeat_;
   std::string words_;
+  std::optional<Eigen::Isometry3d> objectFromScene_;  ///< of an object that moves
 };
 
 /// A texture with smaller copies of itself, each half the size of the one before.

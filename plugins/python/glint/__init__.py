@@ -359,7 +359,7 @@ def retexture(source: Union[Session, Scene, Inspection], frame: Union[int, str],
         Id; empty: every light.
     mapping : "natural", "planar", "spherical" or "box"
         How the texture lies.
-    shading : "auto", "lambert" or "frame"
+    shading : "auto", "lambert", "frame" or "none"
         Under the texture.
     repeat : float
         Textures in place of one, in both directions.

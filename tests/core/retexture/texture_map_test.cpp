@@ -6,6 +6,8 @@
 
 #include <cmath>
 
+#include "core/surface/posed_surface.h"
+
 namespace glint::texture_map_tests {
 
 struct On {
@@ -78,6 +80,20 @@ TEST(TextureCoordinates, OfOtherSurfacesAreTheBoxOrWhatIsAskedFor) {
   expectAt(mesh.at({0.1, 0.2, 0.3}), 0.6, 0.3);
   EXPECT_NE(TextureCoordinates(mesh.scene, 0, *mesh.surface, TextureMapping::Natural, 1).words().find("seams"),
             std::string::npos);
+}
+
+/// A quarter turn about z and a shift carry each point and its normal with them; the texture stays on the object.
+TEST(TextureCoordinates, MoveWithTheObject) {
+  AnalyticSpec ellipsoid = named("ellipsoid");
+  ellipsoid.semiAxes = {0.6, 0.3, 0.2};
+  On on(ellipsoid);
+  Eigen::Isometry3d pose(Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ()));
+  pose.translation() = Eigen::Vector3d(7, -2, 1);
+  on.scene.frames[0].worldFromObject = pose;
+  on.surface = movedTo(pose, on.surface);
+  expectAt(on.at({6.7, -2, 1}), 0.25, 0.5);  // (0, 0.3, 0) of the object
+  expectAt(on.at({7, -1.7, 1}, TextureMapping::Planar), 0.5 + 0.3 / 1.2, 0.5);
+  expectAt(on.at({7, -1.7, 1}, TextureMapping::Box, 1, {0, 1, 0}), 0.5, 0.5);  // (0.3, 0, 0), its normal along x
 }
 
 Image checked() {
