@@ -40,15 +40,14 @@ constexpr double kShiftSlackPx = 0.2;   // of what the highlights ask for about 
 constexpr double kHalfGain = 0.7;       // of a half's residual as given that a true change leaves at most; noise leaves all of it
 // By how much mirrored rays pass a lamp, rad. Off-specular peaks, blur and lamps with a size move them by a few degrees.
 constexpr double kMeets = 0.05, kMayMeet = 0.2;
-
 constexpr double kSameMiss = 1e-9;  // rad: the digits of the rays
-// Share of the radius, without the noise of points, above which a light explains contours poorly: photographs of 8 bits leave 1 to
-// 3 %; a mesh that is a tenth too large leaves 4.5 %.
+// Share of the radius, without the noise of points, above which a light explains contours poorly: photographs of 8 bits leave
+// 1 to 3 %; a mesh that is a tenth too large leaves 4.5 %.
 constexpr double kPoorlyRadii = 0.04;
 
 class Check {
  public:
-  /// @param world  surfaces of the scene in the world, where `scene` is in the coordinates of the cameras; else null
+  /// @param world  surfaces in the world, where `scene` is in the coordinates of the cameras; else null
   Check(const Scene& scene, const ProgressFn& progress, const SurfaceCache* world = nullptr)
       : scene_(scene),
         progress_(progress),
@@ -85,7 +84,7 @@ class Check {
         sayThatNothingFits(given);
       else if (given)
         intrinsics(*given);
-      if (given && result_.findings.empty()) sayThatItFitsPoorly(*given);
+      if (given && result_.findings.empty() && result_.whyNot.empty()) sayThatItFitsPoorly(*given);
     }
     if (given) sayWhoIsOutvoted();
     return std::move(result_);
@@ -411,7 +410,7 @@ class Check {
     return !given || given->rmsPx > std::max(kNothingRadii * radiusOf(*asGiven_), kCoarsePx);
   }
 
-  /// Where the lamp stands still, as evaluations choose it.
+  /// As evaluations choose it.
   LightFrameChoice lightFrame() const {
     std::vector<FrameEvidence> evidence(scene_.frames.size());
     std::vector<int> frames;
@@ -442,9 +441,8 @@ class Check {
           "texture off (detect.texture)";
       return true;
     }
-    if (scene_.surfaces.size() != 1) return false;
+    if (scene_.surfaces.size() != 1 || !scene_.hasTriangles(scene_.surfaces.begin()->first)) return false;
     const std::vector<TrainingView> views = viewsAsGiven();
-    if (views.empty()) return false;
     const std::optional<SmoothedMesh> smoothed =
         smoothedMesh(views, estimateLight(views, settings_), scene_.surfaces.begin()->first, settings_);
     if (smoothed) result_.findings.push_back(smoothed->remark());

@@ -26,7 +26,7 @@ std::string noHighlightText(const Scene& scene, const std::vector<int>& searched
 struct Unexplained {
   int views = 0;
   double leftPx = 0, radiusPx = 0;  ///< by the best light; 0 without one
-  double missRad = 0;               ///< by which mirrored rays pass the best lamp; pi where there is none
+  double missRad = 0;               ///< by which mirrored rays pass the best lamp; pi without a lamp
   int beside = 0;                   ///< views whose highlights all lie beside the surface
   int inside = 0;                   ///< insideOfSurfaces()
   int mistakesTried = 0;
@@ -42,7 +42,7 @@ struct Outvoted {
   std::string frame;
   double missRad = 0;  ///< by which its mirrored ray passes the lamp; pi where its highlights lie beside the surface
 };
-/// "" where there is none. @param agreeing  how many frames share the lamp
+/// "" for no frame. @param agreeing  how many frames share the lamp
 std::string outvotedText(const std::vector<Outvoted>& frames, int agreeing);
 
 }  // namespace glint

@@ -161,6 +161,8 @@ RENDERED = [
     Rung("flash-and-lamp", "a flash on the camera beside a lamp that stands still, unlabelled", r"both kinds|with the camera",
          render={"lamps": [dict(LAMP, position=[-0.7, 0.7, 1.1], power=60.0),
                            dict(LAMP, frame="camera", position=[0.25, -0.12, 0.05])], "roughness": [0.36, 0.36]}),
+    Rung("flash-waves", "an unknown lamp fixed to the camera, over a mesh with broad waves", r"with the camera|moves",
+         render={"lamps": [dict(LAMP, frame="camera", position=[-0.16, 0.24, -0.06])], "waves": 0.08}),
     Rung("dome-three", "three known distant lamps in each photograph, still camera", KNOWN, train="0-11",
          render=dict(BALL, on=[[k, (k + 1) % 13, (k + 7) % 13] for k in range(13)], roughness=[0.39, 0.39])),
 ]

@@ -118,6 +118,18 @@ def order_of_poses(by):
     return wrong
 
 
+def swapped(one, other_one):
+    """Two photographs have each other's poses."""
+
+    def wrong(capture):
+        other = capture.measured()
+        a, b = other.frames[one], other.frames[other_one]
+        a.pose, b.pose = b.pose, a.pose
+        return other
+
+    return wrong
+
+
 def focal(factor):
     def wrong(capture):
         other = capture.measured()
@@ -155,3 +167,10 @@ def _matte(p):
 
 
 no_highlight = _images(_matte)
+
+
+def mostly_dark(capture):
+    """Two of three photographs show no highlight."""
+    dark, other = no_highlight(capture), capture.measured()
+    other.frames = [f if i % 3 == 0 else dark.frames[i] for i, f in enumerate(other.frames)]
+    return other

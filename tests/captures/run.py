@@ -74,6 +74,12 @@ WRONG = [
     ("ellipsoid", "mesh", m.shifted(0.03, 0.02, 0), ["the mesh seems to be shifted by"]),
     ("board", "mesh", m.scaled(1 / 0.3048), ["in feet"]),
     ("vase", "nerfstudio", m.turned(0, 180), ["turned by 180 degrees about its x axis"]),
+    ("linear", "mesh", m.swapped(2, 7), ["do not show the lamp that the other"]),
+    ("linear", "mesh", m.scaled(1.1), ["one light explains the highlights of 8 frames poorly"]),
+    ("plastic", "mesh", m.shifted(0, 0.02, 0), ["poorly"]),
+    ("plastic", "nerfstudio", m.shifted(0.02, 0, 0), ["the mesh seems to be shifted by"]),
+    ("sphere", "mesh", m.scaled(1000), ["in millimetres", "cameras are inside the surface"]),
+    ("report", "mesh", m.mostly_dark, ["show no highlight"]),
 ]
 RIGHT = [(base, writer, None, []) for base, writer in [
     ("report", "mesh"), ("report", "colmap"), ("report", "nerfstudio"), ("plastic", "mesh"), ("plastic", "colmap"), ("panel", "nerfstudio"),

@@ -6,17 +6,21 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <filesystem>
 #include <functional>
 #include <random>
 #include <sstream>
 #include <vector>
 
+#include "core/scene/scene.h"
 #include "tests/core/pipeline/exact_scene.h"
 #include "tests/sanitizers/cases.h"
+#include "tests/shared_data.h"
 
 namespace glint {
 namespace {
 using namespace testing_support;
+using testing::AllOf;
 using testing::Each;
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -227,6 +231,28 @@ TEST(CameraCheck, SaysWhyItCannotTell) {
   for (std::size_t i = 0; i < two.frames.size(); i += 2) two.frames[i].highlights.front().light = "other";
   EXPECT_THAT(checkCameras(two).whyNot, HasSubstr("different lights"));
   EXPECT_THROW(checkCameras(orbit(ellipsoid()), [](const StageEvent&) { return false; }), Stopped);
+}
+
+TEST(CameraCheck, FramesThatDoNotShareTheLampAreNamed) {
+  Scene scene = orbit(ellipsoid(), 8);
+  std::swap(scene.frames[2].camera, scene.frames[5].camera);
+  const CameraCheck check = checkCameras(scene);
+  ASSERT_THAT(check.findings, ElementsAre(HasSubstr("2 of 8 frames do not show the lamp that the other 6 share")));
+  EXPECT_THAT(check.findings.front(), AllOf(HasSubstr(scene.frames[2].id), HasSubstr(scene.frames[5].id)));
+}
+
+/// What evaluations take off, or smooth, is no mistake of the scene.
+TEST(CameraCheck, TextureAndNoiseOfAMeshAreSaidAsWhatTheyAre) {
+  GLINT_NEEDS_SHARED_DATA();
+  const auto checked = [](const char* name) {
+    return checkCameras(readScene(std::filesystem::path(GLINT_SHARED_DIR) / "data/exact" / name / "scene.json"));
+  };
+  for (const char* textured : {"checker", "wood"}) {
+    const CameraCheck check = checked(textured);
+    EXPECT_THAT(check.findings, IsEmpty()) << textured;
+    EXPECT_THAT(check.whyNot, HasSubstr("the surface is textured")) << textured;
+  }
+  EXPECT_THAT(checked("noise1mm").findings, ElementsAre(HasSubstr("the mesh has noise of 0.0012 m")));
 }
 
 }  // namespace
