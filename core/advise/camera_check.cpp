@@ -39,11 +39,10 @@ constexpr double kLeastFocalPct = 0.3;  // of errors that are told: smaller ones
 constexpr double kShiftSlackPx = 0.2;   // of what the highlights ask for about half a pixel
 constexpr double kHalfGain = 0.7;       // of a half's residual as given that a true change leaves at most; noise leaves all of it
 // By how much mirrored rays pass a lamp, rad. Off-specular peaks, blur and lamps with a size move them by a few degrees.
-constexpr double kMeets = 0.05, kMayMeet = 0.2;
-constexpr double kSameMiss = 1e-9;  // rad: the digits of the rays
+constexpr double kMeets = 0.05, kMayMeet = 0.2, kSameMiss = 1e-9;
 // Share of the radius, without the noise of points, above which a light explains contours poorly: photographs of 8 bits leave
 // 1 to 3 %; a mesh that is a tenth too large leaves 4.5 %.
-constexpr double kPoorlyRadii = 0.04;
+constexpr double kPoorlyRadii = 0.04, kPoorlyPx = 0.3;  // small highlights in 8 bits leave 0.2 px
 
 class Check {
  public:
@@ -57,10 +56,8 @@ class Check {
   CameraCheck run() {
     gather();
     result_.views = static_cast<int>(views_.size());
-    if (dark_ > 0 && dark_ == static_cast<int>(searched_.size()))
-      result_.findings.push_back(noHighlightText(scene_, searched_, settings_));
-    else if (2 * dark_ > static_cast<int>(searched_.size()))
-      result_.findings.push_back(formatted("%d of %zu frames that were looked at show no highlight", dark_, searched_.size()));
+    if (2 * dark_ > static_cast<int>(searched_.size()))
+      result_.findings.push_back(noHighlightText(scene_, searched_, dark_, settings_));
     if (!result_.whyNot.empty()) return std::move(result_);
     if (result_.views < kLeastViews) {
       result_.whyNot =
@@ -76,6 +73,7 @@ class Check {
     if (asGiven_ && asGiven_->miss < EIGEN_PI / 2) result_.missDeg = degrees(asGiven_->miss);
     const std::optional<Fitted> given = asGiven_ ? fit({}, *asGiven_, agreeing(*asGiven_), {}) : std::nullopt;
     add("as given", given);
+    const std::size_t before = result_.findings.size();
     // Below that nothing else could be clearly better.
     if (given && given->rmsPx <= std::max(kGoodRadii * radiusOf(*asGiven_), kDetectionPx / kClearlyOther)) {
       intrinsics(*given);
@@ -84,9 +82,11 @@ class Check {
         sayThatNothingFits(given);
       else if (given)
         intrinsics(*given);
-      if (given && result_.findings.empty() && result_.whyNot.empty()) sayThatItFitsPoorly(*given);
     }
-    if (given) sayWhoIsOutvoted();
+    if (given && result_.findings.size() == before && result_.whyNot.empty()) {
+      sayThatItFitsPoorly(*given);
+      sayWhoIsOutvoted();
+    }
     return std::move(result_);
   }
 
@@ -475,7 +475,8 @@ class Check {
       noise += std::pow(noisePx(h.contour), 2) / double(list.size());
     }
     const double left = std::sqrt(std::max(0.0, given.rmsPx * given.rmsPx - noise)), radius = radiusOf(*asGiven_);
-    if (left > kPoorlyRadii * radius) result_.findings.push_back(fitsPoorlyText(list.size(), given.rmsPx, left / radius));
+    if (left > std::max(kPoorlyRadii * radius, kPoorlyPx))
+      result_.findings.push_back(fitsPoorlyText(list.size(), given.rmsPx, left / radius));
   }
 
   void sayWhoIsOutvoted() {
@@ -484,8 +485,7 @@ class Check {
     for (std::size_t i = 0; i < views_.size(); ++i)
       if (std::find(list.begin(), list.end(), static_cast<int>(i)) == list.end())
         others.push_back({scene_.frames[static_cast<std::size_t>(views_[i].evidence.frame)].id, asGiven_->misses[i]});
-    if (const std::string words = outvotedText(others, static_cast<int>(list.size())); !words.empty())
-      result_.findings.push_back(words);
+    if (!others.empty()) result_.findings.push_back(outvotedText(others, static_cast<int>(list.size())));
   }
 
   static CameraChange along(const CameraChange& direction, double by) {

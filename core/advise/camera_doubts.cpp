@@ -22,7 +22,9 @@ int insideOfSurfaces(const std::vector<EyeAndSurface>& views) {
   return inside;
 }
 
-std::string noHighlightText(const Scene& scene, const std::vector<int>& searched, const Settings& settings) {
+std::string noHighlightText(const Scene& scene, const std::vector<int>& searched, int dark, const Settings& settings) {
+  if (dark < static_cast<int>(searched.size()))
+    return formatted("%d of %zu frames that were looked at show no highlight", dark, searched.size());
   Settings fine = settings;
   constexpr double kLeastAreaPx2 = 3;  // smaller ones have no shape
   fine.set("detect.min_area", kLeastAreaPx2);
@@ -76,7 +78,6 @@ std::string fitsPoorlyText(std::size_t frames, double leftPx, double share) {
 }
 
 std::string outvotedText(const std::vector<Outvoted>& frames, int agreeing) {
-  if (frames.empty()) return "";
   std::string names;
   for (const Outvoted& o : frames) {
     names += (names.empty() ? "" : ", ") + o.frame;

@@ -19,8 +19,8 @@ using EyeAndSurface = std::pair<Eigen::Vector3d, std::shared_ptr<const Surface>>
 /// Cameras from which the surface is seen whichever way one looks.
 int insideOfSurfaces(const std::vector<EyeAndSurface>& views);
 
-/// Why no frame shows a highlight. @param searched  frames in which none was found
-std::string noHighlightText(const Scene& scene, const std::vector<int>& searched, const Settings& settings);
+/// How many frames show no highlight; of all of them, why. @param searched  frames. @param dark  of them, without a highlight
+std::string noHighlightText(const Scene& scene, const std::vector<int>& searched, int dark, const Settings& settings);
 
 /// What no light explains, by what mirrored rays say.
 struct Unexplained {
@@ -42,7 +42,7 @@ struct Outvoted {
   std::string frame;
   double missRad = 0;  ///< by which its mirrored ray passes the lamp; pi where its highlights lie beside the surface
 };
-/// "" for no frame. @param agreeing  how many frames share the lamp
+/// @param frames  not empty. @param agreeing  how many frames share the lamp
 std::string outvotedText(const std::vector<Outvoted>& frames, int agreeing);
 
 }  // namespace glint
