@@ -108,7 +108,7 @@ Command retextureCommand() {
              "of it)");
     o.choice(a->shading, "--shading", kShadingSources,
              "Under the texture: lambert = a matt surface under the estimated lights, frame = the frame without its highlight; "
-             "none = nothing, the texture is a measured one (glint texture); auto = lambert where the model knows a light");
+             "none = the texture already holds the light (glint texture); auto = lambert where the model knows a light");
     o.option(a->marginPx, "--margin", "PX", "How far beyond its visible part a highlight is removed, px");
     o.option(a->marks, "--marks", "PNG",
              "Write which pixels the highlight changes: white = predicted (or filled), grey = extrapolated, black = none");

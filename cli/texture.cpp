@@ -8,6 +8,7 @@
 #include "core/highlight/report.h"
 #include "core/model/model.h"
 #include "core/retexture/surface_texture.h"
+#include "core/retexture/wish.h"
 #include "core/scene/frame_name.h"
 #include "core/scene/outputs.h"
 
@@ -21,8 +22,7 @@ struct TextureArguments : InspectionArguments {
 };
 
 SurfaceTextureRequest wishOf(const TextureArguments& a) {
-  constexpr double kMostRepeats = 1e4;  // as retexture
-  if (!(a.repeat > 0 && a.repeat <= kMostRepeats)) throw InputError("", "--repeat", "must be above 0, at most 10000");
+  requireRepeat(a.repeat);
   if (a.size < 0 || a.size > kWidestTexture)
     throw InputError("", "--size", "must be 1 to " + std::to_string(kWidestTexture) + " px, or 0");
   SurfaceTextureRequest r;
@@ -96,7 +96,7 @@ Command textureCommand() {
                  "Scene file, capture of another program (COLMAP, nerfstudio ...), folder that contains one, or session");
     o.required(a->out, "-o,--out", "PNG", "The picture to write");
     o.option(a->sure, "--sure", "PNG",
-             "Write how sure each texel is: red = number of views, green = by how many codes of 8 bits they differ");
+             "Write how sure each texel is: red = the number of views, green = by how many codes of 8 bits they differ");
     o.option(a->frames, "--frames", "SPEC", "Frames to take it from: numbers, ids or ranges (default: all)");
     o.choice(a->mapping, "--mapping", kTextureMappings,
              "How the texture lies: natural = the surface's own coordinates, for meshes and depth maps box");

@@ -262,8 +262,8 @@ class Check {
     for (const LikelyMistake& mistake : likelyMistakes()) {
       const std::optional<SharedLamp> lamp = lampAfter(mistake.undoing);
       // A ball that is turned about its centre is the same ball.
-      const bool changes = !lamp || !asGiven_ || std::abs(lamp->miss - asGiven_->miss) > kSameMiss;
-      if (lamp && lamp->miss < kMayMeet && changes) list.push_back({&mistake, place, *lamp, {}});
+      const bool changes = lamp && (!asGiven_ || std::abs(lamp->miss - asGiven_->miss) > kSameMiss);
+      if (changes && lamp->miss < kMayMeet) list.push_back({&mistake, place, *lamp, {}});
       ++place;
     }
     std::stable_sort(list.begin(), list.end(), [](const Suspect& a, const Suspect& b) { return a.step() < b.step(); });

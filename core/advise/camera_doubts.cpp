@@ -81,12 +81,11 @@ std::string outvotedText(const std::vector<Outvoted>& frames, int agreeing) {
   std::string names;
   for (const Outvoted& o : frames) {
     names += (names.empty() ? "" : ", ") + o.frame;
-    names += o.missRad < EIGEN_PI / 2 ? formatted(" (by %.2g degrees)", degrees(o.missRad))
-                                      : " (every highlight lies beside the surface)";
+    names += o.missRad < EIGEN_PI / 2 ? formatted(" by %.2g degrees", degrees(o.missRad)) : " beside the surface";
   }
-  return formatted("%zu of %zu frames do not show the lamp that the other %d share: ", frames.size(),
-                   frames.size() + static_cast<std::size_t>(agreeing), agreeing) +
-         names + ". Do they have the pose or the photograph of another frame? Do they show another lamp?";
+  return formatted("the highlights of %d frames share one lamp; those of %zu do not, and their mirrored rays miss it: frame ",
+                   agreeing, frames.size()) +
+         names + " (a pose or a photograph of another frame, or another lamp?)";
 }
 
 }  // namespace glint

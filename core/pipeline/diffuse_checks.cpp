@@ -24,18 +24,21 @@ bool isPhotograph(const Frame& frame, FrameSource source) {
   return !frame.image.empty() && (source == FrameSource::Image || frame.radiance.empty());
 }
 
-void doubt(Inspection& r, const SightedSurface& sighted, const std::string& remark) {
-  if (remark.empty()) return;
+/// The lights whose highlights the frames of a surface show.
+std::set<FitKey> keysOf(const Inspection& r, const SightedSurface& sighted) {
   std::set<FitKey> keys;
   for (const int f : sighted.frames)
     for (const Highlight& h : r.evidence[static_cast<std::size_t>(f)].highlights) keys.insert(r.keyFor(f, h.light));
-  for (const FitKey& key : keys) {
-    std::string& said = r.responseDoubts[key];
-    said += (said.empty() ? "" : "; ") + remark;
-  }
+  return keys;
 }
 
 }  // namespace
+
+void addDoubt(Inspection& r, const FitKey& key, const std::string& doubt) {
+  if (doubt.empty()) return;
+  std::string& all = r.pixelDoubts[key];
+  all += (all.empty() ? "" : "; ") + doubt;
+}
 
 std::vector<SightedSurface> sightedSurfaces(const Inspection& r, const std::vector<int>& frames,
                                             const SurfaceOfFrame& surfaceOf) {
@@ -72,27 +75,28 @@ std::vector<SightedSurface> sightedSurfaces(const Inspection& r, const std::vect
 }
 
 void addVignetting(Inspection& r, const std::vector<SightedSurface>& all) {
-  for (const SightedSurface& s : all)
-    if (s.photographs)
-      doubt(r, s,
-            vignettingRemark(vignettingOf(s.panel, s.points), s.panel.views().size(),
-                             r.scene->frames[static_cast<std::size_t>(s.frames.front())].response));
+  for (const SightedSurface& s : all) {
+    if (!s.photographs) continue;
+    const std::string remark = vignettingRemark(vignettingOf(s.panel, s.points), s.panel.views().size(),
+                                                r.scene->frames[static_cast<std::size_t>(s.frames.front())].response);
+    for (const FitKey& key : keysOf(r, s)) addDoubt(r, key, remark);
+  }
 }
 
 void addSecondLobes(Inspection& r, const std::vector<SightedSurface>& all,
                     const std::map<FitKey, std::vector<TrainingView>>& groups) {
   if (!standsStill(*r.scene)) return;
   for (const SightedSurface& s : all) {
-    std::set<FitKey> keys;
-    for (const int f : s.frames)
-      for (const Highlight& h : r.evidence[static_cast<std::size_t>(f)].highlights) keys.insert(r.keyFor(f, h.light));
+    const std::set<FitKey> keys = keysOf(r, s);
     if (keys.size() != 1) continue;
-    const auto views = groups.find(*keys.begin());
-    const auto fit = r.pixelFits.find(*keys.begin());
+    const FitKey& key = *keys.begin();
+    const auto views = groups.find(key);
+    const auto fit = r.pixelFits.find(key);
     if (views == groups.end() || fit == r.pixelFits.end() || !fit->second) continue;
-    if (!isIdentity(r.lightFromScene(s.frames.front(), views->first.light))) continue;
+    if (!isIdentity(r.lightFromScene(s.frames.front(), key.light))) continue;
     const Light light = lightOf((*fit->second)->model.lamp);
-    doubt(r, s, secondLobeRemark(secondLobeOf(s.panel, s.points, light, medianContourAngle(views->second, light, kAnglePoints))));
+    const double halfAngle = medianContourAngle(views->second, light, kAnglePoints);
+    addDoubt(r, key, secondLobeRemark(secondLobeOf(s.panel, s.points, light, halfAngle)));
   }
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <string>
 #include <vector>
 
 #include "core/pipeline/lobe_stage.h"
@@ -17,12 +18,15 @@ struct SightedSurface {
   bool photographs = false;          ///< the values come from codes, not from radiance
 };
 
+/// Adds to Inspection::pixelDoubts; "" adds nothing.
+void addDoubt(Inspection& inspection, const FitKey& key, const std::string& doubt);
+
 /// One for each surface that at least four training frames show under the same lamps. An object that moves is sighted around
 /// itself: panels and points are in its own coordinates.
 std::vector<SightedSurface> sightedSurfaces(const Inspection& inspection, const std::vector<int>& frames,
                                             const SurfaceOfFrame& surfaceOf);
 
-/// Light that falls towards the corners of photographs goes to Inspection::responseDoubts.
+/// Light that falls towards the corners of photographs goes to Inspection::pixelDoubts.
 void addVignetting(Inspection& inspection, const std::vector<SightedSurface>& sighted);
 
 /// A wide second lobe under the highlights does, too, where one lamp stands still beside a still object and its pixels have a

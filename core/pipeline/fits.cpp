@@ -135,7 +135,7 @@ std::string oneViewRemark(const Inspection& r, const ModelFit& fit) {
   const auto isFirst = [&](int frame) { return frame == fit.frames.front(); };
   if (fit.frames.empty() || !std::all_of(fit.frames.begin(), fit.frames.end(), isFirst)) return "";
   if (r.train.perSurface || knownLamp(*r.scene, fit.light)) return "";
-  return "it rests on one view, frame " + r.scene->frames[std::size_t(fit.frames.front())].id +
+  return "the fit rests on one view, frame " + r.scene->frames[std::size_t(fit.frames.front())].id +
          ": many lamps and lobes fit one view, so that neither the residual nor the band shows an error";
 }
 

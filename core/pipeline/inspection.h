@@ -99,8 +99,8 @@ struct Inspection {
   std::map<std::pair<int, int>, std::shared_ptr<const PixelPatch>> patches;  ///< pixels by (training frame, highlight as found)
   std::map<FitKey, Outcome<std::shared_ptr<const PixelFit>>> pixelFits;      ///< the lobe of the training frames' pixels
   std::map<FitKey, std::shared_ptr<const UnexplainedPixels>> unexplained;    ///< what was asked where that failed
-  std::map<FitKey, std::string> responseDoubts;  ///< where the pixels ask for another response of the camera, see responseDoubt()
-  bool pixelsLeft = false;                       ///< patches and pixelFits are still to be made, see Question::Part::FirstLook
+  std::map<FitKey, std::string> pixelDoubts;  ///< what pixels show that no fit says: another response, vignetting, a second lobe
+  bool pixelsLeft = false;                    ///< patches and pixelFits are still to be made, see Question::Part::FirstLook
   std::map<FitKey, Outcome<LightEstimate>> lights;         ///< see lightOf(), lightFor()
   std::map<FitKey, SurfaceCorrection> corrections;         ///< of the views' and predictions' surfaces, where there is one
   std::shared_ptr<CorrectedDepthMaps> correctedDepthMaps;  ///< recently used ones, for surfaceFor(); never null after a run

@@ -95,12 +95,6 @@ bool showCodes(const Inspection& r, const std::vector<TrainingView>& views) {
   });
 }
 
-void addDoubt(Inspection& r, const FitKey& key, const std::string& doubt) {
-  if (doubt.empty()) return;
-  std::string& all = r.responseDoubts[key];
-  all += (all.empty() ? "" : "; ") + doubt;
-}
-
 /// One light's. What fails is kept with its question.
 /// @param near  see fitViewsPixels()
 void fitLobe(Inspection& r, const FitKey& key, const std::vector<TrainingView>& views, const PixelFit* near,
@@ -164,7 +158,7 @@ void shareLobe(Inspection& r, const FitKey& of, const std::vector<FitKey>& share
     } else {
       r.pixelFits.insert_or_assign(key, found.failure());
     }
-    if (const auto doubt = r.responseDoubts.find(of); doubt != r.responseDoubts.end()) r.responseDoubts[key] = doubt->second;
+    if (const auto doubt = r.pixelDoubts.find(of); doubt != r.pixelDoubts.end()) r.pixelDoubts[key] = doubt->second;
   }
 }
 
@@ -238,7 +232,7 @@ void fitGroups(Inspection& r, const Groups& own, const std::set<FitKey>* only, c
 /// All lamps; then again those into whose pixels others reach, without the light of these: from scratch, since tails may have
 /// passed for a background, and from there once more with the better lobes.
 void fitLobesOf(Inspection& r, const Groups& seen, const ProgressFn& progress) {
-  const std::map<FitKey, std::string> doubts = r.responseDoubts;
+  const std::map<FitKey, std::string> doubts = r.pixelDoubts;
   fitGroups(r, seen, nullptr, nullptr, progress);
   const std::map<std::pair<int, int>, std::shared_ptr<const PixelPatch>> patches = r.patches;
   for (int round = 0; round < kRoundsWithoutOthers; ++round) {
@@ -248,8 +242,8 @@ void fitLobesOf(Inspection& r, const Groups& seen, const ProgressFn& progress) {
     const std::set<FitKey> changed = takeOtherLampsOff(r, left);
     if (changed.empty()) return;
     for (const FitKey& key : changed) {
-      r.responseDoubts.erase(key);
-      if (const auto own = doubts.find(key); own != doubts.end()) r.responseDoubts.insert(*own);
+      r.pixelDoubts.erase(key);
+      if (const auto own = doubts.find(key); own != doubts.end()) r.pixelDoubts.insert(*own);
     }
     fitGroups(r, left, &changed, round > 0 ? &before : nullptr, progress);
   }

@@ -203,7 +203,7 @@ void StageRun::lobes() {
     r_.patches = known->patches;
     r_.pixelFits = known->pixelFits;
     r_.unexplained = known->unexplained;
-    r_.responseDoubts = known->responseDoubts;
+    r_.pixelDoubts = known->pixelDoubts;
   } else {
     fitLobes(r_, surface, together_, progress_);
   }
@@ -472,7 +472,7 @@ ModelResult::Fit StageRun::fitOf(const HighlightModel& model, const FitKey& key,
   add(switchedRemark(r_, fit, [this](int frame) { return surfaceOf(frame); }));
   add(widths);
   if (merged) add(merged->text);
-  if (const auto doubt = r_.responseDoubts.find(key); doubt != r_.responseDoubts.end()) add(doubt->second);
+  if (const auto doubt = r_.pixelDoubts.find(key); doubt != r_.pixelDoubts.end()) add(doubt->second);
   if (r_.surfaces) add(r_.surfaces->fusionRemark(fit.frames));
   if (const auto found = r_.corrections.find(key); found != r_.corrections.end() && model.needsLight()) {
     if (found->second.smoothed) fit.remarks.push_back(found->second.smoothed->remark());

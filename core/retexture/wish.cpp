@@ -61,10 +61,14 @@ void requireLight(const std::string& light, const Inspection& inspection, const 
 
 }  // namespace
 
+void requireRepeat(double repeat) {
+  if (!(repeat > 0 && repeat <= kMostRepeats)) throw InputError("", "--repeat", "must be above 0, at most 10000");
+}
+
 void requireAnswerable(const RetextureWish& wish) {
   const int asked = int(!wish.texture.empty()) + int(!wish.background.empty()) + int(wish.remove);
   if (asked != 1) throw InputError("", "retexture", "give one of --texture FILE, --background FILE and --remove");
-  if (!(wish.repeat > 0 && wish.repeat <= kMostRepeats)) throw InputError("", "--repeat", "must be above 0, at most 10000");
+  requireRepeat(wish.repeat);
   if (!(wish.albedo >= 0 && wish.albedo <= 1)) throw InputError("", "--albedo", "must be above 0, at most 1");
   if (!(wish.marginPx >= 0 && wish.marginPx <= kLargestMargin)) throw InputError("", "--margin", "must be 0 to 1000 px");
 }

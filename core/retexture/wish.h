@@ -26,6 +26,8 @@ struct RetextureWish {
   double repeat = 1, albedo = 0, marginPx = 4;  ///< albedo 0: the texture's mean takes the place of it
 };
 
+/// InputError "--repeat" unless it is above 0 and at most 10,000.
+void requireRepeat(double texturesInPlaceOfOne);
 /// InputError if not exactly one of texture, background and removal is asked for, or a number is out of its range.
 void requireAnswerable(const RetextureWish& wish);
 

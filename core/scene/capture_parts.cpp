@@ -103,13 +103,20 @@ void BadLines::tell(std::vector<std::string>& warnings) const {
 
 bool isLostPose(const JsonNode& pose) {
   if (!pose.isArray()) return pose.isNull();
+  constexpr std::size_t kRows = 3;
+  std::size_t numbers = 0, zeros = 0;  // of a matrix by rows
   for (std::size_t i = 0; i < pose.size(); ++i) {
     const JsonNode row = pose.at(i);
     if (row.isNull()) return true;
-    for (std::size_t j = 0; row.isArray() && j < row.size(); ++j)
-      if (row.at(j).isNull()) return true;
+    for (std::size_t j = 0; row.isArray() && j < row.size(); ++j) {
+      const JsonNode number = row.at(j);
+      if (number.isNull()) return true;
+      if (i >= kRows) continue;  // the last one may be right
+      ++numbers;
+      zeros += number.isNumber() && number.number() == 0;
+    }
   }
-  return false;
+  return numbers > 0 && zeros == numbers;
 }
 
 bool isCutPose(const JsonNode& pose) {
@@ -129,6 +136,14 @@ bool anyNotFinite(const Row& row, std::size_t word, std::size_t words) {
   for (std::size_t i = word; i < end; ++i)
     if (const std::optional<double> value = io::numberOf(row.words[i]); value && !std::isfinite(*value)) return true;
   return false;
+}
+
+bool isLostTum(const Row& row) {
+  constexpr std::size_t kNumbers = 8, kQuaternion = 4;
+  if (anyNotFinite(row, 1, kNumbers - 1)) return true;
+  return row.words.size() == kNumbers && std::all_of(row.words.begin() + kQuaternion, row.words.end(), [](std::string_view word) {
+           return io::numberOf(word) == std::optional(0.0);
+         });
 }
 
 double numberAt(const Row& row, std::size_t word, const std::string& file) {

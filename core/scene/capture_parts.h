@@ -86,12 +86,12 @@ class BadLines {
 };
 
 /// Why a frame or a line is skipped, for PassedOver::tell().
-inline constexpr const char* kNoFinitePose = "no finite pose (tracking was lost)";
+inline constexpr const char* kNoFinitePose = "no finite pose (tracking was lost)";  // or nothing but zeros
 inline constexpr const char* kCutPose = "has fewer numbers than a pose (a cut line?)";
 inline constexpr const char* kSaidBefore = "says the same as a line before";
 
 /// Whether a pose, or a part of it, is null, NaN or infinite (JsonNode reads all of them as null): programs write it where they
-/// have lost the camera.
+/// have lost the camera. So is a matrix of zeros.
 bool isLostPose(const JsonNode& pose);
 /// Whether a matrix has fewer than three rows, or one of them fewer than four numbers.
 bool isCutPose(const JsonNode& pose);
@@ -107,6 +107,8 @@ double numberAt(const Row& row, std::size_t word, const std::string& file);
 long long integerAt(const Row& row, std::size_t word, const std::string& file);
 /// Whether one of the words from this one on, at most `words` of them, is NaN or infinite.
 bool anyNotFinite(const Row& row, std::size_t word, std::size_t words);
+/// Whether a line of TUM (time tx ty tz qx qy qz qw) has no pose: a number that is not finite, or a quaternion of zeros.
+bool isLostTum(const Row& row);
 
 // Internal to core/scene: which moments of two lists belong together.
 

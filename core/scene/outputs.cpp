@@ -57,10 +57,12 @@ OutputKind OutputKind::lightPositions() { return {Form::LightPositions, "", "a l
 
 bool OutputKind::mayBeNamed(const fs::path& file) const {
   // Endings by which programs choose a format; other endings promise nothing.
-  static const std::set<std::string> promises{".bmp", ".csv",  ".exr", ".gif", ".glint", ".htm", ".html", ".jpeg",
-                                              ".jpg", ".json", ".lp",  ".mp4", ".obj",   ".pdf", ".ply",  ".png",
-                                              ".ppm", ".stl",  ".svg", ".tif", ".tiff",  ".webp"};
+  static const std::set<std::string> promises{
+      ".bin", ".bmp",  ".csv", ".data", ".docx", ".eps",  ".exr", ".gif",  ".glint", ".hdr",  ".htm", ".html", ".jpeg",
+      ".jpg", ".json", ".lp",  ".md",   ".mp4",  ".obj",  ".ods", ".pdf",  ".pgm",   ".ply",  ".png", ".pnm",  ".ppm",
+      ".ps",  ".stl",  ".svg", ".tif",  ".tiff", ".webp", ".xls", ".xlsx", ".xml",   ".yaml", ".yml", ".zip"};
   const std::string ending = lowerEnding(file);
+  if (form_ == Form::Png && !ending.empty()) return ending == endings_.front();
   return endings_.empty() || promises.count(ending) == 0 || std::count(endings_.begin(), endings_.end(), ending) > 0;
 }
 

@@ -126,7 +126,7 @@ PoseLine PoseLineReader::fromTum(const std::string& line) {
   PoseLine pose;
   pose.time = capture::bounded(capture::secondsOf(capture::numberAt(row, 0, name_)), kFarthest, name_, place());
   pose.id = id_ = std::string(row.words.front());
-  if (capture::anyNotFinite(row, 1, kNumbers - 1)) throw LostPose(name_, place(), "there is no finite pose: tracking was lost");
+  if (capture::isLostTum(row)) throw LostPose(name_, place(), "there is no finite pose: tracking was lost");
   Eigen::Vector4d xyzw;
   for (int i = 0; i < 4; ++i) xyzw[i] = capture::numberAt(row, std::size_t(4 + i), name_);
   std::vector<std::string> odd;

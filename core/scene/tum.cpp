@@ -83,7 +83,7 @@ std::vector<TumPose> readTumPoses(const fs::path& file, capture::PassedOver& los
       continue;
     }
     TumPose pose{capture::secondsOf(capture::numberAt(*row, 0, file.string())), {}, {}, row->place()};
-    if (capture::anyNotFinite(*row, 1, kNumbers - 1)) {
+    if (capture::isLostTum(*row)) {
       lost.add(row->place());
       continue;
     }

@@ -81,7 +81,7 @@ TEST_F(Diagnose, TextJsonAndPageSayTheSame) {
   ASSERT_EQ(run.code, 0) << run.err;
   // What is wrong with the input comes first: the moved contour does not show the lamp of the others.
   std::string said = run.out;
-  ASSERT_TRUE(said.starts_with("finding: 1 of ")) << said;
+  ASSERT_TRUE(said.starts_with("finding: the highlights of 7 frames share one lamp")) << said;
   said.erase(0, said.find('\n') + 1);
   EXPECT_LT(said.find("the error is "), said.find('\n'));
   std::size_t at = 0;

@@ -7,7 +7,8 @@ namespace glint {
 namespace {
 
 TEST(CsvText, WhatASpreadsheetWouldComputeIsText) {
-  for (const char* formula : {"=cmd|' /C calc'!A0", "+1+1", "-2+3+cmd|' /C calc'!A0", "@SUM(A1)", "\tx", "\rx", "=1", "--1",
+  for (const char* formula : {"=cmd|' /C calc'!A0", "+1+1", "-2+3+cmd|' /C calc'!A0", "@SUM(A1)", "\tx", "\rx", "=1", " =1",
+                              "  @SUM(A1)", "\xE2\x80\x8B=1", "--1",
                               "\xEF\xBC\x9D"
                               "1+1"}) {
     EXPECT_EQ(withoutFormula(formula), std::string("'") + formula);
@@ -16,7 +17,7 @@ TEST(CsvText, WhatASpreadsheetWouldComputeIsText) {
 }
 
 TEST(CsvText, NumbersAndOtherTextStay) {
-  for (const char* text : {"", "-", "0", "-1.5", "+2", "-1e-3", "0003", "a=b", "x-y", "frame 4", " =1", "'quoted'"})
+  for (const char* text : {"", "-", "0", "-1.5", "+2", "-1e-3", "0003", "a=b", "x-y", "frame 4", " -1.5", " a", "  ", "'quoted'"})
     EXPECT_EQ(withoutFormula(text), text);
 }
 

@@ -320,6 +320,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadCase{"pose of three rows", ",[0,0,0,1]]", "]", "frames[0].transform_matrix: ", "4 rows"},
         BadCase{"pose with a word", "[0,1,0,2]", "[0,\"x\",0,2]", "frames[0].transform_matrix[1][1]: ", "finite"},
         BadCase{"only a pose with a NaN", "[0,1,0,2]", "[0,NaN,0,2]", "frames: ", "have no finite pose"},
+        BadCase{"only a pose of zeros", "[[1,0,0,1],[0,1,0,2],[0,0,1,3]", "[[0,0,0,0],[0,0,0,0],[0,0,0,0]",
+                "frames: ", "have no finite pose"},
         BadCase{"pose far away", "[0,1,0,2]", "[0,1,0,1e300]", "frames[0].transform_matrix[1][3]: ", "larger than 1e15"},
         BadCase{"pose mirrored", "[0,1,0,2]", "[0,-1,0,2]", "frames[0].transform_matrix: ", "mirrored"},
         BadCase{"pose scaled", "[[1,0,0,1],[0,1,0,2],[0,0,1,3]", "[[2,0,0,1],[0,2,0,2],[0,0,2,3]",

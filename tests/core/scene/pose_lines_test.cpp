@@ -113,7 +113,9 @@ TEST(PoseLines, WhatIsNoPoseIsRefusedWithItsPlace) {
       {"deep", "{\"id\": " + std::string(5000, '[') + std::string(5000, ']') + "}", "poses: line 1", "nested deeper"},
       {"seven numbers", "1 2 3 4 0 0 0", "poses: line 1", "has 7 words"},
       {"nine numbers", "1 2 3 4 0 0 0 1 1", "poses: line 1", "more than 8 words"},
-      {"no rotation", "1 2 3 4 0 0 0 0", "poses: line 1", "must not be zero"},
+      {"no rotation", "1 2 3 4 0 0 0 0", "poses: line 1", "there is no finite pose"},
+      {"nothing but zeros", R"({"id": "a", "camera_from_world": [[0,0,0,0],[0,0,0,0],[0,0,0,0],[0,0,0,0]]})",
+       "poses: line 1: camera_from_world", "there is no finite pose"},
       {"a word", "1 2 x 4 0 0 0 1", "poses: line 1", "number"},
       {"time without end", "inf 2 3 4 0 0 0 1", "poses: line 1", "number"},
       {"a list", "[1, 2]", "poses: line 1", "has 2 words"},
@@ -161,12 +163,12 @@ TEST(PoseLines, ReadingGoesOnBehindAWrongLine) {
 TEST(PoseLines, AFileIsReadAsAWhole) {
   const TemporaryFolder folder;
   std::vector<std::string> warnings;
-  folder.write("a.txt", std::string("\xEF\xBB\xBF") + kTurnedTum + "\n2 nan 0 0 0 0 0 1\n3 0 0 0 0 0 0 1\n");
+  folder.write("a.txt", std::string("\xEF\xBB\xBF") + kTurnedTum + "\n2 nan 0 0 0 0 0 1\n3 0 0 0 0 0 0 1\n4 1 2 3 0 0 0 0\n");
   const std::vector<PoseLine> poses = readPoseLines(folder / "a.txt", warnings);
   ASSERT_EQ(poses.size(), 2u);
   EXPECT_EQ(poses[1].id, "3");
   ASSERT_EQ(warnings.size(), 1u);
-  EXPECT_THAT(warnings[0], HasSubstr("a.txt: line 2: no finite pose (tracking was lost); it is left out"));
+  EXPECT_THAT(warnings[0], HasSubstr("a.txt: line 2 and 1 more: no finite pose (tracking was lost); they are left out"));
   folder.write("again.txt", "1 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n");
   EXPECT_EQ(readPoseLines(folder / "again.txt", warnings).size(), 1u);
   EXPECT_THAT(warnings.back(), HasSubstr("again.txt: line 2: says the same as a line before"));
